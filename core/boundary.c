@@ -1,0 +1,188 @@
+/* Where the outer boundary goes (paper, section 3.2): to the unit square between four corners, or to its inscribed circle, each
+ * vertex at its share of rest arc length. The same places serve rest and every frame. */
+#include "internal.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+/* cos and sin of |angle| <= pi/4 by their series: the rest is under 1e-17 there. */
+static void small_circle(double angle, double out[2]) {
+    double square = angle * angle, cosine = 1, sine = 1;
+    for (int k = 9; k > 0; k--) {
+        cosine = 1 - cosine * square / ((2 * k) * (2 * k - 1));
+        sine = 1 - sine * square / ((2 * k) * (2 * k + 1));
+    }
+    out[0] = cosine, out[1] = sine * angle;
+}
+
+void ss_circle(double turns, double out[2]) {
+    double quarter = floor(4 * turns + 0.5), p[2];
+    small_circle((4 * turns - quarter) * (PI / 2), p);
+    switch ((int)quarter & 3) {
+    case 0:
+        out[0] = p[0], out[1] = p[1];
+        break;
+    case 1:
+        out[0] = -p[1], out[1] = p[0];
+        break;
+    case 2:
+        out[0] = -p[0], out[1] = -p[1];
+        break;
+    default:
+        out[0] = p[1], out[1] = -p[0];
+    }
+}
+
+/* ---- The outer loop: vertex i of it, and the side that leaves it ---- */
+
+static int32_t outer_count(const ss_patch *patch) {
+    return patch->loop_start[1];
+}
+
+static int32_t outer_vertex(const ss_patch *patch, int32_t i) {
+    return patch->loop_vertex[i % outer_count(patch)];
+}
+
+static double side_length(const ss_patch *patch, int32_t i) {
+    return patch->rest_length[patch->faces.corner_edge[patch->vertex_corner[outer_vertex(patch, i)]]];
+}
+
+static double arc_length(const ss_patch *patch, int32_t from, int32_t to) {
+    double length = 0;
+    for (int32_t i = from; i < to; i++)
+        length += side_length(patch, i);
+    return length;
+}
+
+static void place_on_circle(ss_patch *patch) {
+    double whole = arc_length(patch, 0, outer_count(patch)), walked = 0;
+    for (int32_t i = 0; i < outer_count(patch); i++) {
+        double *uv = patch->fixed_uv[outer_vertex(patch, i)], direction[2];
+        ss_circle(walked / whole, direction);
+        uv[0] = 0.5 + 0.5 * direction[0], uv[1] = 0.5 + 0.5 * direction[1];
+        walked += side_length(patch, i);
+    }
+}
+
+/* ---- The square ---- */
+
+/* Places from corner number side, at loop position from, up to the next corner at to. */
+static void place_on_side(ss_patch *patch, int side, int32_t from, int32_t to) {
+    static const double corners[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+    const double *a = corners[side], *b = corners[side + 1];
+    double whole = arc_length(patch, from, to), walked = 0;
+    for (int32_t i = from; i < to; i++) {
+        double share = walked / whole, *uv = patch->fixed_uv[outer_vertex(patch, i)];
+        for (int k = 0; k < 2; k++)
+            uv[k] = a[k] == b[k] ? a[k] : a[k] < b[k] ? share : 1 - share;
+        walked += side_length(patch, i);
+    }
+}
+
+/* corners: loop positions, ascending; the first goes to (0,0). */
+static void place_on_square(ss_patch *patch, const int32_t corners[4]) {
+    for (int side = 0; side < 4; side++)
+        place_on_side(patch, side, corners[side], side < 3 ? corners[side + 1] : corners[0] + outer_count(patch));
+}
+
+static void sort4(int32_t values[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int k = i; k > 0 && values[k] < values[k - 1]; k--) {
+            int32_t swap = values[k];
+            values[k] = values[k - 1], values[k - 1] = swap;
+        }
+}
+
+/* Loop positions of the artist's corners. */
+static skinslide_status find_corners(const ss_patch *patch, int32_t positions[4], skinslide_error *error) {
+    for (int k = 0; k < 4; k++) {
+        int32_t vertex = ss_patch_vertex(patch, patch->setup->corners[k]);
+        positions[k] = -1;
+        for (int32_t i = 0; vertex >= 0 && i < outer_count(patch); i++)
+            if (patch->loop_vertex[i] == vertex)
+                positions[k] = i;
+        if (positions[k] < 0)
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s: corner %d is not on its outer boundary", patch->label,
+                           patch->setup->corners[k]);
+    }
+    sort4(positions);
+    for (int k = 1; k < 4; k++)
+        if (positions[k] == positions[k - 1])
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s: corner %d is listed more than once", patch->label,
+                           patch->mesh_vertex[patch->loop_vertex[positions[k]]]);
+    return SKINSLIDE_OK;
+}
+
+/* Cosine of the angle between two sides at a corner; 1 where a side has no length. */
+static double corner_cosine(const ss_patch *patch, int32_t corner, const float *points) {
+    const ss_faces *faces = &patch->faces;
+    int32_t around[3] = {faces->corner_vertex[ss_previous_corner(faces, corner)], faces->corner_vertex[corner],
+                         faces->corner_vertex[ss_next_corner(faces, corner)]};
+    double dot = 0, before = 0, after = 0;
+    for (int k = 0; k < 3; k++) {
+        double here = points[3 * (int64_t)patch->mesh_vertex[around[1]] + k];
+        double a = points[3 * (int64_t)patch->mesh_vertex[around[0]] + k] - here;
+        double b = points[3 * (int64_t)patch->mesh_vertex[around[2]] + k] - here;
+        dot += a * b, before += a * a, after += b * b;
+    }
+    return before > 0 && after > 0 ? dot / sqrt(before * after) : 1;
+}
+
+/* How wide the patch is open at a boundary vertex: 1 - cosine, summed over its corners there; grows with the angle. */
+static double opening(const ss_patch *patch, int32_t vertex, const float *points) {
+    double sum = 0;
+    for (int32_t c = patch->vertex_corner[vertex]; c >= 0; c = patch->faces.corner_twin[ss_previous_corner(&patch->faces, c)])
+        sum += 1 - corner_cosine(patch, c, points);
+    return sum;
+}
+
+/* The sharpest vertex of the loop, then those nearest to a quarter, half and three quarters of the arc from it. */
+static void choose_corners(const ss_patch *patch, const float *rest_points, int32_t positions[4]) {
+    int32_t count = outer_count(patch), sharpest = 0;
+    for (int32_t i = 1; i < count; i++)
+        if (opening(patch, outer_vertex(patch, i), rest_points) < opening(patch, outer_vertex(patch, sharpest), rest_points))
+            sharpest = i;
+    double whole = arc_length(patch, 0, count), walked = 0;
+    int32_t i = 0;
+    positions[0] = sharpest;
+    for (int k = 1; k < 4; k++) {
+        do /* at least one step from the corner before, and leave a vertex for each corner to come */
+            walked += side_length(patch, sharpest + i++);
+        while (walked + 0.5 * side_length(patch, sharpest + i) < 0.25 * k * whole && count - i > 4 - k);
+        positions[k] = (sharpest + i) % count;
+    }
+    sort4(positions);
+}
+
+/* Whether this piece is the one that the corners were given for. */
+static bool has_corners(const ss_patch *patch) {
+    if (!patch->setup->corners)
+        return false;
+    for (int k = 0; k < 4; k++)
+        if (ss_patch_vertex(patch, patch->setup->corners[k]) >= 0)
+            return true;
+    return patch->piece_count == 1;
+}
+
+skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, skinslide_error *error) {
+    bool given = has_corners(patch);
+    skinslide_boundary boundary = patch->setup->boundary;
+    if (boundary == SKINSLIDE_BOUNDARY_AUTO)
+        boundary = given ? SKINSLIDE_BOUNDARY_SQUARE : SKINSLIDE_BOUNDARY_CIRCLE;
+    int32_t corners[4];
+    skinslide_status status = given ? find_corners(patch, corners, error) : SKINSLIDE_OK;
+    if (status)
+        return status;
+    if (boundary == SKINSLIDE_BOUNDARY_CIRCLE) {
+        place_on_circle(patch);
+        return SKINSLIDE_OK;
+    }
+    if (outer_count(patch) < 4)
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s: a square boundary needs 4 vertices on the outer loop, which has %d",
+                       patch->label, outer_count(patch));
+    if (!given)
+        choose_corners(patch, rest_points, corners);
+    place_on_square(patch, corners);
+    return SKINSLIDE_OK;
+}

@@ -1,0 +1,221 @@
+/* Faces of an embedding by place: a tree of boxes, for what a walk cannot reach. It is as deep as the logarithm of the count of
+ * faces however unevenly they lie, so that a patch whose faces crowd together (a finger tip in a circle) cannot stall a frame.
+ * Faces are sorted along a Z-order curve and halved. */
+#include "internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { LEAF = 4, STACK = 64 };
+
+typedef struct node {
+    double low[2], high[2];
+    int32_t lowest; /* face under this node */
+} node;
+
+typedef struct key {
+    uint64_t code;
+    int32_t face;
+} key;
+
+struct ss_face_tree {
+    ss_memory memory;
+    const ss_faces *faces;
+    const double (*uv)[2];
+    key *keys;   /* [face_count] in Z-order */
+    node *nodes; /* node i has children 2i + 1 and 2i + 2, each with half of its keys */
+};
+
+static int32_t node_count(int32_t faces) {
+    int32_t nodes = 1;
+    for (int32_t width = faces; width > LEAF; width = (width + 1) / 2)
+        nodes = 2 * nodes + 1;
+    return nodes;
+}
+
+skinslide_status ss_face_tree_create(const ss_faces *faces, ss_face_tree **out, skinslide_error *error) {
+    ss_face_tree *tree = calloc(1, sizeof *tree);
+    if (!tree)
+        return ss_out_of_memory(error);
+    tree->faces = faces;
+    tree->keys = SS_NEW(&tree->memory, key, faces->face_count);
+    tree->nodes = SS_NEW(&tree->memory, node, node_count(faces->face_count));
+    if (tree->memory.failed) {
+        ss_face_tree_destroy(tree);
+        return ss_out_of_memory(error);
+    }
+    *out = tree;
+    return SKINSLIDE_OK;
+}
+
+void ss_face_tree_destroy(ss_face_tree *tree) {
+    if (!tree)
+        return;
+    ss_free(&tree->memory);
+    free(tree);
+}
+
+/* ---- Building ---- */
+
+/* Spreads the low 31 bits to the even places. */
+static uint64_t spread(uint64_t bits) {
+    bits = (bits | bits << 16) & 0x0000ffff0000ffff;
+    bits = (bits | bits << 8) & 0x00ff00ff00ff00ff;
+    bits = (bits | bits << 4) & 0x0f0f0f0f0f0f0f0f;
+    bits = (bits | bits << 2) & 0x3333333333333333;
+    return (bits | bits << 1) & 0x5555555555555555;
+}
+
+static uint64_t quantized(double share) {
+    return (uint64_t)((share < 0 ? 0 : share > 1 ? 1 : share) * 2147483647.0);
+}
+
+static uint64_t z_order(const ss_face_tree *tree, int32_t face) {
+    double sum[2] = {0, 0};
+    int32_t begin = tree->faces->face_start[face], end = tree->faces->face_start[face + 1];
+    for (int32_t c = begin; c < end; c++)
+        for (int k = 0; k < 2; k++)
+            sum[k] += tree->uv[tree->faces->corner_vertex[c]][k];
+    return spread(quantized(sum[0] / (end - begin))) | spread(quantized(sum[1] / (end - begin))) << 1;
+}
+
+static int by_code(const void *a, const void *b) {
+    const key *x = a, *y = b;
+    if (x->code != y->code)
+        return x->code < y->code ? -1 : 1;
+    return x->face < y->face ? -1 : x->face > y->face;
+}
+
+static node empty_node(void) {
+    return (node){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INT32_MAX};
+}
+
+static void add_face(const ss_face_tree *tree, node *box, int32_t face) {
+    for (int32_t c = tree->faces->face_start[face]; c < tree->faces->face_start[face + 1]; c++)
+        for (int k = 0; k < 2; k++) {
+            double x = tree->uv[tree->faces->corner_vertex[c]][k];
+            box->low[k] = x < box->low[k] ? x : box->low[k];
+            box->high[k] = x > box->high[k] ? x : box->high[k];
+        }
+    box->lowest = face < box->lowest ? face : box->lowest;
+}
+
+static void add_node(node *box, const node *part) {
+    for (int k = 0; k < 2; k++) {
+        box->low[k] = part->low[k] < box->low[k] ? part->low[k] : box->low[k];
+        box->high[k] = part->high[k] > box->high[k] ? part->high[k] : box->high[k];
+    }
+    box->lowest = part->lowest < box->lowest ? part->lowest : box->lowest;
+}
+
+/* As deep as the tree: under 32 calls. */
+static void build_node(ss_face_tree *tree, int32_t index, int32_t begin, int32_t end) {
+    node box = empty_node();
+    if (end - begin <= LEAF) {
+        for (int32_t i = begin; i < end; i++)
+            add_face(tree, &box, tree->keys[i].face);
+    } else {
+        int32_t middle = begin + (end - begin + 1) / 2;
+        build_node(tree, 2 * index + 1, begin, middle);
+        build_node(tree, 2 * index + 2, middle, end);
+        add_node(&box, &tree->nodes[2 * index + 1]);
+        add_node(&box, &tree->nodes[2 * index + 2]);
+    }
+    tree->nodes[index] = box;
+}
+
+void ss_face_tree_build(ss_face_tree *tree, const double (*uv)[2]) {
+    tree->uv = uv;
+    for (int32_t f = 0; f < tree->faces->face_count; f++)
+        tree->keys[f] = (key){z_order(tree, f), f};
+    qsort(tree->keys, (size_t)tree->faces->face_count, sizeof *tree->keys, by_code);
+    build_node(tree, 0, 0, tree->faces->face_count);
+}
+
+/* ---- Queries: depth first, with what the stack of ranges has left to see ---- */
+
+typedef struct range {
+    int32_t node, begin, end;
+} range;
+
+static int push_children(range *stack, int top, range r) {
+    int32_t middle = r.begin + (r.end - r.begin + 1) / 2;
+    stack[top++] = (range){2 * r.node + 2, middle, r.end};
+    stack[top++] = (range){2 * r.node + 1, r.begin, middle};
+    return top;
+}
+
+static bool box_holds(const node *box, const double p[2]) {
+    return box->low[0] <= p[0] && p[0] <= box->high[0] && box->low[1] <= p[1] && p[1] <= box->high[1];
+}
+
+bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_location *out) {
+    range stack[STACK] = {{0, 0, tree->faces->face_count}};
+    int32_t lowest = INT32_MAX;
+    for (int top = 1; top > 0;) {
+        range r = stack[--top];
+        const node *box = &tree->nodes[r.node];
+        if (box->lowest >= lowest || !box_holds(box, p))
+            continue;
+        if (r.end - r.begin > LEAF) {
+            top = push_children(stack, top, r);
+            continue;
+        }
+        for (int32_t i = r.begin; i < r.end; i++) {
+            int32_t face = tree->keys[i].face;
+            int32_t triangle = face < lowest ? ss_fan_holding(tree->faces, face, tree->uv, p) : -1;
+            if (triangle >= 0) {
+                lowest = face;
+                *out = (ss_location){face, triangle, {p[0], p[1]}};
+            }
+        }
+    }
+    return lowest != INT32_MAX;
+}
+
+double ss_nearest_on_side(const ss_faces *faces, const double (*uv)[2], int32_t corner, const double p[2], double out[2]) {
+    const double *a = uv[faces->corner_vertex[corner]], *b = uv[faces->corner_vertex[ss_next_corner(faces, corner)]];
+    double x = b[0] - a[0], y = b[1] - a[1], square = x * x + y * y;
+    double t = square > 0 ? ((p[0] - a[0]) * x + (p[1] - a[1]) * y) / square : 0;
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    for (int k = 0; k < 2; k++)
+        out[k] = t == 1 ? b[k] : a[k] + t * (b[k] - a[k]);
+    double dx = p[0] - out[0], dy = p[1] - out[1];
+    return dx * dx + dy * dy;
+}
+
+static double box_distance(const node *box, const double p[2]) {
+    double square = 0;
+    for (int k = 0; k < 2; k++) {
+        double off = p[k] < box->low[k] ? box->low[k] - p[k] : p[k] > box->high[k] ? p[k] - box->high[k] : 0;
+        square += off * off;
+    }
+    return square;
+}
+
+static void nearest_on_face(const ss_face_tree *tree, int32_t face, const double p[2], double *best, ss_location *out) {
+    for (int32_t c = tree->faces->face_start[face]; c < tree->faces->face_start[face + 1]; c++) {
+        double at[2], square = ss_nearest_on_side(tree->faces, tree->uv, c, p, at);
+        if (square < *best || (square == *best && face < out->face)) {
+            *best = square;
+            *out = (ss_location){face, ss_fan_of_side(tree->faces, c), {at[0], at[1]}};
+        }
+    }
+}
+
+double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_location *out) {
+    range stack[STACK] = {{0, 0, tree->faces->face_count}};
+    double best = INFINITY;
+    out->face = INT32_MAX;
+    for (int top = 1; top > 0;) {
+        range r = stack[--top];
+        if (box_distance(&tree->nodes[r.node], p) > best)
+            continue;
+        if (r.end - r.begin > LEAF)
+            top = push_children(stack, top, r);
+        else
+            for (int32_t i = r.begin; i < r.end; i++)
+                nearest_on_face(tree, tree->keys[i].face, p, &best, out);
+    }
+    return sqrt(best);
+}

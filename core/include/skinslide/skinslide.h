@@ -1,0 +1,279 @@
+/* skinslide: skin that slides over a deformed mesh instead of sticking to it.
+ *
+ * Method: Yang, Southern, Zhang, "Fast simulation of skin sliding", TR-NCCA-2009-01. A patch of the mesh is embedded in the
+ * plane by the force density method at rest and again at each frame; each rest vertex is looked up in the frame's embedding,
+ * and the face found there says where on the deformed surface the vertex belongs.
+ *
+ * Life cycle
+ *     skinslide_slider     one mesh with all its patches; built once a shot; immutable, so any number of threads may share it.
+ *     skinslide_workspace  the memory of one frame's work; one a thread.
+ *     skinslide_slide      one call a frame. Frames do not depend on each other: any order, any thread, the same bytes.
+ *
+ * Conventions
+ *     Points are float [vertex][3] in the mesh's object space; lengths have its units. Work between is done in double.
+ *     Index spaces: a "mesh vertex" or "mesh face" counts within the mesh, a "patch vertex" or "patch face" within one patch.
+ *     Arrays are the caller's; inputs are read during the call only, and are never kept. NULL is allowed only where said.
+ *     A function that can fail returns a status; *out and output arrays are written only on success. The last parameter, an
+ *     optional skinslide_error of the caller's, then says in one line what is wrong and names the element. No function prints,
+ *     aborts or keeps state of the process; every function may be called on several threads at once for different objects.
+ */
+#ifndef SKINSLIDE_H
+#define SKINSLIDE_H
+
+#ifndef SKINSLIDE_CDEF /* defined only where the declarations are read by a binding generator */
+#include <stdint.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+#if defined(__GNUC__)
+#define SKINSLIDE_API __attribute__((visibility("default")))
+#else
+#define SKINSLIDE_API
+#endif
+#else
+#define SKINSLIDE_API
+#endif
+
+/* Every status: name and meaning. */
+#define SKINSLIDE_STATUSES(X)                                                                                                  \
+    X(OK, "done")                                                                                                              \
+    X(OUT_OF_MEMORY, "out of memory")                                                                                          \
+    X(BAD_ARGUMENT, "an argument cannot be used")                                                                              \
+    X(BAD_MESH, "the mesh is not valid")                                                                                       \
+    X(BAD_PATCH, "the patch is not a disk with holes")                                                                         \
+    X(BAD_CONTROL, "a control of the patch is not valid")                                                                      \
+    X(BAD_POINTS, "the points are not valid")                                                                                  \
+    X(SINGULAR, "the embedding cannot be solved")                                                                              \
+    X(UNSUPPORTED, "not supported")
+
+#define SKINSLIDE_STATUS_ENUM(name, text) SKINSLIDE_##name,
+typedef enum skinslide_status { SKINSLIDE_STATUSES(SKINSLIDE_STATUS_ENUM) SKINSLIDE_STATUS_COUNT } skinslide_status;
+#undef SKINSLIDE_STATUS_ENUM
+
+/* What went wrong: written by a function that fails, left alone by one that does not. */
+typedef struct skinslide_error {
+    skinslide_status status;
+    char message[480]; /* one line, no newline, names patch and element: "patch elbow: edge 812-813 has 3 faces" */
+} skinslide_error;
+
+/* "OUT_OF_MEMORY" and "out of memory"; "?" for a number that is no status. Static strings. */
+SKINSLIDE_API const char *skinslide_status_name(skinslide_status status);
+SKINSLIDE_API const char *skinslide_status_text(skinslide_status status);
+
+/* The library's version, "major.minor.patch". A static string. */
+SKINSLIDE_API const char *skinslide_version(void);
+
+/* ---- The mesh and its patches -------------------------------------------------------------------------------------------- */
+
+/* A polygon mesh at rest. Counts and indices are those of UsdGeomMesh. */
+typedef struct skinslide_mesh {
+    int32_t vertex_count;
+    int32_t face_count;
+    int32_t index_count;         /* the sum of face_vertex_counts */
+    const int32_t *face_counts;  /* [face_count] vertices of each face */
+    const int32_t *face_indices; /* [index_count] mesh vertices, face by face */
+    const float *rest_points;    /* [vertex_count][3] the pose in which nothing slides */
+} skinslide_mesh;
+
+/* Where the outer boundary of a patch goes (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
+typedef enum skinslide_boundary {
+    SKINSLIDE_BOUNDARY_AUTO,
+    SKINSLIDE_BOUNDARY_SQUARE, /* the unit square; without corners: the sharpest vertex and those nearest the quarters of the
+                                  arc */
+    SKINSLIDE_BOUNDARY_CIRCLE  /* its inscribed circle, by rest arc length */
+} skinslide_boundary;
+
+/* What holds the loops of holes (eyes, nostrils, mouth, the other end of a sleeve). */
+typedef enum skinslide_holes {
+    SKINSLIDE_HOLES_PINNED, /* each where it falls at rest with the holes capped: embeddings do not fold */
+    SKINSLIDE_HOLES_FREE    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
+} skinslide_holes;
+
+/* Force density of an edge of length l (paper, section 3.1). */
+typedef enum skinslide_rule {
+    SKINSLIDE_RULE_UNIT, /* 1/l */
+    SKINSLIDE_RULE_FAST  /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
+} skinslide_rule;
+
+/* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LINEAR. */
+typedef enum skinslide_interpolation {
+    SKINSLIDE_INTERPOLATION_AUTO,
+    SKINSLIDE_INTERPOLATION_LINEAR,     /* barycentric, in the triangle fan from the face's first vertex */
+    SKINSLIDE_INTERPOLATION_MEAN_VALUE, /* mean value coordinates in the polygon */
+    SKINSLIDE_INTERPOLATION_LIMIT       /* on the subdivision limit surface: UNSUPPORTED in this version */
+} skinslide_interpolation;
+
+/* What an artist paints and animates on a patch. Start from SKINSLIDE_CONTROLS_DEFAULT. Force densities multiply each other and
+ * the rule's; each must be finite and > 0. Only ratios matter. */
+typedef struct skinslide_controls {
+    const float *vertex_density; /* [mesh vertex_count] or NULL: 1; an edge takes the mean of its ends */
+    const float *face_density;   /* [mesh face_count] or NULL: 1; an edge takes the mean of its faces in the patch */
+    const int32_t *edges;        /* [edge_count][2] mesh vertices of edges of the patch, each edge at most once; or NULL */
+    const float *edge_density;   /* [edge_count] */
+    int32_t edge_count;
+    const float *weight; /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted) */
+    float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
+} skinslide_controls;
+
+#define SKINSLIDE_CONTROLS_DEFAULT                                                                                             \
+    { 0, 0, 0, 0, 0, 0, 1.0f }
+
+/* One patch as an artist sets it up. Faces that fall into several pieces, connected through edges, become several patches with
+ * the same settings; corners then count for the piece that has them. Zero-initialise, then set controls to the default. */
+typedef struct skinslide_patch_setup {
+    const char *name;       /* used in messages; copied */
+    const int32_t *faces;   /* [face_count] mesh faces, each once */
+    int32_t face_count;     /* > 0 */
+    const int32_t *corners; /* [4] mesh vertices on the outer loop, in any order, or NULL: none */
+    skinslide_boundary boundary;
+    skinslide_holes holes;
+    skinslide_rule rule;
+    skinslide_interpolation interpolation;
+    skinslide_controls controls; /* used by frames that bring none of their own */
+} skinslide_patch_setup;
+
+/* ---- The slider ---------------------------------------------------------------------------------------------------------- */
+
+typedef struct skinslide_slider skinslide_slider;
+
+/* Builds every patch of a mesh: connectivity, boundary and holes in the plane, the symbolic factor, the rest embedding.
+ *   mesh, setups  in, read during the call only; setups is [setup_count], setup_count >= 0
+ *   out           out, the caller's to destroy
+ * Fails with BAD_MESH (an index out of range, counts that do not add up, points not finite, and in patches faces of fewer than
+ * three or of repeated vertices), BAD_PATCH (no faces, a face twice or out of range, no boundary, an edge with three faces,
+ * faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not > 0, a weight not
+ * finite, edges not of the patch, corners not on the outer loop), SINGULAR, UNSUPPORTED, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
+                                                       int32_t setup_count, skinslide_slider **out, skinslide_error *error);
+
+/* NULL does nothing. Workspaces of the slider must be gone before it. */
+SKINSLIDE_API void skinslide_slider_destroy(skinslide_slider *slider);
+
+/* What a patch is. Patches are numbered set-up by set-up, and the pieces of one set-up by their lowest face. */
+typedef struct skinslide_patch_info {
+    const char *name; /* the set-up's; lives as long as the slider */
+    int32_t setup;
+    int32_t piece; /* of this set-up, from 0 */
+    int32_t piece_count;
+    int32_t vertex_count;
+    int32_t edge_count;
+    int32_t face_count;
+    int32_t free_count; /* vertices that may slide */
+    int32_t hole_count;
+    int32_t zero_length_edges; /* at rest: taken as 1e-6 of the mean edge */
+    int32_t collapsed_faces; /* of no area in the rest embedding, such as a triangle with two edges on one side of the square */
+    int32_t folded_faces;    /* turned over in the rest embedding */
+} skinslide_patch_info;
+
+SKINSLIDE_API int32_t skinslide_slider_patch_count(const skinslide_slider *slider);
+
+/* Each fails with BAD_ARGUMENT only where patch is not one of the slider's.
+ *   vertices  out [vertex_count] the mesh vertex of each patch vertex, ascending
+ *   faces     out [face_count] the mesh face of each patch face, ascending
+ *   uv        out [vertex_count][2] the rest embedding U0, in [0,1]^2 */
+SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int32_t patch,
+                                                           skinslide_patch_info *info, skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
+                                                               skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, int32_t patch, int32_t *faces,
+                                                            skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv,
+                                                          skinslide_error *error);
+
+/* ---- Frames -------------------------------------------------------------------------------------------------------------- */
+
+/* How rest vertices are looked up in the frame's embedding; the answer is the same bit for bit. AUTO: EXACT. */
+typedef enum skinslide_lookup {
+    SKINSLIDE_LOOKUP_AUTO,
+    SKINSLIDE_LOOKUP_EGL,  /* proposed by colour-ID rendering: UNSUPPORTED in this version */
+    SKINSLIDE_LOOKUP_EXACT /* walking from face to face */
+} skinslide_lookup;
+
+typedef struct skinslide_workspace skinslide_workspace;
+
+/* Memory for frames of a slider, for use by one thread at a time. The slider must outlive it.
+ * Fails with OUT_OF_MEMORY, BAD_ARGUMENT (no such lookup), UNSUPPORTED. */
+SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider *slider, skinslide_lookup lookup,
+                                                          skinslide_workspace **out, skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_workspace_destroy(skinslide_workspace *workspace);
+
+/* What happened to one patch in one frame. Everything but the seconds is the same in every run. */
+typedef struct skinslide_patch_result {
+    int32_t slid_vertices;     /* free vertices that moved */
+    int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
+    int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
+    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk or with pinned holes */
+    int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
+    int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
+    int64_t walk_steps;        /* faces entered by walking, in all */
+    double largest_slide;      /* distance between a vertex's place and its place in the cache; object units */
+    double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
+    double stretch_after;      /* and in the result, overlapping patches included */
+    double density_seconds;
+    double embed_seconds;
+    double locate_seconds;
+    double interpolate_seconds;
+} skinslide_patch_result;
+
+/* Slides the skin of one frame (paper, section 3): density, embed, locate, interpolate for every patch, then the blend.
+ *   points    in  [vertex_count][3] the deformed mesh
+ *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force densities
+ * that differ from the set-up's cost a second embedding, since rest is then embedded anew. slid      out [vertex_count][3] the
+ * corrected points; may be points itself. Vertices outside patches, on outer boundaries and on pinned holes keep their bits,
+ * and so does every vertex when points are the rest points. A vertex in several patches moves by the mean of their
+ * displacements, weighted by weight times envelope. results   out [patch_count], or NULL Fails with BAD_POINTS (not finite:
+ * names the vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY. One thread a workspace. */
+SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
+                                               const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
+                                               skinslide_error *error);
+
+/* The embedding Ud of the last frame that this workspace slid: out [vertex_count][2] of the patch.
+ * Fails with BAD_ARGUMENT where there is no such patch or no frame yet. */
+SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
+                                                             skinslide_error *error);
+
+/* ---- What else a cache holds --------------------------------------------------------------------------------------------- */
+
+/* Which elements carry a normal, as USD names it. */
+typedef enum skinslide_normals_layout {
+    SKINSLIDE_NORMALS_VERTEX,       /* [vertex_count][3] */
+    SKINSLIDE_NORMALS_FACE_VARYING, /* [index_count][3]; corners of a vertex that share a normal in the cache share one after */
+    SKINSLIDE_NORMALS_UNIFORM       /* [face_count][3] */
+} skinslide_normals_layout;
+
+/* Recomputes the normals, area-weighted over faces, of the elements whose faces have a vertex that slid. Others keep their
+ * bits. mesh         in  rest_points are not read cached       in  [vertex_count][3] points before sliding slid         in
+ * [vertex_count][3] points after left_handed  in  not 0 where the mesh's orientation is leftHanded normals      in  the
+ * cache's, out the corrected; unit length Fails with BAD_MESH, BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
+                                                 skinslide_normals_layout layout, int32_t left_handed, float *normals,
+                                                 skinslide_error *error);
+
+/* Points of one time, for rates of change. */
+typedef struct skinslide_sample {
+    double seconds;
+    const float *cached; /* [vertex_count][3] */
+    const float *slid;   /* [vertex_count][3] */
+} skinslide_sample;
+
+/* Adds to the cache's velocities, units per second, the rate at which the displacement (slid - cached) changes from the first
+ * sample to the second. Vertices whose displacement does not change keep their bits.
+ *   samples     in  [2], ascending in time
+ *   velocities  in  the cache's, out the corrected [vertex_count][3]
+ * Fails with BAD_ARGUMENT (times that do not ascend). */
+SKINSLIDE_API skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
+                                                    skinslide_error *error);
+
+/* The same for accelerations, units per second squared, by the second difference over three samples. */
+SKINSLIDE_API skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *samples,
+                                                       float *accelerations, skinslide_error *error);
+
+#ifndef SKINSLIDE_CDEF
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+#endif

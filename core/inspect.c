@@ -1,0 +1,79 @@
+/* What a slider holds and what a workspace did last: copies of it, patch by patch. */
+#include "slider.h"
+
+#include <string.h>
+
+/* The part of a patch number, or NULL, which is BAD_ARGUMENT. */
+static const ss_part *find_part(const skinslide_slider *slider, int32_t patch, const void *out, skinslide_error *error) {
+    if (slider && out && patch >= 0 && patch < slider->part_count)
+        return &slider->parts[patch];
+    if (!slider || !out)
+        ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, or no place for the answer");
+    else
+        ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no patch %d: the slider has %d", patch, slider->part_count);
+    return NULL;
+}
+
+int32_t skinslide_slider_patch_count(const skinslide_slider *slider) {
+    return slider ? slider->part_count : 0;
+}
+
+skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int32_t patch, skinslide_patch_info *info,
+                                             skinslide_error *error) {
+    const ss_part *part = find_part(slider, patch, info, error);
+    if (!part)
+        return SKINSLIDE_BAD_ARGUMENT;
+    const ss_patch *own = part->patch;
+    *info = (skinslide_patch_info){
+        .name = own->setup->name,
+        .setup = own->setup_index,
+        .piece = own->piece,
+        .piece_count = own->piece_count,
+        .vertex_count = own->vertex_count,
+        .edge_count = own->faces.edge_count,
+        .face_count = own->faces.face_count,
+        .free_count = own->free_count,
+        .hole_count = own->loop_count - 1,
+        .zero_length_edges = own->zero_length_edges,
+        .collapsed_faces = part->rest_layout.collapsed,
+        .folded_faces = part->rest_layout.folded,
+    };
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
+                                                 skinslide_error *error) {
+    const ss_part *part = find_part(slider, patch, vertices, error);
+    if (!part)
+        return SKINSLIDE_BAD_ARGUMENT;
+    memcpy(vertices, part->patch->mesh_vertex, (size_t)part->patch->vertex_count * sizeof *vertices);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, int32_t patch, int32_t *faces,
+                                              skinslide_error *error) {
+    const ss_part *part = find_part(slider, patch, faces, error);
+    if (!part)
+        return SKINSLIDE_BAD_ARGUMENT;
+    memcpy(faces, part->patch->mesh_face, (size_t)part->patch->faces.face_count * sizeof *faces);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv, skinslide_error *error) {
+    const ss_part *part = find_part(slider, patch, uv, error);
+    if (!part)
+        return SKINSLIDE_BAD_ARGUMENT;
+    memcpy(uv, part->rest_uv, (size_t)part->patch->vertex_count * sizeof *part->rest_uv);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
+                                               skinslide_error *error) {
+    const ss_part *part = find_part(workspace ? workspace->slider : NULL, patch, uv, error);
+    if (!part)
+        return SKINSLIDE_BAD_ARGUMENT;
+    if (!workspace->has_frame)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
+    memcpy(uv, workspace->benches[patch].uv, (size_t)part->patch->vertex_count * sizeof *part->rest_uv);
+    return SKINSLIDE_OK;
+}

@@ -1,0 +1,226 @@
+/* What the files of the core know of each other. One file a stage of the walk:
+ *
+ *     mesh ─► patch (boundary, holes) ─► system ─► embed(rest)        once a shot
+ *             density ─► embed(frame) ─► locate ─► interpolate        every frame, in slider.c
+ *
+ * Names begin with ss_, so that the static library can be linked into any program. */
+#ifndef SKINSLIDE_INTERNAL_H
+#define SKINSLIDE_INTERNAL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "skinslide/skinslide.h"
+
+/* ---- memory.c: an object's arrays, all freed at once ---- */
+
+typedef struct ss_block ss_block;
+typedef struct ss_memory {
+    ss_block *blocks;
+    bool failed; /* an allocation failed: checked once, after all of them */
+} ss_memory;
+
+/* count * size bytes of zeros, or NULL with memory->failed set. A count of 0 gives a pointer all the same. */
+void *ss_new(ss_memory *memory, int64_t count, size_t size);
+void ss_free(ss_memory *memory);
+#define SS_NEW(memory, type, count) ((type *)ss_new((memory), (count), sizeof(type)))
+
+/* ---- error.c ---- */
+
+/* Fills error, where there is one, and returns status: `return ss_fail(error, SKINSLIDE_BAD_PATCH, "...", ...);` */
+__attribute__((format(printf, 3, 4))) skinslide_status ss_fail(skinslide_error *error, skinslide_status status,
+                                                               const char *format, ...);
+skinslide_status ss_out_of_memory(skinslide_error *error);
+
+/* ---- orient.c ---- */
+
+/* 1 where a, b, c turn left, -1 right, 0 where they are on one line: exact for the doubles given. */
+int ss_orient(const double a[2], const double b[2], const double c[2]);
+
+/* ---- mesh.c: faces and how they meet ---- */
+
+/* Polygons over some vertices. Corner c of face f, face_start[f] <= c < face_start[f + 1], is also the side to the next corner.
+ */
+typedef struct ss_faces {
+    int32_t face_count;
+    int32_t corner_count;
+    int32_t *face_start;    /* [face_count + 1] */
+    int32_t *corner_vertex; /* [corner_count] */
+    int32_t *corner_face;   /* [corner_count] */
+    int32_t *corner_twin;   /* [corner_count] the same edge seen from the other face; -1 on the boundary */
+    int32_t *corner_edge;   /* [corner_count] edges are numbered by their lower, then their higher vertex */
+    int32_t edge_count;
+} ss_faces;
+
+static inline int32_t ss_next_corner(const ss_faces *faces, int32_t corner) {
+    int32_t face = faces->corner_face[corner];
+    return corner + 1 < faces->face_start[face + 1] ? corner + 1 : faces->face_start[face];
+}
+
+static inline int32_t ss_previous_corner(const ss_faces *faces, int32_t corner) {
+    int32_t face = faces->corner_face[corner];
+    return corner > faces->face_start[face] ? corner - 1 : faces->face_start[face + 1] - 1;
+}
+
+/* Counts, indices and rest points of the whole mesh. */
+skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error);
+/* Names the first vertex that is not finite. */
+skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
+/* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. label begins messages. */
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen, int32_t count, const char *label,
+                               ss_memory *memory, ss_faces *faces, skinslide_error *error);
+/* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
+ */
+int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack);
+
+/* ---- patch.c: one connected patch, a disk with holes ---- */
+
+typedef struct ss_patch {
+    ss_memory memory;
+    char label[160]; /* "patch elbow" or "patch elbow (piece 2 of 2)" */
+    const skinslide_patch_setup *setup;
+    int32_t setup_index, piece, piece_count;
+    int32_t vertex_count, free_count, loop_count;
+    ss_faces faces;            /* corners hold patch vertices */
+    int32_t *mesh_vertex;      /* [vertex_count], ascending */
+    int32_t *mesh_face;        /* [face_count], ascending */
+    int32_t *vertex_corner;    /* [vertex_count] a corner at the vertex; on the boundary the one whose side leaves along it */
+    int32_t (*edge_vertex)[2]; /* [edge_count], lower first */
+    double *rest_length;       /* [edge_count] clamped to shortest */
+    double shortest;           /* 1e-6 of the mean rest edge */
+    int32_t zero_length_edges;
+    int32_t *loop_start; /* [loop_count + 1]; loop 0 is the outer boundary, the others holes, as faces go round them */
+    int32_t *loop_vertex;
+    uint8_t *fixed;        /* [vertex_count] */
+    double (*fixed_uv)[2]; /* [vertex_count], where fixed */
+    int32_t *free_vertex;  /* [free_count] in an order in which each has a neighbour before it */
+    int32_t *free_before;  /* [free_count] the place in free_vertex of that neighbour, -1 for a first */
+    int32_t *vertex_loop;  /* [vertex_count] the loop that the vertex is on, -1 inside */
+} ss_patch;
+
+skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,
+                                 const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
+                                 ss_patch **out, skinslide_error *error);
+void ss_patch_destroy(ss_patch *patch);
+/* "patch elbow", or "patch elbow (piece 2 of 2)". */
+void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size);
+/* The patch vertex of a mesh vertex, or -1. */
+int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex);
+/* The edge between two patch vertices, or -1. */
+int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b);
+/* The length of every edge, none under patch->shortest; returns how many were. points is the whole mesh's. */
+int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths);
+
+/* boundary.c: fixed_uv of the outer loop. */
+skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, skinslide_error *error);
+/* (cos, sin) of turns of a full circle, turns in [0,1): plain arithmetic only, so the same bits everywhere. */
+void ss_circle(double turns, double out[2]);
+
+/* holes.c: fixed_uv of the loops of holes, where they fall with every hole capped. */
+skinslide_status ss_place_holes(ss_patch *patch, const float *rest_points, skinslide_error *error);
+
+/* ---- density.c ---- */
+
+/* Values of controls: names the mesh element whose value is not one. */
+skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
+                                   skinslide_error *error);
+/* The painted multiplier of every edge: [edge_count]. Controls are checked. */
+void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double *paint);
+/* Force density of every edge by the patch's rule, times paint. */
+void ss_force_density(const ss_patch *patch, const double *lengths, const double *paint, double *density);
+/* weight times envelope of every free vertex, in their order: [free_count]. Returns how many values were outside 0..1. */
+int32_t ss_slide_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
+
+/* ---- embed.c: the only file that knows the solver ---- */
+
+typedef struct ss_net {
+    int32_t vertex_count;
+    int32_t edge_count;
+    const int32_t (*edge_vertex)[2];
+    const uint8_t *fixed; /* [vertex_count] */
+} ss_net;
+
+typedef struct ss_system ss_system; /* pattern, ordering, symbolic factor: immutable */
+typedef struct ss_factor ss_factor; /* numeric factor: one a thread */
+
+skinslide_status ss_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error);
+void ss_system_destroy(ss_system *system);
+skinslide_status ss_factor_create(const ss_system *system, ss_factor **out, skinslide_error *error);
+void ss_factor_destroy(ss_factor *factor);
+/* Solves for the free vertices of uv [vertex_count][2], whose fixed ones are given. density is [edge_count], > 0. */
+skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
+                          skinslide_error *error);
+
+/* ---- layout.c: how the faces of an embedding lie ---- */
+
+/* Triangle t of the fan of a face, as patch vertices. */
+static inline void ss_fan(const ss_faces *faces, int32_t face, int32_t triangle, int32_t vertices[3]) {
+    const int32_t *corners = faces->corner_vertex + faces->face_start[face];
+    vertices[0] = corners[0], vertices[1] = corners[triangle + 1], vertices[2] = corners[triangle + 2];
+}
+
+static inline int32_t ss_fan_size(const ss_faces *faces, int32_t face) {
+    return faces->face_start[face + 1] - faces->face_start[face] - 2;
+}
+
+/* The triangle of the fan that has the side which begins at a corner. */
+int32_t ss_fan_of_side(const ss_faces *faces, int32_t corner);
+/* The first triangle of the fan that turns left and holds p, its border included; -1 where none does. */
+int32_t ss_fan_holding(const ss_faces *faces, int32_t face, const double (*uv)[2], const double p[2]);
+
+typedef struct ss_layout {
+    int32_t folded;    /* faces turned over by more than the rounding of their corners */
+    int32_t collapsed; /* faces of no area, up to the same rounding */
+    bool regular;      /* no hole is free, every face is convex and none is turned over at all: no two overlap */
+} ss_layout;
+
+ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]);
+
+/* ---- locate.c, facetree.c ---- */
+
+#define SS_STAYS (-1)
+
+typedef struct ss_location {
+    int32_t face;     /* patch face, or SS_STAYS: the vertex keeps its place */
+    int32_t triangle; /* of the face's fan */
+    double uv[2];     /* in that triangle */
+} ss_location;
+
+typedef struct ss_face_tree ss_face_tree; /* faces of an embedding by place */
+skinslide_status ss_face_tree_create(const ss_faces *faces, ss_face_tree **out, skinslide_error *error);
+void ss_face_tree_destroy(ss_face_tree *tree);
+/* uv is read by the queries that follow, too. */
+void ss_face_tree_build(ss_face_tree *tree, const double (*uv)[2]);
+/* The lowest face that holds p, its border included; false where none does. */
+bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_location *out);
+/* The point nearest to p on the sides of the faces, of the lowest face where several are as near. Returns the distance. */
+double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_location *out);
+/* The point of the side that begins at a corner nearest to p. Returns the distance squared. */
+double ss_nearest_on_side(const ss_faces *faces, const double (*uv)[2], int32_t corner, const double p[2], double out[2]);
+
+typedef struct ss_located {
+    int32_t clamped;  /* in no face: put on the nearest */
+    int32_t searched; /* by the tree */
+    int64_t steps;    /* of walks */
+} ss_located;
+
+typedef struct ss_locator ss_locator;
+skinslide_status ss_locator_create(const ss_patch *patch, ss_locator **out, skinslide_error *error);
+void ss_locator_destroy(ss_locator *locator);
+/* Looks up query [free_count][2], in the order of free_vertex, in the faces of uv. */
+ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
+                     ss_location *locations);
+
+/* ---- interpolate.c ---- */
+
+/* The displacement of every free vertex, in their order, from its own place to where it is looked up. points is the whole
+ * mesh's; weights is scratch [largest face]. */
+void ss_interpolate(const ss_patch *patch, const double (*uv)[2], const ss_location *locations, const float *points,
+                    double *weights, double (*displacement)[3]);
+/* Weights, which sum to 1, of the corners of the location's triangle, and of its face: false where a polygon that turned over
+ * leaves the latter without meaning. */
+void ss_linear_weights(const ss_faces *faces, const double (*uv)[2], const ss_location *location, double weights[3]);
+bool ss_mean_value_weights(const ss_faces *faces, const double (*uv)[2], const ss_location *location, double *weights);
+int32_t ss_largest_face(const ss_faces *faces);
+
+#endif

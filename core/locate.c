@@ -1,0 +1,195 @@
+/* Looks rest vertices up in the frame's embedding (paper, section 3.3), exactly.
+ *
+ * Which face: the lowest that holds the point, its border included, among faces with area. All tests are exact, so the answer
+ * depends on the embedding alone and not on how it was found. A vertex whose point is its own place stays, whatever else is
+ * there. A walk over neighbours starts where the neighbour before it landed; about three steps a query. Where faces may
+ * overlap, where a walk goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is
+ * counted. */
+#include "internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct ss_locator {
+    ss_memory memory;
+    const ss_patch *patch;
+    ss_face_tree *tree;
+    bool tree_built; /* for the embedding at hand */
+    int32_t *landed; /* [free_count] a face near where each query was found */
+    int32_t *stack;  /* [face_count] */
+    uint8_t *seen;   /* [face_count] zero between calls */
+    const double (*uv)[2];
+};
+
+skinslide_status ss_locator_create(const ss_patch *patch, ss_locator **out, skinslide_error *error) {
+    ss_locator *locator = calloc(1, sizeof *locator);
+    if (!locator)
+        return ss_out_of_memory(error);
+    locator->patch = patch;
+    locator->landed = SS_NEW(&locator->memory, int32_t, patch->free_count);
+    locator->stack = SS_NEW(&locator->memory, int32_t, patch->faces.face_count);
+    locator->seen = SS_NEW(&locator->memory, uint8_t, patch->faces.face_count);
+    skinslide_status status = locator->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status)
+        status = ss_face_tree_create(&patch->faces, &locator->tree, error);
+    if (status)
+        ss_locator_destroy(locator);
+    else
+        *out = locator;
+    return status;
+}
+
+void ss_locator_destroy(ss_locator *locator) {
+    if (!locator)
+        return;
+    ss_face_tree_destroy(locator->tree);
+    ss_free(&locator->memory);
+    free(locator);
+}
+
+/* ---- The walk ---- */
+
+static const double *corner_uv(const ss_locator *locator, int32_t corner) {
+    return locator->uv[locator->patch->faces.corner_vertex[corner]];
+}
+
+/* On which side of the side that begins at a corner p is: 1 inside, 0 on its line, -1 outside. */
+static int side_of(const ss_locator *locator, int32_t corner, const double p[2]) {
+    return ss_orient(corner_uv(locator, corner), corner_uv(locator, ss_next_corner(&locator->patch->faces, corner)), p);
+}
+
+/* The first side of the face, from a corner on, that p is outside of; -1 where it is outside of none. */
+static int32_t side_to_leave_by(const ss_locator *locator, int32_t corner, const double p[2], bool *on_border) {
+    int32_t c = corner;
+    *on_border = false;
+    do {
+        int side = side_of(locator, c, p);
+        if (side < 0)
+            return c;
+        *on_border |= side == 0;
+        c = ss_next_corner(&locator->patch->faces, c);
+    } while (c != corner);
+    return -1;
+}
+
+/* Walks from a face to one that holds p; -1 where it meets the boundary or takes too long. Faces are convex. */
+static int32_t walk(const ss_locator *locator, int32_t face, const double p[2], bool *on_border, int64_t *steps) {
+    const ss_faces *faces = &locator->patch->faces;
+    int32_t corner = faces->face_start[face];
+    int32_t most = 64 + 4 * (int32_t)sqrt(faces->face_count);
+    for (int32_t step = 0; step < most; step++, ++*steps) {
+        int32_t leave = side_to_leave_by(locator, corner, p, on_border);
+        if (leave < 0)
+            return faces->corner_face[corner];
+        if (faces->corner_twin[leave] < 0)
+            return -1;
+        corner = ss_next_corner(faces, faces->corner_twin[leave]); /* the side walked in by is looked at last */
+    }
+    return -1;
+}
+
+/* ---- The tie rule ---- */
+
+static bool touches(const ss_locator *locator, int32_t face, const double p[2]) {
+    const ss_faces *faces = &locator->patch->faces;
+    bool left = false, right = false, below = false, above = false;
+    for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++) {
+        const double *q = corner_uv(locator, c);
+        left |= q[0] <= p[0], right |= q[0] >= p[0], below |= q[1] <= p[1], above |= q[1] >= p[1];
+        if (side_of(locator, c, p) < 0)
+            return false;
+    }
+    return left && right && below && above; /* a face of no area has its whole line inside */
+}
+
+/* p is on the border of a face: gathers all faces that p is on the border of, over the sides p is on. Returns their count. */
+static int32_t gather_touching(ss_locator *locator, int32_t face, const double p[2]) {
+    const ss_faces *faces = &locator->patch->faces;
+    int32_t count = 0;
+    locator->stack[count++] = face;
+    locator->seen[face] = 1;
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t c = faces->face_start[locator->stack[i]]; c < faces->face_start[locator->stack[i] + 1]; c++) {
+            int32_t other = faces->corner_twin[c] < 0 ? -1 : faces->corner_face[faces->corner_twin[c]];
+            if (other < 0 || locator->seen[other] || side_of(locator, c, p) != 0 || !touches(locator, other, p))
+                continue;
+            locator->seen[other] = 1;
+            locator->stack[count++] = other;
+        }
+    for (int32_t i = 0; i < count; i++)
+        locator->seen[locator->stack[i]] = 0;
+    return count;
+}
+
+/* The lowest face with area that holds p, given one that does. */
+static bool settle(ss_locator *locator, int32_t face, const double p[2], bool on_border, ss_location *out) {
+    int32_t count = 1;
+    locator->stack[0] = face;
+    if (on_border)
+        count = gather_touching(locator, face, p);
+    out->face = INT32_MAX;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t candidate = locator->stack[i];
+        int32_t triangle = candidate < out->face ? ss_fan_holding(&locator->patch->faces, candidate, locator->uv, p) : -1;
+        if (triangle >= 0)
+            *out = (ss_location){candidate, triangle, {p[0], p[1]}};
+    }
+    return out->face != INT32_MAX;
+}
+
+/* ---- What the walk cannot reach ---- */
+
+static void search(ss_locator *locator, const double p[2], ss_location *out, ss_located *located) {
+    if (!locator->tree_built)
+        ss_face_tree_build(locator->tree, locator->uv);
+    locator->tree_built = true;
+    located->searched++;
+    if (!ss_face_tree_holding(locator->tree, p, out))
+        located->clamped += ss_face_tree_nearest(locator->tree, p, out) > 0;
+}
+
+/* A vertex on a free loop slides along it: to the nearest point of its sides. */
+static void slide_on_loop(const ss_locator *locator, int32_t loop, const double p[2], ss_location *out) {
+    const ss_patch *patch = locator->patch;
+    double best = INFINITY;
+    for (int32_t i = patch->loop_start[loop]; i < patch->loop_start[loop + 1]; i++) {
+        int32_t corner = patch->vertex_corner[patch->loop_vertex[i]];
+        double at[2], square = ss_nearest_on_side(&patch->faces, locator->uv, corner, p, at);
+        if (square < best) {
+            best = square;
+            *out = (ss_location){patch->faces.corner_face[corner], ss_fan_of_side(&patch->faces, corner), {at[0], at[1]}};
+        }
+    }
+}
+
+/* ---- All queries ---- */
+
+static void locate_one(ss_locator *locator, int32_t i, bool regular, const double p[2], ss_location *out, ss_located *located) {
+    const ss_patch *patch = locator->patch;
+    int32_t vertex = patch->free_vertex[i], own_face = patch->faces.corner_face[patch->vertex_corner[vertex]];
+    int32_t before = patch->free_before[i], start = before < 0 ? own_face : locator->landed[before];
+    bool on_border;
+    locator->landed[i] = own_face;
+    if (p[0] == locator->uv[vertex][0] && p[1] == locator->uv[vertex][1]) {
+        *out = (ss_location){SS_STAYS, 0, {p[0], p[1]}};
+        return;
+    }
+    if (patch->vertex_loop[vertex] >= 0) {
+        slide_on_loop(locator, patch->vertex_loop[vertex], p, out);
+        return;
+    }
+    int32_t face = regular ? walk(locator, start, p, &on_border, &located->steps) : -1;
+    if (face < 0 || !settle(locator, face, p, on_border, out))
+        search(locator, p, out, located);
+    locator->landed[i] = out->face;
+}
+
+ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
+                     ss_location *locations) {
+    ss_located located = {0};
+    locator->uv = uv;
+    locator->tree_built = false;
+    for (int32_t i = 0; i < locator->patch->free_count; i++)
+        locate_one(locator, i, regular, query[i], &locations[i], &located);
+    return located;
+}

@@ -1,0 +1,168 @@
+/* Faces and how they meet: edges, twins, connected pieces. */
+#include "internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error) {
+    if (!points)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
+    for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++)
+        if (!isfinite(points[i]))
+            return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d is not finite: (%g, %g, %g)", what, (int)(i / 3),
+                           points[i / 3 * 3], points[i / 3 * 3 + 1], points[i / 3 * 3 + 2]);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error) {
+    if (!mesh || mesh->vertex_count < 0 || mesh->face_count < 0 || mesh->index_count < 0)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh, or a negative count in it");
+    if (mesh->face_count == 0)
+        return ss_fail(error, SKINSLIDE_BAD_MESH, "the mesh has no faces");
+    if (!mesh->face_counts || !mesh->face_indices)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the mesh has no array of face counts or indices");
+    int64_t corners = 0;
+    for (int32_t f = 0; f < mesh->face_count; f++) {
+        if (mesh->face_counts[f] < 0)
+            return ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has %d vertices", f, mesh->face_counts[f]);
+        corners += mesh->face_counts[f];
+    }
+    if (corners != mesh->index_count)
+        return ss_fail(error, SKINSLIDE_BAD_MESH, "face counts add up to %lld, but there are %d face indices",
+                       (long long)corners, mesh->index_count);
+    for (int32_t f = 0, c = 0; f < mesh->face_count; f++)
+        for (int32_t end = c + mesh->face_counts[f]; c < end; c++)
+            if (mesh->face_indices[c] < 0 || mesh->face_indices[c] >= mesh->vertex_count)
+                return ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has vertex %d, but the mesh has %d vertices", f,
+                               mesh->face_indices[c], mesh->vertex_count);
+    return SKINSLIDE_OK;
+}
+
+/* ---- Edges: sides sorted by their ends ---- */
+
+typedef struct side {
+    int32_t low, high, corner;
+} side;
+
+static int by_ends(const void *a, const void *b) {
+    const side *x = a, *y = b;
+    if (x->low != y->low)
+        return x->low < y->low ? -1 : 1;
+    if (x->high != y->high)
+        return x->high < y->high ? -1 : 1;
+    return x->corner < y->corner ? -1 : x->corner > y->corner;
+}
+
+static void list_sides(const ss_faces *faces, side *sides) {
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        int32_t a = faces->corner_vertex[c], b = faces->corner_vertex[ss_next_corner(faces, c)];
+        sides[c] = (side){a < b ? a : b, a < b ? b : a, c};
+    }
+    qsort(sides, (size_t)faces->corner_count, sizeof *sides, by_ends);
+}
+
+/* Numbers the edges and pairs their sides. mesh_face names faces in messages. */
+static skinslide_status pair_sides(ss_faces *faces, const side *sides, const int32_t *mesh_face, const char *label,
+                                   skinslide_error *error) {
+    int32_t end;
+    for (int32_t i = 0; i < faces->corner_count; i = end) {
+        for (end = i; end < faces->corner_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high; end++)
+            faces->corner_edge[sides[end].corner] = faces->edge_count;
+        faces->edge_count++;
+        int32_t first = sides[i].corner, second = end - i == 2 ? sides[i + 1].corner : -1;
+        if (end - i > 2)
+            return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: edge %d-%d has %d faces", label, sides[i].low, sides[i].high,
+                           end - i);
+        if (second >= 0 && faces->corner_vertex[first] == faces->corner_vertex[second])
+            return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: faces %d and %d are wound against each other at edge %d-%d", label,
+                           mesh_face[faces->corner_face[first]], mesh_face[faces->corner_face[second]], sides[i].low,
+                           sides[i].high);
+        faces->corner_twin[first] = second;
+        if (second >= 0)
+            faces->corner_twin[second] = first;
+    }
+    return SKINSLIDE_OK;
+}
+
+/* ---- The faces of a patch ---- */
+
+static int ascending(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* sorted is scratch of the face's size. */
+static skinslide_status check_face(const int32_t *vertices, int32_t count, int32_t face, int32_t *sorted, const char *label,
+                                   skinslide_error *error) {
+    if (count < 3)
+        return ss_fail(error, SKINSLIDE_BAD_MESH, "%s: face %d has %d vertices; a face needs 3", label, face, count);
+    for (int32_t k = 0; k < count; k++)
+        sorted[k] = vertices[k];
+    qsort(sorted, (size_t)count, sizeof *sorted, ascending);
+    for (int32_t k = 1; k < count; k++)
+        if (sorted[k] == sorted[k - 1])
+            return ss_fail(error, SKINSLIDE_BAD_MESH, "%s: face %d has vertex %d more than once", label, face, sorted[k]);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen, int32_t count, const char *label,
+                               ss_memory *memory, ss_faces *faces, skinslide_error *error) {
+    ss_memory scratch = {0};
+    int32_t *start_in_mesh = SS_NEW(&scratch, int32_t, (int64_t)mesh->face_count + 1);
+    if (scratch.failed)
+        return ss_out_of_memory(error);
+    for (int32_t f = 0; f < mesh->face_count; f++)
+        start_in_mesh[f + 1] = start_in_mesh[f] + mesh->face_counts[f];
+    int32_t corners = 0;
+    for (int32_t f = 0; f < count; f++)
+        corners += mesh->face_counts[chosen[f]];
+    *faces = (ss_faces){.face_count = count, .corner_count = corners};
+    faces->face_start = SS_NEW(memory, int32_t, (int64_t)count + 1);
+    faces->corner_vertex = SS_NEW(memory, int32_t, corners);
+    faces->corner_face = SS_NEW(memory, int32_t, corners);
+    faces->corner_twin = SS_NEW(memory, int32_t, corners);
+    faces->corner_edge = SS_NEW(memory, int32_t, corners);
+    side *sides = SS_NEW(&scratch, side, corners);
+    int32_t *sorted = SS_NEW(&scratch, int32_t, corners);
+    skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    for (int32_t f = 0, c = 0; f < count && !status; f++) {
+        const int32_t *vertices = mesh->face_indices + start_in_mesh[chosen[f]];
+        status = check_face(vertices, mesh->face_counts[chosen[f]], chosen[f], sorted, label, error);
+        for (int32_t k = 0; k < mesh->face_counts[chosen[f]]; k++, c++) {
+            faces->corner_vertex[c] = vertices[k];
+            faces->corner_face[c] = f;
+        }
+        faces->face_start[f + 1] = c;
+    }
+    if (!status) {
+        list_sides(faces, sides);
+        status = pair_sides(faces, sides, chosen, label, error);
+    }
+    ss_free(&scratch);
+    return status;
+}
+
+int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack) {
+    int32_t pieces = 0;
+    for (int32_t f = 0; f < faces->face_count; f++)
+        piece_of_face[f] = -1;
+    for (int32_t seed = 0; seed < faces->face_count; seed++) {
+        if (piece_of_face[seed] >= 0)
+            continue;
+        int32_t top = 0;
+        stack[top++] = seed;
+        piece_of_face[seed] = pieces;
+        while (top) {
+            int32_t f = stack[--top];
+            for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1]; c++) {
+                int32_t g = faces->corner_twin[c] < 0 ? f : faces->corner_face[faces->corner_twin[c]];
+                if (piece_of_face[g] < 0) {
+                    piece_of_face[g] = pieces;
+                    stack[top++] = g;
+                }
+            }
+        }
+        pieces++;
+    }
+    return pieces;
+}

@@ -1,0 +1,42 @@
+/* Velocities and accelerations of slid points: the cache's own, plus the rate at which the displacement changes. */
+#include "internal.h"
+
+static double displacement(const skinslide_sample *sample, int64_t i) {
+    return (double)sample->slid[i] - sample->cached[i];
+}
+
+static skinslide_status check_samples(const skinslide_sample *samples, int count, const float *rates, skinslide_error *error) {
+    if (!samples || !rates)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no samples, or no rates to correct");
+    for (int k = 1; k < count; k++)
+        if (!(samples[k].seconds > samples[k - 1].seconds))
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "sample times do not ascend: %g s, then %g s", samples[k - 1].seconds,
+                           samples[k].seconds);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
+                                      skinslide_error *error) {
+    skinslide_status status = check_samples(samples, 2, velocities, error);
+    double step = status ? 1 : samples[1].seconds - samples[0].seconds;
+    for (int64_t i = 0; !status && i < 3 * (int64_t)vertex_count; i++) {
+        double rate = (displacement(&samples[1], i) - displacement(&samples[0], i)) / step;
+        velocities[i] = rate == 0 ? velocities[i] : (float)(velocities[i] + rate);
+    }
+    return status;
+}
+
+skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *samples, float *accelerations,
+                                         skinslide_error *error) {
+    skinslide_status status = check_samples(samples, 3, accelerations, error);
+    if (status)
+        return status;
+    double first = samples[1].seconds - samples[0].seconds, second = samples[2].seconds - samples[1].seconds;
+    for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++) {
+        double here = displacement(&samples[1], i);
+        double before = (here - displacement(&samples[0], i)) / first, after = (displacement(&samples[2], i) - here) / second;
+        double rate = 2 * (after - before) / (first + second);
+        accelerations[i] = rate == 0 ? accelerations[i] : (float)(accelerations[i] + rate);
+    }
+    return SKINSLIDE_OK;
+}

@@ -1,0 +1,74 @@
+/* On which side of a line a point is: exact, so that neighbouring faces never both disown a point on their common edge.
+ *
+ *     orient(a, b, c) = sign of (a - c) x (b - c)
+ *
+ * First in double with a bound on its error; only where that cannot tell, the six products of the expanded determinant are
+ * split into sums of two doubles and added up without rounding (Dekker 1971, Knuth, Shewchuk 1997: expansions). The file must
+ * be compiled without contraction of products and sums. Exact while no product underflows: coordinates of an embedding are in
+ * [0,1] and, where not 0, far above 1e-140. */
+#include "internal.h"
+
+#include <float.h>
+#include <math.h>
+
+/* x + y = a + b exactly, x the rounded sum. */
+static void two_sum(double a, double b, double *x, double *y) {
+    *x = a + b;
+    double b_part = *x - a;
+    *y = (a - (*x - b_part)) + (b - b_part);
+}
+
+static void split(double a, double *high, double *low) {
+    double c = 134217729.0 * a; /* 2^27 + 1 */
+    *high = c - (c - a);
+    *low = a - *high;
+}
+
+/* x + y = a b exactly, x the rounded product. */
+static void two_product(double a, double b, double *x, double *y) {
+    double ah, al, bh, bl;
+    *x = a * b;
+    split(a, &ah, &al);
+    split(b, &bh, &bl);
+    *y = al * bl - (((*x - ah * bh) - al * bh) - ah * bl);
+}
+
+/* Adds b to an expansion of n components, smallest first; returns how many it has then. */
+static int grow(double *expansion, int n, double b) {
+    int kept = 0;
+    for (int i = 0; i < n; i++) {
+        double rest;
+        two_sum(b, expansion[i], &b, &rest);
+        if (rest != 0)
+            expansion[kept++] = rest;
+    }
+    if (b != 0)
+        expansion[kept++] = b;
+    return kept;
+}
+
+static int exact_orient(const double a[2], const double b[2], const double c[2]) {
+    const double products[6][2] = {{a[0], b[1]}, {-a[0], c[1]}, {-c[0], b[1]}, {-a[1], b[0]}, {a[1], c[0]}, {c[1], b[0]}};
+    double expansion[12];
+    int n = 0;
+    for (int i = 0; i < 6; i++) {
+        double high, low;
+        two_product(products[i][0], products[i][1], &high, &low);
+        n = grow(expansion, n, low);
+        n = grow(expansion, n, high);
+    }
+    return n == 0 ? 0 : expansion[n - 1] > 0 ? 1 : -1;
+}
+
+int ss_orient(const double a[2], const double b[2], const double c[2]) {
+    double left = (a[0] - c[0]) * (b[1] - c[1]);
+    double right = (a[1] - c[1]) * (b[0] - c[0]);
+    double determinant = left - right;
+    /* Shewchuk's bound for this order of operations, (3 + 16 e) e with e = DBL_EPSILON / 2, rounded up. */
+    double bound = (3 + 10 * DBL_EPSILON) * (DBL_EPSILON / 2) * (fabs(left) + fabs(right));
+    if (determinant > bound)
+        return 1;
+    if (determinant < -bound)
+        return -1;
+    return exact_orient(a, b, c);
+}

@@ -1,0 +1,294 @@
+/* One connected patch: its vertices, edges and loops, which must make a disk with holes, and what of it may slide. */
+#include "internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- Vertices ---- */
+
+static int ascending(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex) {
+    const int32_t *found =
+        bsearch(&mesh_vertex, patch->mesh_vertex, (size_t)patch->vertex_count, sizeof mesh_vertex, ascending);
+    return found ? (int32_t)(found - patch->mesh_vertex) : -1;
+}
+
+/* Corners hold mesh vertices before, patch vertices after; edges keep their numbers, since the order of vertices is kept. */
+static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error) {
+    ss_faces *faces = &patch->faces;
+    patch->mesh_vertex = SS_NEW(&patch->memory, int32_t, faces->corner_count);
+    if (patch->memory.failed)
+        return ss_out_of_memory(error);
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        patch->mesh_vertex[c] = faces->corner_vertex[c];
+    qsort(patch->mesh_vertex, (size_t)faces->corner_count, sizeof *patch->mesh_vertex, ascending);
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        if (c == 0 || patch->mesh_vertex[c] != patch->mesh_vertex[c - 1])
+            patch->mesh_vertex[patch->vertex_count++] = patch->mesh_vertex[c];
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        faces->corner_vertex[c] = ss_patch_vertex(patch, faces->corner_vertex[c]);
+    return SKINSLIDE_OK;
+}
+
+static void list_edges(ss_patch *patch) {
+    const ss_faces *faces = &patch->faces;
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        int32_t a = faces->corner_vertex[c], b = faces->corner_vertex[ss_next_corner(faces, c)];
+        int32_t *edge = patch->edge_vertex[faces->corner_edge[c]];
+        edge[0] = a < b ? a : b, edge[1] = a < b ? b : a;
+    }
+}
+
+static int by_vertices(const void *a, const void *b) {
+    const int32_t *x = a, *y = b;
+    if (x[0] != y[0])
+        return x[0] < y[0] ? -1 : 1;
+    return x[1] < y[1] ? -1 : x[1] > y[1];
+}
+
+int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b) {
+    int32_t key[2] = {a < b ? a : b, a < b ? b : a};
+    const int32_t(*found)[2] =
+        bsearch(key, patch->edge_vertex, (size_t)patch->faces.edge_count, sizeof *patch->edge_vertex, by_vertices);
+    return found ? (int32_t)(found - (const int32_t(*)[2])patch->edge_vertex) : -1;
+}
+
+/* ---- Loops ---- */
+
+/* The faces of every vertex must follow each other over shared edges: a single turn, or on the boundary a single fan. Sets
+ * vertex_corner; turned and corners are scratch [vertex_count]. */
+static skinslide_status check_fans(ss_patch *patch, int32_t *turned, int32_t *corners, skinslide_error *error) {
+    const ss_faces *faces = &patch->faces;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        patch->vertex_corner[v] = -1;
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        int32_t v = faces->corner_vertex[c];
+        corners[v]++;
+        if (patch->vertex_corner[v] < 0 || faces->corner_twin[c] < 0)
+            patch->vertex_corner[v] = c;
+    }
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        int32_t c = patch->vertex_corner[v], first = c;
+        bool boundary = faces->corner_twin[c] < 0;
+        do {
+            turned[v]++;
+            c = faces->corner_twin[ss_previous_corner(faces, c)];
+        } while (c >= 0 && c != first);
+        if (turned[v] != corners[v])
+            return ss_fail(error, SKINSLIDE_BAD_PATCH,
+                           boundary ? "%s: the boundary touches itself at vertex %d"
+                                    : "%s: vertex %d joins faces that share no edge there",
+                           patch->label, patch->mesh_vertex[v]);
+    }
+    return SKINSLIDE_OK;
+}
+
+/* Follows every boundary loop from its lowest vertex. Needs vertex_corner. */
+static void trace_loops(ss_patch *patch) {
+    const ss_faces *faces = &patch->faces;
+    int32_t traced = 0;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        patch->vertex_loop[v] = -1;
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        if (patch->vertex_loop[v] >= 0 || faces->corner_twin[patch->vertex_corner[v]] >= 0)
+            continue;
+        for (int32_t w = v; patch->vertex_loop[w] < 0;
+             w = faces->corner_vertex[ss_next_corner(faces, patch->vertex_corner[w])]) {
+            patch->vertex_loop[w] = patch->loop_count;
+            patch->loop_vertex[traced++] = w;
+        }
+        patch->loop_start[++patch->loop_count] = traced;
+    }
+}
+
+/* Euler: V - E + F + loops = 2 for a sphere with loops cut out; every handle takes 2 away. */
+static skinslide_status check_disk(const ss_patch *patch, skinslide_error *error) {
+    int32_t euler = patch->vertex_count - patch->faces.edge_count + patch->faces.face_count + patch->loop_count;
+    if (patch->loop_count == 0)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: the patch is closed; it needs a boundary to hold on to", patch->label);
+    if (euler != 2)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: the patch has %d handle(s); it must be a disk with holes", patch->label,
+                       (2 - euler) / 2);
+    return SKINSLIDE_OK;
+}
+
+static double loop_length(const ss_patch *patch, int32_t loop) {
+    double length = 0;
+    for (int32_t i = patch->loop_start[loop]; i < patch->loop_start[loop + 1]; i++)
+        length += patch->rest_length[patch->faces.corner_edge[patch->vertex_corner[patch->loop_vertex[i]]]];
+    return length;
+}
+
+/* Makes the longest loop number 0. scratch is [vertices on loops]. */
+static void put_outer_first(ss_patch *patch, int32_t *scratch) {
+    int32_t outer = 0, on_loops = patch->loop_start[patch->loop_count];
+    for (int32_t loop = 1; loop < patch->loop_count; loop++)
+        if (loop_length(patch, loop) > loop_length(patch, outer))
+            outer = loop;
+    int32_t begin = patch->loop_start[outer], count = patch->loop_start[outer + 1] - begin, k = 0;
+    for (int32_t i = 0; i < count; i++)
+        scratch[k++] = patch->loop_vertex[begin + i];
+    for (int32_t i = 0; i < on_loops; i++)
+        if (i < begin || i >= begin + count)
+            scratch[k++] = patch->loop_vertex[i];
+    for (int32_t loop = outer; loop > 0; loop--)
+        patch->loop_start[loop] = patch->loop_start[loop - 1] + count;
+    for (int32_t i = 0; i < on_loops; i++)
+        patch->loop_vertex[i] = scratch[i];
+    for (int32_t loop = 0; loop < patch->loop_count; loop++)
+        for (int32_t i = patch->loop_start[loop]; i < patch->loop_start[loop + 1]; i++)
+            patch->vertex_loop[patch->loop_vertex[i]] = loop;
+}
+
+/* ---- Lengths ---- */
+
+static double distance(const float *a, const float *b) {
+    double x = (double)a[0] - b[0], y = (double)a[1] - b[1], z = (double)a[2] - b[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths) {
+    int32_t clamped = 0;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        const int32_t *v = patch->edge_vertex[e];
+        double length =
+            distance(points + 3 * (int64_t)patch->mesh_vertex[v[0]], points + 3 * (int64_t)patch->mesh_vertex[v[1]]);
+        clamped += length < patch->shortest;
+        lengths[e] = length < patch->shortest ? patch->shortest : length;
+    }
+    return clamped;
+}
+
+static skinslide_status measure_rest(ss_patch *patch, const float *rest_points, skinslide_error *error) {
+    int32_t edges = patch->faces.edge_count;
+    ss_edge_lengths(patch, rest_points, patch->rest_length);
+    double sum = 0;
+    for (int32_t e = 0; e < edges; e++)
+        sum += patch->rest_length[e];
+    if (sum == 0)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: all its rest points are in one place", patch->label);
+    patch->shortest = 1e-6 * (sum / edges);
+    patch->zero_length_edges = ss_edge_lengths(patch, rest_points, patch->rest_length);
+    return SKINSLIDE_OK;
+}
+
+/* ---- What may slide ---- */
+
+/* Breadth first over edges, from the lowest free vertex of each region between fixed ones. place is scratch [vertex_count]. */
+static void order_free(ss_patch *patch, int32_t *place) {
+    const ss_faces *faces = &patch->faces;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        place[v] = -1;
+    for (int32_t seed = 0, done = 0; seed < patch->vertex_count; seed++) {
+        if (patch->fixed[seed] || place[seed] >= 0)
+            continue;
+        place[seed] = patch->free_count;
+        patch->free_before[patch->free_count] = -1;
+        patch->free_vertex[patch->free_count++] = seed;
+        for (; done < patch->free_count; done++) {
+            int32_t first = patch->vertex_corner[patch->free_vertex[done]], c = first;
+            do {
+                int32_t w = faces->corner_vertex[ss_next_corner(faces, c)];
+                if (!patch->fixed[w] && place[w] < 0) {
+                    place[w] = patch->free_count;
+                    patch->free_before[patch->free_count] = done;
+                    patch->free_vertex[patch->free_count++] = w;
+                }
+                c = faces->corner_twin[ss_previous_corner(faces, c)];
+            } while (c >= 0 && c != first);
+        }
+    }
+}
+
+/* The outer loop is held always, holes where they are pinned. */
+static void hold_loops(ss_patch *patch) {
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        patch->fixed[v] =
+            patch->vertex_loop[v] == 0 || (patch->vertex_loop[v] > 0 && patch->setup->holes == SKINSLIDE_HOLES_PINNED);
+}
+
+/* ---- Creation ---- */
+
+void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size) {
+    if (piece_count == 1)
+        snprintf(label, size, "patch %s", setup->name);
+    else
+        snprintf(label, size, "patch %s (piece %d of %d)", setup->name, piece + 1, piece_count);
+}
+
+static void allocate(ss_patch *patch) {
+    ss_memory *memory = &patch->memory;
+    int32_t vertices = patch->vertex_count, edges = patch->faces.edge_count;
+    patch->vertex_corner = SS_NEW(memory, int32_t, vertices);
+    patch->edge_vertex = ss_new(memory, edges, sizeof *patch->edge_vertex);
+    patch->rest_length = SS_NEW(memory, double, edges);
+    patch->loop_start = SS_NEW(memory, int32_t, (int64_t)vertices + 1);
+    patch->loop_vertex = SS_NEW(memory, int32_t, vertices);
+    patch->vertex_loop = SS_NEW(memory, int32_t, vertices);
+    patch->fixed = SS_NEW(memory, uint8_t, vertices);
+    patch->fixed_uv = ss_new(memory, vertices, sizeof *patch->fixed_uv);
+    patch->free_vertex = SS_NEW(memory, int32_t, vertices);
+    patch->free_before = SS_NEW(memory, int32_t, vertices);
+}
+
+/* What needs scratch memory: two arrays [vertex_count]. */
+static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t *scratch[2], skinslide_error *error) {
+    skinslide_status status = check_fans(patch, scratch[0], scratch[1], error);
+    if (status)
+        return status;
+    trace_loops(patch);
+    list_edges(patch);
+    if ((status = check_disk(patch, error)) || (status = measure_rest(patch, rest_points, error)))
+        return status;
+    put_outer_first(patch, scratch[0]);
+    hold_loops(patch);
+    if ((status = ss_place_boundary(patch, rest_points, error)))
+        return status;
+    if (patch->loop_count > 1 && patch->setup->holes == SKINSLIDE_HOLES_PINNED)
+        if ((status = ss_place_holes(patch, rest_points, error)))
+            return status;
+    order_free(patch, scratch[0]);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,
+                                 const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
+                                 ss_patch **out, skinslide_error *error) {
+    ss_patch *patch = calloc(1, sizeof *patch);
+    if (!patch)
+        return ss_out_of_memory(error);
+    ss_memory scratch = {0};
+    patch->setup = setup, patch->setup_index = setup_index, patch->piece = piece, patch->piece_count = piece_count;
+    ss_label(setup, piece, piece_count, patch->label, sizeof patch->label);
+    skinslide_status status = ss_take_faces(mesh, mesh_faces, face_count, patch->label, &patch->memory, &patch->faces, error);
+    if (!status)
+        status = number_vertices(patch, error);
+    if (!status) {
+        allocate(patch);
+        patch->mesh_face = SS_NEW(&patch->memory, int32_t, face_count);
+        int32_t *arrays[2] = {SS_NEW(&scratch, int32_t, patch->vertex_count), SS_NEW(&scratch, int32_t, patch->vertex_count)};
+        status =
+            patch->memory.failed || scratch.failed ? ss_out_of_memory(error) : build(patch, mesh->rest_points, arrays, error);
+    }
+    ss_free(&scratch);
+    if (status) {
+        ss_patch_destroy(patch);
+        return status;
+    }
+    for (int32_t f = 0; f < face_count; f++)
+        patch->mesh_face[f] = mesh_faces[f];
+    *out = patch;
+    return SKINSLIDE_OK;
+}
+
+void ss_patch_destroy(ss_patch *patch) {
+    if (!patch)
+        return;
+    ss_free(&patch->memory);
+    free(patch);
+}

@@ -1,0 +1,334 @@
+/* Builds a slider from its set-ups, and workspaces for it. */
+#include "slider.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Checks of a set-up ---- */
+
+static int ascending(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+static skinslide_status check_choices(const skinslide_patch_setup *setup, skinslide_error *error) {
+    if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE ||
+        (unsigned)setup->rule > SKINSLIDE_RULE_FAST || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no such boundary, holes, rule or interpolation", setup->name);
+    if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "patch %s: interpolation limit is not supported in this version",
+                       setup->name);
+    return SKINSLIDE_OK;
+}
+
+/* Sorts the set-up's faces into sorted [face_count]. */
+static skinslide_status sort_faces(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t *sorted,
+                                   skinslide_error *error) {
+    for (int32_t i = 0; i < setup->face_count; i++) {
+        if (setup->faces[i] < 0 || setup->faces[i] >= mesh->face_count)
+            return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: face %d is not one of the mesh's %d", setup->name,
+                           setup->faces[i], mesh->face_count);
+        sorted[i] = setup->faces[i];
+    }
+    qsort(sorted, (size_t)setup->face_count, sizeof *sorted, ascending);
+    for (int32_t i = 1; i < setup->face_count; i++)
+        if (sorted[i] == sorted[i - 1])
+            return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: face %d is listed more than once", setup->name, sorted[i]);
+    return SKINSLIDE_OK;
+}
+
+static int by_pair(const void *a, const void *b) {
+    const int32_t *x = a, *y = b;
+    if (x[0] != y[0])
+        return x[0] < y[0] ? -1 : 1;
+    return x[1] < y[1] ? -1 : x[1] > y[1];
+}
+
+static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a, int32_t b) {
+    for (int32_t p = 0; p < slider->part_count; p++) {
+        const ss_patch *patch = slider->parts[p].patch;
+        int32_t v = ss_patch_vertex(patch, a), w = ss_patch_vertex(patch, b);
+        if (patch->setup_index == setup && v >= 0 && w >= 0 && ss_patch_edge(patch, v, w) >= 0)
+            return true;
+    }
+    return false;
+}
+
+/* Every pair must be an edge of a piece of the set-up, and be there once. */
+static skinslide_status check_edges(const skinslide_slider *slider, int32_t setup, const skinslide_controls *controls,
+                                    skinslide_error *error) {
+    const char *name = slider->setups[setup].name;
+    ss_memory scratch = {0};
+    int32_t(*pairs)[2] = ss_new(&scratch, controls->edge_count, sizeof *pairs);
+    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    for (int32_t i = 0; i < controls->edge_count && !status; i++) {
+        int32_t a = controls->edges[2 * i], b = controls->edges[2 * i + 1];
+        pairs[i][0] = a < b ? a : b, pairs[i][1] = a < b ? b : a;
+        if (!is_edge_of(slider, setup, a, b))
+            status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: %d-%d is not an edge of the patch", name, a, b);
+    }
+    if (!status)
+        qsort(pairs, (size_t)controls->edge_count, sizeof *pairs, by_pair);
+    for (int32_t i = 1; i < controls->edge_count && !status; i++)
+        if (by_pair(pairs[i], pairs[i - 1]) == 0)
+            status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: edge %d-%d is listed more than once", name, pairs[i][0],
+                             pairs[i][1]);
+    ss_free(&scratch);
+    return status;
+}
+
+skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
+                                         skinslide_error *error) {
+    skinslide_mesh mesh = {.vertex_count = slider->vertex_count, .face_count = slider->face_count};
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t i = 0; i < slider->setup_count && !status; i++) {
+        status = ss_check_controls(&mesh, slider->setups[i].name, &controls[i], error);
+        if (!status)
+            status = check_edges(slider, i, &controls[i], error);
+    }
+    return status;
+}
+
+/* ---- Parts ---- */
+
+static void copy_fixed(const ss_patch *patch, double (*uv)[2]) {
+    memcpy(uv, patch->fixed_uv, (size_t)patch->vertex_count * sizeof *uv);
+}
+
+/* Rest embedding of a part with its paint: needs scratch for the forces [edge_count]. */
+static skinslide_status embed_rest(ss_part *part, double *density, skinslide_error *error) {
+    ss_factor *factor = NULL;
+    skinslide_status status = ss_factor_create(part->system, &factor, error);
+    if (!status) {
+        ss_force_density(part->patch, part->patch->rest_length, part->paint, density);
+        copy_fixed(part->patch, part->rest_uv);
+        status = ss_embed(part->system, factor, density, part->rest_uv, error);
+    }
+    ss_factor_destroy(factor);
+    return status;
+}
+
+/* From a patch to a part: symbolic factor, paint, weights, rest embedding. */
+static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslide_controls *controls, skinslide_error *error) {
+    const ss_patch *patch = part->patch;
+    ss_memory scratch = {0};
+    part->paint = SS_NEW(memory, double, patch->faces.edge_count);
+    part->weights = SS_NEW(memory, double, patch->free_count);
+    part->rest_uv = ss_new(memory, patch->vertex_count, sizeof *part->rest_uv);
+    double *density = SS_NEW(&scratch, double, patch->faces.edge_count);
+    skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, patch->fixed};
+    if (!status)
+        status = ss_system_create(&net, patch->label, &part->system, error);
+    if (!status) {
+        ss_paint(patch, controls, part->paint);
+        part->clamped_weights = ss_slide_weights(patch, controls, part->weights);
+        status = embed_rest(part, density, error);
+    }
+    if (!status)
+        part->rest_layout = ss_lay_out(patch, (const double(*)[2])part->rest_uv);
+    ss_free(&scratch);
+    return status;
+}
+
+/* ---- From set-ups to pieces ---- */
+
+/* Faces of one set-up, sorted, and the piece of each. */
+typedef struct split_faces {
+    ss_memory memory;
+    int32_t face_count, count;
+    int32_t *faces, *piece_of_face, *chosen;
+} split_faces;
+
+static skinslide_status split(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, split_faces *out,
+                              skinslide_error *error) {
+    ss_memory *memory = &out->memory;
+    ss_faces faces;
+    char label[160];
+    if (setup->face_count < 0 || (setup->face_count > 0 && !setup->faces))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no array of faces", setup->name);
+    if (setup->face_count == 0)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: it has no faces", setup->name);
+    out->face_count = setup->face_count;
+    out->faces = SS_NEW(memory, int32_t, setup->face_count);
+    out->piece_of_face = SS_NEW(memory, int32_t, setup->face_count);
+    out->chosen = SS_NEW(memory, int32_t, setup->face_count);
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    skinslide_status status = sort_faces(mesh, setup, out->faces, error);
+    if (status)
+        return status;
+    ss_label(setup, 0, 1, label, sizeof label);
+    status = ss_take_faces(mesh, out->faces, setup->face_count, label, memory, &faces, error);
+    if (!status)
+        out->count = ss_number_pieces(&faces, out->piece_of_face, out->chosen);
+    return status;
+}
+
+/* Appends a part to the slider for one piece of a set-up. */
+static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup,
+                                  const split_faces *pieces, int32_t piece, skinslide_error *error) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < pieces->face_count; i++)
+        if (pieces->piece_of_face[i] == piece)
+            pieces->chosen[count++] = pieces->faces[i];
+    ss_part *part = &slider->parts[slider->part_count];
+    skinslide_status status =
+        ss_patch_create(mesh, &slider->setups[setup], setup, pieces->chosen, count, piece, pieces->count, &part->patch, error);
+    if (!status) {
+        slider->part_count++;
+        status = prepare(&slider->memory, part, &slider->setups[setup].controls, error);
+    }
+    return status;
+}
+
+static skinslide_status grow_parts(skinslide_slider *slider, int32_t count, skinslide_error *error) {
+    ss_part *parts = SS_NEW(&slider->memory, ss_part, (int64_t)slider->part_count + count);
+    if (!parts)
+        return ss_out_of_memory(error);
+    if (slider->part_count > 0)
+        memcpy(parts, slider->parts, (size_t)slider->part_count * sizeof *parts);
+    slider->parts = parts;
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup, skinslide_error *error) {
+    const skinslide_patch_setup *own = &slider->setups[setup];
+    split_faces pieces = {0};
+    skinslide_status status = check_choices(own, error);
+    if (!status)
+        status = split(mesh, own, &pieces, error);
+    if (!status)
+        status = ss_check_controls(mesh, own->name, &own->controls, error);
+    if (!status)
+        status = grow_parts(slider, pieces.count, error);
+    for (int32_t piece = 0; piece < pieces.count && !status; piece++)
+        status = add_piece(slider, mesh, setup, &pieces, piece, error);
+    if (!status)
+        status = check_edges(slider, setup, &own->controls, error);
+    ss_free(&pieces.memory);
+    return status;
+}
+
+/* ---- The slider ---- */
+
+static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_patch_setup *setups, skinslide_error *error) {
+    slider->setups = SS_NEW(&slider->memory, skinslide_patch_setup, slider->setup_count);
+    for (int32_t i = 0; i < slider->setup_count && slider->setups; i++) {
+        const char *name = setups[i].name ? setups[i].name : "";
+        char *copy = SS_NEW(&slider->memory, char, (int64_t)strlen(name) + 1);
+        slider->setups[i] = setups[i];
+        slider->setups[i].name = copy ? strcpy(copy, name) : copy;
+    }
+    return slider->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+}
+
+/* Drops pointers to what is the caller's. */
+static void forget_arrays(skinslide_slider *slider) {
+    for (int32_t i = 0; i < slider->setup_count; i++) {
+        slider->setups[i].faces = slider->setups[i].corners = NULL;
+        slider->setups[i].controls = (skinslide_controls)SKINSLIDE_CONTROLS_DEFAULT;
+    }
+}
+
+skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups, int32_t setup_count,
+                                         skinslide_slider **out, skinslide_error *error) {
+    if (!out || setup_count < 0 || (setup_count > 0 && !setups))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the slider, or no patches");
+    skinslide_status status = ss_check_mesh(mesh, error);
+    if (!status)
+        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+    if (status)
+        return status;
+    skinslide_slider *slider = calloc(1, sizeof *slider);
+    if (!slider)
+        return ss_out_of_memory(error);
+    slider->vertex_count = mesh->vertex_count, slider->face_count = mesh->face_count, slider->setup_count = setup_count;
+    status = copy_setups(slider, setups, error);
+    for (int32_t i = 0; i < setup_count && !status; i++)
+        status = add_setup(slider, mesh, i, error);
+    if (status) {
+        skinslide_slider_destroy(slider);
+        return status;
+    }
+    forget_arrays(slider);
+    *out = slider;
+    return SKINSLIDE_OK;
+}
+
+void skinslide_slider_destroy(skinslide_slider *slider) {
+    if (!slider)
+        return;
+    for (int32_t p = 0; p < slider->part_count; p++) {
+        ss_system_destroy(slider->parts[p].system);
+        ss_patch_destroy(slider->parts[p].patch);
+    }
+    ss_free(&slider->memory);
+    free(slider);
+}
+
+/* ---- Workspaces ---- */
+
+static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_bench *bench, skinslide_error *error) {
+    const ss_patch *patch = part->patch;
+    int32_t edges = patch->faces.edge_count, vertices = patch->vertex_count, free_count = patch->free_count;
+    bench->own_paint = SS_NEW(memory, double, edges);
+    bench->own_weights = SS_NEW(memory, double, free_count);
+    bench->own_rest_uv = ss_new(memory, vertices, sizeof *bench->own_rest_uv);
+    bench->lengths = SS_NEW(memory, double, edges);
+    bench->density = SS_NEW(memory, double, edges);
+    bench->uv = ss_new(memory, vertices, sizeof *bench->uv);
+    bench->queries = ss_new(memory, free_count, sizeof *bench->queries);
+    bench->locations = SS_NEW(memory, ss_location, free_count);
+    bench->displacement = ss_new(memory, free_count, sizeof *bench->displacement);
+    bench->corner_weights = SS_NEW(memory, double, ss_largest_face(&patch->faces));
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    copy_fixed(patch, bench->uv);
+    copy_fixed(patch, bench->own_rest_uv);
+    skinslide_status status = ss_factor_create(part->system, &bench->factor, error);
+    return status ? status : ss_locator_create(patch, &bench->locator, error);
+}
+
+static skinslide_status check_lookup(skinslide_lookup lookup, skinslide_error *error) {
+    if ((unsigned)lookup > SKINSLIDE_LOOKUP_EXACT)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such lookup: %d", (int)lookup);
+    if (lookup == SKINSLIDE_LOOKUP_EGL)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "lookup egl is not supported in this version");
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_workspace_create(const skinslide_slider *slider, skinslide_lookup lookup, skinslide_workspace **out,
+                                            skinslide_error *error) {
+    if (!slider || !out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, or no place for the workspace");
+    skinslide_status status = check_lookup(lookup, error);
+    if (status)
+        return status;
+    skinslide_workspace *workspace = calloc(1, sizeof *workspace);
+    if (!workspace)
+        return ss_out_of_memory(error);
+    workspace->slider = slider;
+    workspace->benches = SS_NEW(&workspace->memory, ss_bench, slider->part_count);
+    workspace->results = SS_NEW(&workspace->memory, skinslide_patch_result, slider->part_count);
+    workspace->sum = ss_new(&workspace->memory, slider->vertex_count, sizeof *workspace->sum);
+    status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    for (int32_t p = 0; p < slider->part_count && !status; p++)
+        status = make_bench(&workspace->memory, &slider->parts[p], &workspace->benches[p], error);
+    if (status)
+        skinslide_workspace_destroy(workspace);
+    else
+        *out = workspace;
+    return status;
+}
+
+void skinslide_workspace_destroy(skinslide_workspace *workspace) {
+    if (!workspace)
+        return;
+    for (int32_t p = 0; workspace->benches && p < workspace->slider->part_count; p++) {
+        ss_factor_destroy(workspace->benches[p].factor);
+        ss_locator_destroy(workspace->benches[p].locator);
+    }
+    ss_free(&workspace->memory);
+    free(workspace);
+}

@@ -1,0 +1,161 @@
+/* A mesh with all its patches. skinslide_slide is one frame, its stages in order: read this first. */
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#include "slider.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Adds the seconds since *since to *sum, and sets it to now. */
+static void lap(double *since, double *sum) {
+    double time = now();
+    *sum += time - *since;
+    *since = time;
+}
+
+/* ---- Stages of one patch ---- */
+
+/* Paint, weights and rest embedding: the set-up's, or this frame's own. Paint that differs costs an embedding of rest. */
+static skinslide_status apply_controls(const ss_part *part, ss_bench *bench, const skinslide_controls *controls,
+                                       skinslide_patch_result *result, skinslide_error *error) {
+    bench->paint = part->paint, bench->weights = part->weights, bench->rest_uv = (const double(*)[2])part->rest_uv;
+    result->clamped_weights = part->clamped_weights;
+    if (!controls)
+        return SKINSLIDE_OK;
+    bench->weights = bench->own_weights;
+    result->clamped_weights = ss_slide_weights(part->patch, controls, bench->own_weights);
+    ss_paint(part->patch, controls, bench->own_paint);
+    if (memcmp(bench->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) == 0)
+        return SKINSLIDE_OK;
+    bench->paint = bench->own_paint, bench->rest_uv = (const double(*)[2])bench->own_rest_uv;
+    ss_force_density(part->patch, part->patch->rest_length, bench->paint, bench->density);
+    return ss_embed(part->system, bench->factor, bench->density, bench->own_rest_uv, error);
+}
+
+/* u = lerp(own place in Ud, rest place in U0, weight): what each free vertex is looked up at. */
+static void make_queries(const ss_patch *patch, ss_bench *bench) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        const double *own = bench->uv[patch->free_vertex[i]], *rest = bench->rest_uv[patch->free_vertex[i]];
+        double weight = bench->weights[i];
+        for (int k = 0; k < 2; k++)
+            bench->queries[i][k] = weight == 1 ? rest[k] : own[k] + weight * (rest[k] - own[k]);
+    }
+}
+
+static void measure_slide(const ss_patch *patch, const ss_bench *bench, skinslide_patch_result *result) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        const double *d = bench->displacement[i];
+        double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        result->slid_vertices += length > 0;
+        result->largest_slide = length > result->largest_slide ? length : result->largest_slide;
+    }
+}
+
+static skinslide_status slide_patch(const ss_part *part, ss_bench *bench, const float *points,
+                                    const skinslide_controls *controls, skinslide_patch_result *result,
+                                    skinslide_error *error) {
+    const ss_patch *patch = part->patch;
+    const double(*uv)[2] = (const double(*)[2])bench->uv;
+    double time = now();
+    skinslide_status status = apply_controls(part, bench, controls, result, error);
+    if (status)
+        return status;
+    result->zero_length_edges = ss_edge_lengths(patch, points, bench->lengths);
+    ss_force_density(patch, bench->lengths, bench->paint, bench->density);
+    lap(&time, &result->density_seconds);
+
+    if ((status = ss_embed(part->system, bench->factor, bench->density, bench->uv, error)))
+        return status;
+    lap(&time, &result->embed_seconds);
+
+    ss_layout layout = ss_lay_out(patch, uv);
+    make_queries(patch, bench);
+    ss_located located = ss_locate(bench->locator, uv, layout.regular, (const double(*)[2])bench->queries, bench->locations);
+    result->folded_faces = layout.folded;
+    result->clamped_vertices = located.clamped;
+    result->searched_vertices = located.searched;
+    result->walk_steps = located.steps;
+    lap(&time, &result->locate_seconds);
+
+    ss_interpolate(patch, uv, bench->locations, points, bench->corner_weights, bench->displacement);
+    measure_slide(patch, bench, result);
+    lap(&time, &result->interpolate_seconds);
+    return SKINSLIDE_OK;
+}
+
+/* ---- The blend ---- */
+
+/* Sums weight times displacement, and weight, over the patches of each vertex. */
+static void add_displacement(const ss_patch *patch, const ss_bench *bench, double (*sum)[4]) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = bench->weights[i];
+        for (int k = 0; k < 3; k++)
+            total[k] += weight * bench->displacement[i][k];
+        total[3] += weight;
+    }
+}
+
+static void blend(skinslide_workspace *workspace, const float *points, float *slid) {
+    const skinslide_slider *slider = workspace->slider;
+    memset(workspace->sum, 0, (size_t)slider->vertex_count * sizeof *workspace->sum);
+    for (int32_t p = 0; p < slider->part_count; p++)
+        add_displacement(slider->parts[p].patch, &workspace->benches[p], workspace->sum);
+    for (int32_t v = 0; v < slider->vertex_count; v++) {
+        const double *total = workspace->sum[v];
+        bool moves = total[3] > 0 && (total[0] != 0 || total[1] != 0 || total[2] != 0);
+        for (int k = 0; k < 3; k++) {
+            float here = points[3 * (int64_t)v + k];
+            slid[3 * (int64_t)v + k] = moves ? (float)(here + total[k] / total[3]) : here;
+        }
+    }
+}
+
+/* RMS over edges of log(length / rest length). */
+static double stretch(const ss_patch *patch, const double *lengths) {
+    double sum = 0;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        double stretched = log(lengths[e] / patch->rest_length[e]);
+        sum += stretched * stretched;
+    }
+    return sqrt(sum / patch->faces.edge_count);
+}
+
+/* ---- One frame ---- */
+
+skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points, const skinslide_controls *controls,
+                                 float *slid, skinslide_patch_result *results, skinslide_error *error) {
+    if (!workspace || !points || !slid)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, points, or place for the slid points");
+    const skinslide_slider *slider = workspace->slider;
+    skinslide_status status = ss_check_points(points, slider->vertex_count, "points", error);
+    if (!status && controls)
+        status = ss_check_frame_controls(slider, controls, error);
+    if (status)
+        return status;
+    workspace->has_frame = false;
+    for (int32_t p = 0; p < slider->part_count; p++) {
+        const ss_part *part = &slider->parts[p];
+        const skinslide_controls *own = controls ? &controls[part->patch->setup_index] : NULL;
+        workspace->results[p] = (skinslide_patch_result){0};
+        if ((status = slide_patch(part, &workspace->benches[p], points, own, &workspace->results[p], error)))
+            return status;
+        workspace->results[p].stretch_before = stretch(part->patch, workspace->benches[p].lengths);
+    }
+    blend(workspace, points, slid);
+    for (int32_t p = 0; p < slider->part_count; p++) {
+        const ss_patch *patch = slider->parts[p].patch;
+        ss_edge_lengths(patch, slid, workspace->benches[p].lengths);
+        workspace->results[p].stretch_after = stretch(patch, workspace->benches[p].lengths);
+        if (results)
+            results[p] = workspace->results[p];
+    }
+    workspace->has_frame = true;
+    return SKINSLIDE_OK;
+}

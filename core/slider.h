@@ -1,0 +1,53 @@
+/* What setup.c builds and slider.c uses. */
+#ifndef SKINSLIDE_SLIDER_H
+#define SKINSLIDE_SLIDER_H
+
+#include "internal.h"
+
+/* One patch, ready to slide: immutable. */
+typedef struct ss_part {
+    ss_patch *patch;
+    ss_system *system;
+    double *paint;        /* [edge_count] of the set-up's controls */
+    double (*rest_uv)[2]; /* [vertex_count] U0 with that paint */
+    double *weights;      /* [free_count] weight times envelope of the set-up's controls */
+    int32_t clamped_weights;
+    ss_layout rest_layout;
+} ss_part;
+
+struct skinslide_slider {
+    ss_memory memory;
+    int32_t vertex_count, face_count, setup_count, part_count;
+    skinslide_patch_setup *setups; /* [setup_count] names copied; their arrays are the caller's, and not kept */
+    ss_part *parts;                /* [part_count] */
+};
+
+/* What one thread needs to slide one patch. */
+typedef struct ss_bench {
+    ss_factor *factor;
+    ss_locator *locator;
+    const double *paint, *weights; /* the part's, or own_paint [edge_count] and own_weights [free_count] */
+    const double (*rest_uv)[2];    /* the part's, or own_rest_uv */
+    double *own_paint, *own_weights, (*own_rest_uv)[2];
+    double *lengths, *density; /* [edge_count] */
+    double (*uv)[2];           /* [vertex_count] Ud, fixed vertices in place */
+    double (*queries)[2];      /* [free_count] */
+    ss_location *locations;    /* [free_count] */
+    double (*displacement)[3]; /* [free_count] */
+    double *corner_weights;    /* [largest face] */
+} ss_bench;
+
+struct skinslide_workspace {
+    ss_memory memory;
+    const skinslide_slider *slider;
+    ss_bench *benches;               /* [part_count] */
+    skinslide_patch_result *results; /* [part_count] */
+    double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
+    bool has_frame;
+};
+
+/* Controls of one frame, [setup_count]. */
+skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
+                                         skinslide_error *error);
+
+#endif
