@@ -1,0 +1,1 @@
+"""What the example makers share: MakeHuman's data, skinning, choice of faces, and the two USD files."""
