@@ -1,0 +1,47 @@
+"""skinslide: skin that slides over a deformed mesh instead of sticking to it.
+
+`bake` corrects a stage, `check` says what would be slid, `setup` writes a patch; `Slider` is the same on numpy arrays.
+"""
+
+from pathlib import Path
+
+from pxr import Plug
+
+from skinslide.bake import bake, bake_to_file
+from skinslide.check import check
+from skinslide.frames import FrameSpecError, UsageError, parse_frames
+from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
+from skinslide.report import BakeReport
+from skinslide.setup import setup
+from skinslide.slider import Controls, Frame, PatchSetup, Slider, SliderError, version
+
+__version__ = version()
+
+Plug.Registry().RegisterPlugins(str(Path(__file__).parent / "schema"))
+
+
+def cmake_dir() -> str:
+    """The folder with skinslideConfig.cmake, for `find_package(skinslide)` in a C or C++ project."""
+    return str(Path(__file__).parent / "lib" / "cmake" / "skinslide")
+
+
+__all__ = [
+    "BakeReport",
+    "Controls",
+    "Frame",
+    "FrameProblem",
+    "FrameSpecError",
+    "PatchSetup",
+    "Problem",
+    "Slider",
+    "SliderError",
+    "StageError",
+    "StageProblems",
+    "UsageError",
+    "bake",
+    "bake_to_file",
+    "check",
+    "cmake_dir",
+    "parse_frames",
+    "setup",
+]

@@ -1,0 +1,179 @@
+"""Says what a bake would slide, patch by patch, and everything that is wrong or worth knowing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+from pxr import Usd
+
+from skinslide.meshes import SlidMesh, is_skinned, read_meshes
+from skinslide.problems import Problem, StageProblems, errors, frame_text
+from skinslide.samples import sample_problems
+from skinslide.slider import PatchInfo, Slider, SliderError
+from skinslide.stage import open_stage
+
+
+@dataclass(frozen=True)
+class CheckedPatch:
+    """One piece of a patch. `free` counts the vertices that may slide; the last three are of the rest embedding."""
+
+    name: str
+    piece: int  # from 1
+    pieces: int
+    vertices: int
+    edges: int
+    faces: int
+    free: int
+    holes: int
+    zero_length_edges: int
+    collapsed_faces: int
+    folded_faces: int
+
+
+@dataclass(frozen=True)
+class CheckedMesh:
+    """A mesh that a bake would slide. `samples` are the stage times it would write."""
+
+    path: str
+    points: int
+    faces: int
+    rest: str
+    samples: list[float]
+    patches: list[CheckedPatch]
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    stage: str
+    meshes: list[CheckedMesh]
+    problems: list[Problem]
+
+    @property
+    def failed(self) -> bool:
+        return bool(errors(self.problems))
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+    def text(self) -> str:
+        """A line for each mesh, patch and problem, and the verdict."""
+        lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
+        return "\n".join([*lines, *map(str, self.problems), self._verdict()])
+
+    def _verdict(self) -> str:
+        counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}
+        found = [f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items() if count]
+        patches = sum(len(mesh.patches) for mesh in self.meshes)
+        meshes = f"{len(self.meshes)} mesh{'es' * (len(self.meshes) != 1)}"
+        return f"{self.stage}: {meshes}, {patches} patch{'es' * (patches != 1)}: {', '.join(found) or 'no problems'}"
+
+
+def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
+    if mesh.samples:
+        first, last = frame_text(mesh.samples[0]), frame_text(mesh.samples[-1])
+        samples = f"{len(mesh.samples)} samples, {first} to {last}"
+    else:
+        samples = "no samples"
+    yield f"{mesh.path}: {mesh.points} points, {mesh.faces} faces, rest from {mesh.rest}, {samples}"
+    for patch in mesh.patches:
+        name = patch.name if patch.pieces == 1 else f"{patch.name} ({patch.piece} of {patch.pieces})"
+        counts = ("vertices", "free", "edges", "faces", "holes")
+        yield f"  {name}: " + ", ".join(f"{count} {getattr(patch, count)}" for count in counts)
+
+
+def check(stage: Usd.Stage | str | Path, prims: Sequence[str] | None = None) -> CheckReport:
+    """Checks a stage without changing it. Reads every sample; StageError where the stage cannot be opened.
+
+    prims  paths of prims to look at with everything below them; None: the whole stage
+    """
+    name = stage.GetRootLayer().identifier if isinstance(stage, Usd.Stage) else str(stage)
+    stage = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
+    meshes, problems = read_meshes(stage, prims)
+    checked = [_check_mesh(mesh, problems) for mesh in meshes]
+    problems += _composition_problems(stage)
+    severities = ("error", "warning", "note")
+    return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)))
+
+
+def _composition_problems(stage: Usd.Stage) -> Iterator[Problem]:
+    """What USD could not compose: a cache that does not open is often why something else is missing."""
+    for error in stage.GetCompositionErrors():
+        yield Problem("warning", str(error.rootSite.path), None, None, " ".join(str(error).split()))
+
+
+def _check_mesh(mesh: SlidMesh, problems: list[Problem]) -> CheckedMesh:
+    patches = [_checked(info) for slider in _sliders(mesh, problems) for info in slider.patches]
+    for name in dict.fromkeys(patch.name for patch in patches):
+        problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
+    problems += _overlaps(mesh)
+    problems += _cache_problems(mesh)
+    times = mesh.sample_times()
+    problems += sample_problems(mesh, times)
+    return CheckedMesh(mesh.path, mesh.vertex_count, mesh.topology.face_count, mesh.rest_source, times, patches)
+
+
+def _sliders(mesh: SlidMesh, problems: list[Problem]) -> list[Slider]:
+    """The slider of all patches, or one for each that is good."""
+    try:
+        return [mesh.slider()]
+    except StageProblems as bad:
+        problems += bad.problems
+    sliders = []
+    for patch in mesh.patches:
+        try:
+            sliders.append(mesh.build([patch]))
+        except SliderError:
+            continue
+    return sliders
+
+
+def _checked(info: PatchInfo) -> CheckedPatch:
+    return CheckedPatch(
+        name=info.name,
+        piece=info.piece + 1,
+        pieces=info.piece_count,
+        vertices=info.vertex_count,
+        edges=info.edge_count,
+        faces=info.face_count,
+        free=info.free_count,
+        holes=info.hole_count,
+        zero_length_edges=info.zero_length_edges,
+        collapsed_faces=info.collapsed_faces,
+        folded_faces=info.folded_faces,
+    )
+
+
+def _patch_problems(mesh: SlidMesh, pieces: list[CheckedPatch]) -> Iterator[Problem]:
+    """What is worth knowing of the pieces of one patch, a line for each kind."""
+    stuck = sum(not piece.free for piece in pieces)
+    where = f"in {stuck} of its {len(pieces)} pieces " if len(pieces) > 1 else ""
+    told = {
+        f"nothing can slide {where}since every vertex is on a boundary": stuck,
+        "{} edges have no length at rest": sum(piece.zero_length_edges for piece in pieces),
+        "{} faces have no area in the rest embedding": sum(piece.collapsed_faces for piece in pieces),
+        "{} faces are turned over in the rest embedding": sum(piece.folded_faces for piece in pieces),
+    }
+    for message, count in told.items():
+        if count:
+            yield Problem("warning", mesh.path, pieces[0].name, None, message.format(count))
+
+
+def _overlaps(mesh: SlidMesh) -> Iterator[Problem]:
+    for a, b in combinations(mesh.patches, 2):
+        if np.intersect1d(a.faces, b.faces).size:
+            shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
+            message = f"overlaps patch {b.name} in {np.count_nonzero(shared)} vertices, which take the mean of both"
+            yield Problem("note", mesh.path, a.name, None, message)
+
+
+def _cache_problems(mesh: SlidMesh) -> Iterator[Problem]:
+    if not mesh.points_times() and mesh.rest_source == "points (default)":
+        message = "points have no samples and are themselves the rest points, so nothing slides"
+        yield Problem("warning", mesh.path, None, None, message)
+    if mesh.points_times() and is_skinned(mesh.prim):
+        message = "points have samples, but UsdSkel skins them again; remove the skinning where they are baked"
+        yield Problem("warning", mesh.path, None, None, message)

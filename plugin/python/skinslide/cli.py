@@ -1,0 +1,239 @@
+"""The command `skinslide`: arguments in, exit code out. 0 done, 1 failed, 2 usage, 3 the stage has problems."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+
+from skinslide import __version__
+from skinslide.frames import UsageError
+from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
+
+DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
+INTERRUPTED = 130
+
+_EXIT_CODES = "exit codes: 0 done, 1 failed, 2 the arguments cannot be used, 3 the stage has problems"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs one command; every expected fault is a message on stderr and an exit code."""
+    try:
+        arguments = _parser().parse_args(argv)
+    except SystemExit as done:
+        return done.code if isinstance(done.code, int) else USAGE
+    try:
+        code = arguments.run(arguments)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:
+        # Whoever read us has left; Python would complain once more when it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except StageProblems as bad:
+        return _failed(arguments, PROBLEMS, bad.problems)
+    except FrameProblem as bad:
+        return _failed(arguments, FAILED, [bad.problem])
+    except UsageError as bad:
+        return _failed(arguments, USAGE, [_plain(str(bad))])
+    except StageError as bad:
+        return _failed(arguments, FAILED, [_plain(str(bad))])
+    except MemoryError:
+        return _failed(arguments, FAILED, [_plain("out of memory")])
+    except KeyboardInterrupt:
+        return _failed(arguments, INTERRUPTED, [_plain("interrupted; nothing was written")])
+    except SystemExit as ended:
+        return _failed(arguments, int(ended.code or FAILED), [_plain("ended by a signal; nothing was written")])
+
+
+def _plain(message: str) -> Problem:
+    return Problem("error", "", None, None, message)
+
+
+def _failed(arguments: argparse.Namespace, code: int, problems: Sequence[Problem]) -> int:
+    """Says why nothing came of a command: on stderr, and with --json as the document too."""
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    if getattr(arguments, "json", False):
+        _print_json({"problems": [problem.as_dict() for problem in problems]})
+    return code
+
+
+def _print_json(document: dict) -> None:
+    print(json.dumps(document, indent=2))
+
+
+def _bake(arguments: argparse.Namespace) -> int:
+    from skinslide.bake import bake_to_file
+    from skinslide.progress import reporter
+
+    with reporter(quiet=arguments.quiet) as progress:
+        report = bake_to_file(
+            arguments.stage,
+            arguments.output,
+            prims=arguments.prim,
+            frames=arguments.frames,
+            lookup=arguments.lookup,
+            jobs=arguments.jobs,
+            progress=progress,
+            max_folded=arguments.max_folded,
+            max_clamped=arguments.max_clamped,
+        )
+    if arguments.json:
+        _print_json({"stage": arguments.stage, "output": arguments.output, **report.as_dict()})
+    elif not arguments.quiet:
+        print(report.text())
+        print(f"{arguments.output}: written; sublayer it above the cache")
+    return DONE
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from skinslide.check import check
+
+    report = check(arguments.stage, arguments.prim)
+    if arguments.json:
+        _print_json(report.as_dict())
+    else:
+        print(report.text())
+    return PROBLEMS if report.failed else DONE
+
+
+def _setup(arguments: argparse.Namespace) -> int:
+    from skinslide.setup import setup
+
+    report = setup(
+        arguments.stage,
+        arguments.output,
+        arguments.prim,
+        arguments.patch,
+        faces=arguments.faces,
+        subset=arguments.subset,
+        primvar=arguments.primvar,
+        force=arguments.force,
+    )
+    print(report.text())
+    print(f"{arguments.output}: written")
+    return DONE
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="skinslide",
+        description="Lets the skin of a cached character slide over its deformed shape instead of sticking to it.",
+        epilog=_EXIT_CODES,
+    )
+    parser.add_argument("--version", action="version", version=f"skinslide {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    _add_bake(_add_command(commands, "bake", _bake, "slide every frame and write a layer of corrected points"))
+    _add_check(_add_command(commands, "check", _check, "say what would be slid, and every problem"))
+    _add_setup(_add_command(commands, "setup", _setup, "write a layer that makes a patch of some faces of a mesh"))
+    return parser
+
+
+Run = Callable[[argparse.Namespace], int]
+
+
+def _add_command(commands, name: str, run: Run, summary: str) -> argparse.ArgumentParser:
+    """A command with what all have: the stage."""
+    description = summary[0].upper() + summary[1:] + "."
+    command = commands.add_parser(name, help=summary, description=description, epilog=_EXIT_CODES)
+    stage_help = "the stage: .usd, .usda, .usdc, .usdz or .skinslide; never written"
+    command.add_argument("stage", metavar="STAGE", help=stage_help)
+    command.set_defaults(run=run)
+    return command
+
+
+def _add_prims(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--prim",
+        action="append",
+        metavar="PATH",
+        help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch)",
+    )
+
+
+def _add_bake(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="OUT",
+        help="layer of overs to write, to be sublayered above the cache: .usda, .usdc or .usd. "
+        "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was",
+    )
+    _add_prims(command)
+    command.add_argument(
+        "--frames",
+        metavar="SPEC",
+        help="frames to write, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
+        "(default: the authored samples of points and of animated controls)",
+    )
+    command.add_argument(
+        "--lookup",
+        default="auto",
+        choices=("auto", "egl", "exact"),
+        help="how rest vertices are looked up in a frame; the result is the same (default: auto, which is exact here)",
+    )
+    command.add_argument(
+        "--jobs",
+        type=_positive,
+        default=_processors(),
+        metavar="N",
+        help="frames slid at once; the result is the same (default: the processors, here %(default)s)",
+    )
+    limits = {"folded": "faces turned over in its embedding", "clamped": "vertices looked up outside every face"}
+    for option, what in limits.items():
+        command.add_argument(
+            f"--max-{option}",
+            type=_count,
+            metavar="N",
+            help=f"fail, and write nothing, where a patch has more than N {what} at a frame",
+        )
+    command.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+
+
+def _add_check(command: argparse.ArgumentParser) -> None:
+    _add_prims(command)
+    command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+
+
+def _add_setup(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="X.skinslide",
+        help="layer to write: .skinslide, .usda, .usdc or .usd. It sublayers STAGE by a relative path. "
+        "If it exists and sublayers STAGE it gains the patch, or has it replaced, and keeps everything else "
+        "but comments in its text; any other existing file is an error",
+    )
+    command.add_argument("--prim", required=True, metavar="PATH", help="the mesh")
+    command.add_argument("--patch", required=True, metavar="NAME", help="the patch's name, such as elbow_L")
+    faces = command.add_mutually_exclusive_group(required=True)
+    faces.add_argument("--faces", metavar="SPEC", help="faces by index, such as 0-120,140; both ends count")
+    faces.add_argument("--subset", metavar="NAME", help="the faces of the GeomSubset NAME under the mesh")
+    faces.add_argument(
+        "--primvar",
+        metavar="NAME",
+        help="the faces where the primvar NAME is above 0, by face (uniform) or on all points (vertex)",
+    )
+    command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
+
+
+def _processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _count(text: str) -> int:
+    if not (text.isascii() and text.isdigit()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 0 or more")
+    return int(text)
+
+
+def _positive(text: str) -> int:
+    if _count(text) < 1:
+        raise argparse.ArgumentTypeError("must be at least 1")
+    return int(text)

@@ -1,0 +1,173 @@
+"""What an artist paints and animates on a patch, checked, over time.
+
+Values off the patch do not count, since paint is often 0 there: they are replaced by ones that the core accepts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from skinslide import names
+from skinslide.problems import Fault
+from skinslide.slider import Controls
+from skinslide.topology import Topology
+from skinslide.values import FIRST, Reading, check_length, flattened, floats, integers, primvar_sources, unchanging
+
+
+def envelope(prim: Usd.Prim, patch: str) -> Reading[float]:
+    name = names.property_name(patch, "envelope")
+
+    def read(time: Usd.TimeCode) -> float:
+        value = names.value(prim, patch, "envelope", time)
+        if not isinstance(value, int | float):
+            raise Fault(f"{name} is {value!r}; it must be a float")
+        if not np.isfinite(value):
+            raise Fault(f"{name} is {value}")
+        return float(value)
+
+    return Reading(read, [names.attribute(prim, patch, "envelope")])
+
+
+def weight(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[np.ndarray | None]:
+    """Slide weight by mesh vertex (V,), or None where it is not painted."""
+    primvar, inside = names.primvar(prim, patch, "weight"), topology.vertices_of(faces)
+    sizes = {UsdGeom.Tokens.vertex: (topology.vertex_count, "points"), UsdGeom.Tokens.constant: None}
+
+    def read(time: Usd.TimeCode) -> np.ndarray | None:
+        values = _painted(primvar, time, sizes)
+        if values is None:
+            return None
+        if primvar.GetInterpolation() == UsdGeom.Tokens.constant:
+            _check(np.isfinite(values), values, primvar.GetName(), "a number")
+            return np.full(topology.vertex_count, values[0], np.float32)
+        _check(np.isfinite(values) | ~inside, values, primvar.GetName(), "a number")
+        return np.where(inside, values, 0)
+
+    return Reading(read, primvar_sources(primvar))
+
+
+def density(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[dict[str, np.ndarray]]:
+    """Painted force density as arguments of Controls: by vertex, by face, or none: a constant changes no ratio."""
+    primvar, chosen = names.primvar(prim, patch, "forceDensity"), np.zeros(topology.face_count, dtype=bool)
+    chosen[faces] = True
+    kinds = {
+        UsdGeom.Tokens.vertex: ("vertex_density", topology.vertices_of(faces)),
+        UsdGeom.Tokens.uniform: ("face_density", chosen),
+        UsdGeom.Tokens.constant: (None, np.ones(1, dtype=bool)),
+    }
+    sizes = {
+        UsdGeom.Tokens.vertex: (topology.vertex_count, "points"),
+        UsdGeom.Tokens.uniform: (topology.face_count, "faces"),
+        UsdGeom.Tokens.constant: None,
+    }
+
+    def read(time: Usd.TimeCode) -> dict[str, np.ndarray]:
+        values = _painted(primvar, time, sizes)
+        if values is None:
+            return {}
+        argument, inside = kinds[primvar.GetInterpolation()]
+        _check(_is_density(values) | ~inside, values, primvar.GetName(), "finite and above 0")
+        return {argument: np.where(inside, values, np.float32(1))} if argument else {}
+
+    return Reading(read, primvar_sources(primvar))
+
+
+def edge_density(prim: Usd.Prim, patch: str) -> Reading[dict[str, np.ndarray]]:
+    """Force density by edge as arguments of Controls: edges (k, 2) and their factors (k,)."""
+    name, factors_name = (names.property_name(patch, each) for each in ("edges", "edgeForceDensities"))
+    edges_attr, factors_attr = (names.attribute(prim, patch, each) for each in ("edges", "edgeForceDensities"))
+    value = unchanging(edges_attr, name) if edges_attr else None
+    edges = integers([] if value is None else value, name)
+    if len(edges) % 2:
+        raise Fault(f"{name} has {len(edges)} values; it must hold pairs of point indices")
+    edges = edges.reshape(-1, 2)
+
+    def read(time: Usd.TimeCode) -> dict[str, np.ndarray]:
+        value = factors_attr.Get(time) if factors_attr else None
+        factors = floats([] if value is None else value, factors_name)
+        if len(factors) != len(edges):
+            raise Fault(f"{factors_name} has {len(factors)} values, but {name} has {len(edges)} pairs")
+        for k in np.flatnonzero(~_is_density(factors))[:1]:
+            edge = f"edge {edges[k][0]}-{edges[k][1]}"
+            raise Fault(f"{factors_name}[{k}], for {edge}, is {factors[k]:g}; it must be finite and above 0")
+        return {"edges": edges, "edge_density": factors} if len(edges) else {}
+
+    return Reading(read, [factors_attr])
+
+
+def corners(prim: Usd.Prim, patch: str, vertex_count: int) -> np.ndarray | None:
+    """Four vertices, int32 (4,), or None."""
+    name, attr = names.property_name(patch, "corners"), names.attribute(prim, patch, "corners")
+    value = unchanging(attr, name) if attr else None
+    found = integers([] if value is None else value, name)
+    if not found.size:
+        return None
+    if len(found) != 4:
+        raise Fault(f"{name} has {len(found)} values; it must have 4")
+    for k, corner in enumerate(found):
+        if not 0 <= corner < vertex_count:
+            raise Fault(f"{name}[{k}] is {corner}, but the mesh has {vertex_count} points")
+        if corner in found[:k]:
+            raise Fault(f"{name} has point {corner} more than once")
+    return found
+
+
+class PatchControls:
+    """The controls of one patch over time."""
+
+    def __init__(self, envelope: Reading, weight: Reading, density: Reading, edge_density: Reading):
+        self._envelope, self._weight, self._density, self._edges = envelope, weight, density, edge_density
+        self._readings = (envelope, weight, density, edge_density)
+
+    @property
+    def vary(self) -> bool:
+        return any(reading.varies for reading in self._readings)
+
+    def times(self) -> list[float]:
+        return [time for reading in self._readings for time in reading.times()]
+
+    def at(self, time: Usd.TimeCode = FIRST) -> Controls:
+        """Raises Fault where a value is not valid."""
+        return Controls(
+            **self._density.at(time),
+            **self._edges.at(time),
+            weight=self._weight.at(time),
+            envelope=self._envelope.at(time),
+        )
+
+
+Sizes = dict[str, tuple[int, str] | None]
+
+
+def _painted(primvar: UsdGeom.Primvar, time: Usd.TimeCode, sizes: Sizes) -> np.ndarray | None:
+    """The values of a float primvar, one for a constant; None where there is none.
+
+    sizes  the interpolations it may have, each with how many values it then has and of what; None: one
+    """
+    if not primvar or not primvar.HasAuthoredValue():
+        return None
+    name, interpolation = primvar.GetName(), primvar.GetInterpolation()
+    if str(primvar.GetTypeName()) not in ("float", "float[]"):
+        raise Fault(f"{name} is {primvar.GetTypeName()}; it must be float[]")
+    if interpolation not in sizes:
+        raise Fault(f"{name} has interpolation {interpolation}; it must be {' or '.join(sizes)}")
+    value = flattened(primvar, time)
+    if value is None:
+        raise Fault(f"{name} has no value")
+    values = floats(np.atleast_1d(np.asarray(value)), name)
+    if sizes[interpolation]:
+        check_length(name, len(values), *sizes[interpolation])
+    elif len(values) != 1:
+        raise Fault(f"{name} has interpolation constant but {len(values)} values; is vertex missing?")
+    return values
+
+
+def _is_density(values: np.ndarray) -> np.ndarray:
+    return np.isfinite(values) & (values > 0)
+
+
+def _check(good: np.ndarray, values: np.ndarray, name: str, wanted: str) -> None:
+    bad = np.flatnonzero(~good)
+    if bad.size:
+        raise Fault(f"{name}[{bad[0]}] is {values[bad[0]]:g}; it must be {wanted}")

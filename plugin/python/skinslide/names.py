@@ -1,0 +1,83 @@
+"""The names of SkinSlideAPI on the stage, and the fallbacks and tokens that its schema declares."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from pxr import Plug, Sdf, Usd, UsdGeom
+
+from skinslide.problems import Fault
+
+SCHEMA = "SkinSlideAPI"
+NAMESPACE = "skinSlide"
+REST_POINTS = f"{NAMESPACE}:restPoints"
+# Names directly under the namespace that are not patches.
+NOT_PATCHES = ("restPoints", "live")
+
+
+def applied_schemas(prim: Usd.Prim) -> list[str]:
+    """What `apiSchemas` composes to.
+
+    Usd.Prim.GetAppliedSchemas leaves out a schema that the registry did not know at its start, which is when the first
+    stage was opened.
+    """
+    return list(prim.GetPrimTypeInfo().GetAppliedAPISchemas())
+
+
+def patch_names(prim: Usd.Prim) -> list[str]:
+    """The patches applied to a prim, in order."""
+    prefix = f"{SCHEMA}:"
+    return [name.removeprefix(prefix) for name in applied_schemas(prim) if name.startswith(prefix)]
+
+
+def unapplied_patch_names(prim: Usd.Prim) -> list[str]:
+    """The patches that have properties on a prim but are not applied to it."""
+    names = {name for prefix in (NAMESPACE, f"primvars:{NAMESPACE}") for name in _names_under(prim, prefix)}
+    return sorted(names.difference(patch_names(prim), NOT_PATCHES))
+
+
+def _names_under(prim: Usd.Prim, prefix: str) -> set[str]:
+    inside = (prop.GetName().removeprefix(f"{prefix}:") for prop in prim.GetAuthoredPropertiesInNamespace(prefix))
+    return {name.removesuffix(":indices").rpartition(":")[0] for name in inside} - {""}
+
+
+def property_name(patch: str, name: str) -> str:
+    return f"{NAMESPACE}:{patch}:{name}"
+
+
+def primvar(prim: Usd.Prim, patch: str, name: str) -> UsdGeom.Primvar:
+    """The primvar of a patch; invalid where there is none."""
+    return UsdGeom.PrimvarsAPI(prim).GetPrimvar(property_name(patch, name))
+
+
+def attribute(prim: Usd.Prim, patch: str, name: str) -> Usd.Attribute:
+    """The attribute of a patch; invalid where there is none."""
+    return prim.GetAttribute(property_name(patch, name))
+
+
+def value(prim: Usd.Prim, patch: str, name: str, time: Usd.TimeCode):
+    """The value of an attribute of a patch; where there is none, the schema's fallback, which may be None."""
+    attr = attribute(prim, patch, name)
+    found = attr.Get(time) if attr else None
+    return declared(name).default if found is None else found
+
+
+def token(prim: Usd.Prim, patch: str, name: str) -> str:
+    found, allowed = value(prim, patch, name, Usd.TimeCode.EarliestTime()), declared(name).allowedTokens
+    if found not in allowed:
+        raise Fault(f"{property_name(patch, name)} is {str(found)!r}; it must be one of {', '.join(allowed)}")
+    return found
+
+
+def declared(name: str) -> Sdf.AttributeSpec:
+    """The schema's own declaration of a property of a patch."""
+    return _schema_layer().GetAttributeAtPath(
+        f"/{SCHEMA}.{Usd.SchemaRegistry.MakeMultipleApplyNameTemplate(NAMESPACE, name)}"
+    )
+
+
+@cache
+def _schema_layer() -> Sdf.Layer:
+    """The generated schema, read as a file since the registry may have started before skinslide was imported."""
+    plugin = Plug.Registry().GetPluginWithName("skinslide")
+    return Sdf.Layer.FindOrOpen(plugin.MakeResourcePath("generatedSchema.usda"))

@@ -1,0 +1,71 @@
+"""What can be wrong with a stage, and the exceptions that say so."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing to say about a stage. `prim` is a path, or "" for the stage as a whole."""
+
+    severity: str  # "error", "warning" or "note"
+    prim: str
+    patch: str | None
+    frame: float | None
+    message: str
+
+    def __str__(self) -> str:
+        place = [self.prim] if self.prim else []
+        if self.patch is not None:
+            place.append(f"patch {self.patch}")
+        if self.frame is not None:
+            place.append(f"frame {frame_text(self.frame)}")
+        return ": ".join([self.severity, *place, self.message])
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+
+class StageProblems(Exception):
+    """The stage cannot be slid. Raised before anything is written."""
+
+    def __init__(self, problems: Sequence[Problem]):
+        super().__init__("\n".join(map(str, problems)))
+        self.problems = list(problems)
+
+
+class FrameProblem(Exception):
+    """One frame cannot be slid."""
+
+    def __init__(self, problem: Problem):
+        super().__init__(str(problem))
+        self.problem = problem
+
+
+class StageError(RuntimeError):
+    """A stage cannot be opened, or a file cannot be written."""
+
+
+class Fault(Exception):
+    """What is wrong with a value, said by code that need not know the prim, patch and frame it is read for."""
+
+
+def errors(problems: Sequence[Problem]) -> list[Problem]:
+    return [problem for problem in problems if problem.severity == "error"]
+
+
+def core_problem(prim: str, patches: Sequence[str], message: str, frame: float | None = None) -> Problem:
+    """A message of the core as an error; the patch it starts with becomes the problem's own."""
+    for patch in sorted(patches, key=len, reverse=True):
+        label = f"patch {patch}: "
+        if message.startswith(label):
+            return Problem("error", prim, patch, frame, message.removeprefix(label))
+    return Problem("error", prim, None, frame, message)
+
+
+def frame_text(frame: float) -> str:
+    """1012 for 1012.0 and 1012.25 for 1012.25, without the noise that layer offsets leave."""
+    frame = round(frame, 6)
+    return str(int(frame)) if frame == int(frame) else str(frame)

@@ -1,0 +1,45 @@
+"""Progress on stderr: a bar on a terminal, at most some twenty plain lines elsewhere, or nothing."""
+
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from tqdm import tqdm
+
+Progress = Callable[[int, int], None]  # frames done, frames in all
+
+_LINES = 20
+_SECONDS = 1.0  # between lines
+
+
+@contextmanager
+def reporter(*, quiet: bool = False) -> Iterator[Progress | None]:
+    """What a bake calls after each frame."""
+    if quiet:
+        yield None
+    elif sys.stderr.isatty():
+        with tqdm(unit="frame", dynamic_ncols=True, leave=False, file=sys.stderr) as bar:
+            yield lambda done, total: _move(bar, done, total)
+    else:
+        yield _lines()
+
+
+def _move(bar: tqdm, done: int, total: int) -> None:
+    bar.total = total
+    bar.update(done - bar.n)
+
+
+def _lines() -> Progress:
+    start = last = time.monotonic()
+
+    def report(done: int, total: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if done != total and (done % math.ceil(total / _LINES) or now - last < _SECONDS):
+            return
+        last, rate = now, done / max(now - start, 1e-9)
+        print(f"{done} of {total} frames, {rate:.1f} frames/s, {(total - done) / rate:.0f} s left", file=sys.stderr)
+
+    return report

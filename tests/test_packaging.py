@@ -1,0 +1,56 @@
+"""What an installed skinslide holds."""
+
+import importlib.metadata
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pxr import Plug, Usd
+
+import skinslide
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = Path(skinslide.__file__).parent
+
+
+def test_one_version():
+    declared = re.search(r"project\(skinslide VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    assert skinslide.__version__ == importlib.metadata.version("skinslide") == declared
+
+
+def test_public_names_exist():
+    assert [name for name in skinslide.__all__ if not hasattr(skinslide, name)] == []
+
+
+def test_the_schema_is_registered_on_import():
+    plugin = Plug.Registry().GetPluginWithName("skinslide")
+    assert Path(plugin.MakeResourcePath("generatedSchema.usda")).is_file()
+    assert Usd.SchemaRegistry().FindAppliedAPIPrimDefinition("SkinSlideAPI")
+
+
+@pytest.mark.parametrize("command", [["skinslide"], ["python", "-m", "skinslide"]])
+def test_the_command_is_installed(command):
+    program = Path(sys.executable).parent / command[0]
+    done = subprocess.run([program, *command[1:], "--version"], capture_output=True, text=True, check=True)
+    assert skinslide.__version__ in done.stdout
+
+
+def test_the_header_is_the_manual():
+    installed = PACKAGE / "include" / "skinslide" / "skinslide.h"
+    assert installed.read_text() == (ROOT / "core" / "include" / "skinslide" / "skinslide.h").read_text()
+
+
+def test_a_project_in_c_or_cpp_builds_against_the_package(tmp_path):
+    assert shutil.which("cmake")
+    configure = ["cmake", "-S", ROOT / "tests" / "consumer", "-B", tmp_path, f"-Dskinslide_DIR={skinslide.cmake_dir()}"]
+    subprocess.run(configure, capture_output=True, check=True)
+    subprocess.run(["cmake", "--build", tmp_path], capture_output=True, check=True)
+    for program in ("consumer_c", "consumer_cpp"):
+        done = subprocess.run([tmp_path / program], capture_output=True, text=True, check=True)
+        version, middle = done.stdout.split()
+        assert version == skinslide.__version__
+        # From 1.5, where it was pulled to, it goes most of the way back to 1.
+        assert 1 <= float(middle) < 1.25

@@ -1,0 +1,87 @@
+"""SkinSlideAPI: what is committed is what usdGenSchema makes, and USD knows it."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pxr import Plug, Usd, UsdGeom
+
+import stages
+from skinslide import names
+
+SCHEMA = Path(__file__).parent.parent / "schema"
+GENERATED = ("generatedSchema.usda", "plugInfo.json")
+FALLBACKS = {
+    "envelope": 1.0,
+    "boundary": "auto",
+    "holes": "pinned",
+    "forceDensityRule": "unit",
+    "interpolation": "auto",
+    "corners": None,
+    "edges": None,
+    "edgeForceDensities": None,
+}
+
+
+def test_committed_files_are_what_the_generator_makes(tmp_path):
+    for name in ("schema.usda", *GENERATED):
+        shutil.copy(SCHEMA / name, tmp_path)
+    (tmp_path / "generatedSchema.usda").unlink()
+    command = [sys.executable, "-m", "pxr.Usd.usdGenSchema", "--quiet", "schema.usda", "."]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    for name in GENERATED:
+        assert (tmp_path / name).read_text() == (SCHEMA / name).read_text(), f"run usdGenSchema in schema/: {name}"
+
+
+def test_installed_files_are_the_committed_ones():
+    installed = Path(Plug.Registry().GetPluginWithName("skinslide").resourcePath)
+    for name in GENERATED:
+        assert (installed / name).read_text() == (SCHEMA / name).read_text()
+
+
+def test_applies_to_meshes_only():
+    stage = stages.new_stage()
+    mesh = UsdGeom.Mesh.Define(stage, "/World/mesh").GetPrim()
+    for patch in ("elbow_L", "left:elbow"):
+        assert mesh.CanApplyAPI("SkinSlideAPI", patch)
+        assert mesh.ApplyAPI("SkinSlideAPI", patch)
+    assert names.patch_names(mesh) == ["elbow_L", "left:elbow"]
+    assert not stage.GetPrimAtPath("/World").CanApplyAPI("SkinSlideAPI", "elbow_L")
+
+
+@pytest.mark.parametrize("patch", ["elbow_L", "left:elbow"])
+def test_fallbacks(patch):
+    stage = stages.new_stage()
+    mesh = UsdGeom.Mesh.Define(stage, "/World/mesh").GetPrim()
+    mesh.ApplyAPI("SkinSlideAPI", patch)
+    for name, fallback in FALLBACKS.items():
+        attr = mesh.GetAttribute(f"skinSlide:{patch}:{name}")
+        assert attr.IsDefined() and attr.Get() == fallback
+        assert names.value(mesh, patch, name, Usd.TimeCode.Default()) == fallback
+
+
+def test_every_property_is_documented():
+    definition = Usd.SchemaRegistry().FindAppliedAPIPrimDefinition("SkinSlideAPI")
+    properties = definition.GetPropertyNames()
+    assert len(properties) == len(FALLBACKS)
+    for name in properties:
+        assert definition.GetPropertyDocumentation(name)
+    assert "primvars:skinSlide:NAME:patch" in definition.GetDocumentation()
+
+
+def test_a_stage_opened_before_the_import_is_read_the_same():
+    """USD's registry then never learns of the schema: names and fallbacks must not depend on it."""
+    script = """
+from pxr import Usd, UsdGeom
+stage = Usd.Stage.CreateInMemory()
+prim = UsdGeom.Mesh.Define(stage, "/mesh").GetPrim()
+prim.GetPropertyNames()
+prim.AddAppliedSchema("SkinSlideAPI:elbow_L")
+from skinslide import names
+assert names.patch_names(prim) == ["elbow_L"]
+assert names.value(prim, "elbow_L", "envelope", Usd.TimeCode.Default()) == 1
+assert names.token(prim, "elbow_L", "holes") == "pinned"
+"""
+    subprocess.run([sys.executable, "-c", script], check=True)

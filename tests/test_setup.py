@@ -1,0 +1,176 @@
+"""`setup` writes a layer that sits on a stage and carries a patch."""
+
+import numpy as np
+import pytest
+from pxr import Sdf, Usd, UsdGeom
+
+import stages
+from skinslide.cli import main
+from skinslide.frames import UsageError
+from skinslide.meshes import read_meshes
+from skinslide.problems import StageProblems
+from skinslide.setup import parse_faces, setup
+from skinslide.stage import open_stage
+from stages import FRAMES, MESH
+
+
+@pytest.fixture
+def cache(tmp_path):
+    """A published stage with a mesh, a subset and a painted primvar on it, in a folder of its own."""
+    stage = stages.new_stage()
+    stage.SetTimeCodesPerSecond(30)
+    mesh = stages.add_mesh(stage, stages.grid())
+    subset = UsdGeom.Subset.Define(stage, f"{MESH}/elbow")
+    subset.CreateElementTypeAttr("face")
+    subset.CreateIndicesAttr([7, 8, 13, 14])
+    stages.set_primvar(mesh, "mask", Sdf.ValueTypeNames.FloatArray, "vertex", [1.0] * 14 + [0.0] * 35)
+    (tmp_path / "publish").mkdir()
+    return stages.save(stage, tmp_path / "publish" / "cache.usda")
+
+
+def patches(path) -> dict[str, list[int]]:
+    (mesh,) = read_meshes(open_stage(path))[0]
+    return {patch.name: patch.faces.tolist() for patch in mesh.patches}
+
+
+@pytest.mark.parametrize("extension", ["skinslide", "usda", "usdc", "usd"])
+def test_writes_a_layer_on_the_stage(extension, cache, tmp_path):
+    output = tmp_path / f"shot.{extension}"
+    report = setup(cache, output, MESH, "elbow_L", faces="0-2,6-8")
+    assert not report.failed
+    assert patches(output) == {"elbow_L": [0, 1, 2, 6, 7, 8]}
+    stage = open_stage(output)
+    assert stage.GetRootLayer().subLayerPaths[0].endswith("/publish/cache.usda")
+    assert stage.GetTimeCodesPerSecond() == 30 and stage.GetFramesPerSecond() == 24
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (FRAMES[0], FRAMES[-1])
+    assert UsdGeom.GetStageUpAxis(stage) == "Y" and UsdGeom.GetStageMetersPerUnit(stage) == 0.01
+    assert stage.GetDefaultPrim().GetPath() == "/World"
+    assert [each.name for each in tmp_path.iterdir() if each.name.startswith(".")] == []
+
+
+def test_the_path_to_the_stage_is_relative(cache, tmp_path):
+    setup(cache, tmp_path / "shot.skinslide", MESH, "elbow_L", faces="0-2")
+    text = (tmp_path / "shot.skinslide").read_text()
+    assert text.startswith("#usda 1.0") and "@./publish/cache.usda@" in text
+    (tmp_path / "moved").mkdir()
+    (tmp_path / "shot.skinslide").rename(tmp_path / "moved" / "shot.skinslide")
+    (tmp_path / "publish").rename(tmp_path / "moved" / "publish")
+    assert patches(tmp_path / "moved" / "shot.skinslide") == {"elbow_L": [0, 1, 2]}
+
+
+def test_faces_of_a_subset(cache, tmp_path):
+    setup(cache, tmp_path / "shot.usda", MESH, "elbow_L", subset="elbow")
+    assert patches(tmp_path / "shot.usda") == {"elbow_L": [7, 8, 13, 14]}
+
+
+def test_a_subset_of_the_patch_s_name_stays_the_source(cache, tmp_path):
+    setup(cache, tmp_path / "shot.usda", MESH, "elbow", subset="elbow")
+    assert patches(tmp_path / "shot.usda") == {"elbow": [7, 8, 13, 14]}
+    assert "primvars" not in (tmp_path / "shot.usda").read_text()
+
+
+def test_faces_of_a_primvar(cache, tmp_path):
+    setup(cache, tmp_path / "shot.usda", MESH, "elbow_L", primvar="mask")
+    assert patches(tmp_path / "shot.usda") == {"elbow_L": [0, 1, 2, 3, 4, 5]}
+
+
+def test_again_adds_and_replaces(cache, tmp_path):
+    output = tmp_path / "shot.skinslide"
+    setup(cache, output, MESH, "elbow_L", faces="0-2")
+    text = output.read_text().replace('over "World"', 'over "World" (\n    kind = "assembly"\n)', 1)
+    output.write_text(text)
+    setup(cache, output, MESH, "wrist_L", faces="30-32")
+    setup(cache, output, MESH, "elbow_L", faces="1")
+    assert patches(output) == {"elbow_L": [1], "wrist_L": [30, 31, 32]}
+    assert open_stage(output).GetPrimAtPath("/World").GetMetadata("kind") == "assembly"
+
+
+def test_another_file_is_replaced_only_by_force(cache, tmp_path):
+    for output, text in ((tmp_path / "notes.usda", "#usda 1.0\n"), (tmp_path / "words.usda", "words")):
+        output.write_text(text)
+        with pytest.raises(UsageError, match="--force"):
+            setup(cache, output, MESH, "elbow_L", faces="0-2")
+        assert output.read_text() == text
+        setup(cache, output, MESH, "elbow_L", faces="0-2", force=True)
+        assert patches(output) == {"elbow_L": [0, 1, 2]}
+
+
+def test_bakes(cache, tmp_path):
+    output = tmp_path / "shot.skinslide"
+    setup(cache, output, MESH, "elbow_L", faces="0-35")
+    assert main(["bake", str(output), "-o", str(tmp_path / "slid.usda"), "--quiet"]) == 0
+    layer = Sdf.Layer.FindOrOpen(str(tmp_path / "slid.usda"))
+    assert layer.timeCodesPerSecond == 30
+    assert layer.ListTimeSamplesForPath(f"{MESH}.points") == list(FRAMES)
+
+
+FAULTS = {
+    "no such face": (dict(faces="30-36"), "there is no face 36: the mesh has 36 faces"),
+    "no such subset": (dict(subset="gone"), "there is no GeomSubset gone"),
+    "no such primvar": (dict(primvar="gone"), "there is no primvar gone"),
+    "primvar of another kind": (dict(primvar="st"), "is texCoord2f[]"),
+    "pinched": (dict(faces="0,7,1,2,8"), None),
+}
+
+
+@pytest.mark.parametrize(("choice", "message"), FAULTS.values(), ids=FAULTS.keys())
+def test_a_patch_that_could_not_be_slid_is_not_written(choice, message, cache, tmp_path):
+    stage = Usd.Stage.Open(str(cache))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath(MESH))
+    stages.set_primvar(mesh, "st", Sdf.ValueTypeNames.TexCoord2fArray, "vertex", [(0, 0)] * 49)
+    stage.GetRootLayer().Save()
+    output = tmp_path / "shot.usda"
+    if message is None:
+        choice, message = dict(faces=",".join(map(str, pinched_faces()))), "touches itself"
+    with pytest.raises(StageProblems, match=message.replace("[", r"\[")) as raised:
+        setup(cache, output, MESH, "elbow_L", **choice)
+    assert all(problem.prim == MESH and problem.patch == "elbow_L" for problem in raised.value.problems)
+    assert not output.exists()
+
+
+def pinched_faces() -> np.ndarray:
+    """Faces 1, 2, 6, 8, 12, 13, 14 of a 6 x 6 grid: the pinched block of 3 x 3 at its corner."""
+    columns, rows = stages.pinched() % 3, stages.pinched() // 3
+    return rows * 6 + columns
+
+
+@pytest.mark.parametrize("prim", ["/World/gone", "/World/char"])
+def test_prim_that_is_no_mesh(prim, cache, tmp_path):
+    with pytest.raises(StageProblems, match=prim):
+        setup(cache, tmp_path / "shot.usda", prim, "elbow_L", faces="0")
+
+
+USAGE = {
+    "input is output": dict(output="publish/cache.usda"),
+    "extension": dict(output="shot.txt"),
+    "missing folder": dict(output="gone/shot.usda"),
+    "patch name": dict(patch="elbow L"),
+    "reserved patch name": dict(patch="live"),
+    "prim path": dict(prim="World/char"),
+    "faces: words": dict(faces="all"),
+    "faces: backwards": dict(faces="9-3"),
+    "faces: empty": dict(faces=""),
+}
+
+
+@pytest.mark.parametrize("change", USAGE.values(), ids=USAGE.keys())
+def test_bad_usage(change, cache, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    before = cache.read_bytes()
+    arguments = {"output": "shot.usda", "prim": MESH, "patch": "elbow_L", "faces": "0-2", **change}
+    options = [word for name, value in arguments.items() for word in (f"--{name}", value)]
+    assert main(["setup", "publish/cache.usda", *options]) == 2
+    assert capfd.readouterr().err.startswith("error: ")
+    assert cache.read_bytes() == before
+    assert [each.name for each in tmp_path.iterdir()] == ["publish"]
+
+
+def test_a_set_up_cannot_sit_on_a_set_up(cache, tmp_path, capfd):
+    setup(cache, tmp_path / "shot.skinslide", MESH, "elbow_L", faces="0-2")
+    options = ["--prim", MESH, "--patch", "two", "--faces", "3"]
+    assert main(["setup", str(tmp_path / "shot.skinslide"), "-o", str(tmp_path / "more.skinslide"), *options]) == 2
+    assert "give the stage that it sits on" in capfd.readouterr().err
+
+
+def test_parse_faces():
+    assert parse_faces("0-120, 140,7:9") == [(0, 120), (140, 140), (7, 9)]

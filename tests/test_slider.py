@@ -1,0 +1,251 @@
+"""`skinslide.Slider` on numpy arrays: that they cross to the core and back unharmed. The rest is tested in C."""
+
+import gc
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import skinslide
+from skinslide import Controls, PatchSetup, Slider, SliderError, slider
+
+SIZE = 12  # quads a side
+VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2
+
+
+@pytest.fixture(scope="module")
+def counts():
+    return np.full(FACES, 4, np.int32)
+
+
+@pytest.fixture(scope="module")
+def indices():
+    first = (np.arange(FACES) // SIZE * (SIZE + 1) + np.arange(FACES) % SIZE).astype(np.int32)
+    return np.stack([first, first + 1, first + SIZE + 2, first + SIZE + 1], axis=1).ravel()
+
+
+@pytest.fixture(scope="module")
+def rest():
+    y, x = np.divmod(np.arange(VERTICES), SIZE + 1)
+    return np.stack([x, y, 0 * x], axis=1).astype(np.float32)
+
+
+def bumped(rest, at=4.0):
+    """The sheet with a bump at x = y = at."""
+    points = rest.copy()
+    points[:, 2] = 4 * np.exp(-0.2 * ((rest[:, :2] - at) ** 2).sum(axis=1))
+    return points
+
+
+@pytest.fixture(scope="module")
+def sheet(counts, indices, rest):
+    return Slider(counts, indices, rest, [PatchSetup("sheet", np.arange(FACES))])
+
+
+def test_rest_in_rest_out(sheet, rest):
+    frame = sheet.slide(rest)
+    assert frame.points.tobytes() == rest.tobytes()
+    assert frame.patches[0].slid_vertices == 0
+
+
+def test_the_border_keeps_its_bits_and_the_inside_slides(sheet, rest):
+    points = bumped(rest)
+    frame = sheet.slide(points)
+    moved = (frame.points != points).any(axis=1).reshape(SIZE + 1, SIZE + 1)
+    assert not moved[[0, -1]].any() and not moved[:, [0, -1]].any()
+    assert frame.patches[0].slid_vertices == moved.sum() > 0
+    assert frame.patches[0].stretch_after < frame.patches[0].stretch_before
+    assert frame.points.dtype == np.float32 and frame.embeddings is None
+
+
+def test_inputs_are_not_written_and_not_kept(sheet, rest):
+    points = bumped(rest)
+    before = points.copy()
+    first = sheet.slide(points)
+    points[:] = np.nan
+    assert np.isfinite(first.points).all()
+    assert sheet.slide(before).points.tobytes() == first.points.tobytes()
+
+
+def test_patch_arrays(sheet, rest):
+    (info,) = sheet.patches
+    assert (info.name, info.vertex_count, info.face_count, info.piece_count) == ("sheet", VERTICES, FACES, 1)
+    assert sheet.vertices(0).tolist() == list(range(VERTICES))
+    assert sheet.faces(0).tolist() == list(range(FACES))
+    embedding = sheet.embedding(0)
+    assert embedding.shape == (VERTICES, 2) and embedding.min() >= 0 and embedding.max() <= 1
+    # At rest the frame's embedding is the rest embedding.
+    assert sheet.slide(rest, embeddings=True).embeddings[0].tobytes() == embedding.tobytes()
+
+
+@pytest.mark.parametrize("patch", [-1, 1])
+def test_a_patch_that_is_not_there(sheet, patch):
+    with pytest.raises(SliderError, match=f"no patch {patch}"):
+        sheet.embedding(patch)
+
+
+def test_fields_are_those_of_the_header(sheet, rest):
+    result = sheet.slide(rest).patches[0]
+    assert {"clamped_vertices", "folded_faces", "stretch_before", "locate_seconds"} <= set(result._fields)
+    assert {"name", "hole_count", "zero_length_edges"} <= set(sheet.patches[0]._fields)
+
+
+def test_tokens_are_those_of_the_stage():
+    assert slider.tokens("boundary") == ("auto", "square", "circle")
+    assert slider.tokens("holes") == ("pinned", "free")
+    assert slider.tokens("rule") == ("unit", "fast")
+    assert slider.tokens("interpolation") == ("auto", "linear", "meanValue", "limit")
+    assert slider.tokens("lookup") == ("auto", "egl", "exact")
+
+
+def test_settings_arrive(counts, indices, rest):
+    faces, points = np.arange(FACES), bumped(rest)
+    corners = np.array([0, SIZE, VERTICES - 1, VERTICES - 1 - SIZE])
+    setups = [
+        PatchSetup("p", faces),
+        PatchSetup("p", faces, corners=corners),
+        PatchSetup("p", faces, rule="fast"),
+        PatchSetup("p", faces, interpolation="meanValue"),
+        PatchSetup("p", faces, controls=Controls(envelope=0.5)),
+        PatchSetup("p", faces, controls=Controls(weight=np.full(VERTICES, 0.25))),
+        PatchSetup("p", faces, controls=Controls(vertex_density=np.linspace(1, 9, VERTICES))),
+        PatchSetup("p", faces, controls=Controls(face_density=np.linspace(1, 9, FACES))),
+        PatchSetup("p", faces, controls=Controls(edges=np.array([[40, 41]]), edge_density=np.array([50.0]))),
+    ]
+    slid = [Slider(counts, indices, rest, [setup]).slide(points).points.tobytes() for setup in setups]
+    assert len(set(slid)) == len(slid)
+
+
+def test_controls_of_a_frame_stand_in_for_the_setups(sheet, counts, indices, rest):
+    points, half = bumped(rest), Controls(envelope=0.5)
+    alone = Slider(counts, indices, rest, [PatchSetup("sheet", np.arange(FACES), controls=half)])
+    assert sheet.slide(points, [half]).points.tobytes() == alone.slide(points).points.tobytes()
+    assert sheet.slide(points, [Controls(envelope=0)]).points.tobytes() == points.tobytes()
+
+
+@pytest.mark.parametrize("convert", [np.float64, np.asfortranarray, np.ndarray.tolist])
+def test_arrays_of_other_types_and_orders(sheet, rest, convert):
+    points = bumped(rest)
+    assert sheet.slide(convert(points)).points.tobytes() == sheet.slide(points).points.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"faces": np.arange(3).reshape(3, 1)}, r"patch elbow: faces: the shape is 3 x 1; it must be n"),
+        ({"faces": np.array([0.5])}, r"patch elbow: faces: float64 values do not fit int32"),
+        ({"faces": np.array([2**40])}, r"patch elbow: faces: int64 values do not fit int32"),
+        ({"corners": np.array([1, 2, 3])}, r"patch elbow: corners: the shape is 3; it must be 4"),
+        ({"rule": "stiff"}, r"patch elbow: rule 'stiff' is not one of unit, fast"),
+        ({"boundary": "SQUARE"}, r"patch elbow: boundary 'SQUARE' is not one of auto, square, circle"),
+        ({"controls": Controls(weight=np.ones(3))}, rf"patch elbow: weight: the shape is 3; it must be {VERTICES}"),
+        ({"controls": Controls(vertex_density=np.ones(1))}, rf"vertex density: the shape is 1; it must be {VERTICES}"),
+        ({"controls": Controls(face_density=1.0)}, rf"face density: the shape is a single value; it must be {FACES}"),
+        ({"controls": Controls(weight=np.array(["a"] * VERTICES))}, r"weight: <U1 values do not fit float32"),
+        ({"controls": Controls(edges=np.array([[0, 1]]))}, r"edges and edge density must be given together"),
+        (
+            {"controls": Controls(edges=np.array([[0, 1]]), edge_density=np.ones(2))},
+            r"edge density: the shape is 2; it must be 1",
+        ),
+    ],
+)
+def test_what_cannot_cross_is_named(counts, indices, rest, changed, message):
+    setup = PatchSetup(**{"name": "elbow", "faces": np.arange(FACES), **changed})
+    with pytest.raises(SliderError, match=message) as error:
+        Slider(counts, indices, rest, [setup])
+    assert error.value.status == "BAD_ARGUMENT"
+
+
+def test_what_the_core_says_arrives(counts, indices, rest):
+    with pytest.raises(SliderError, match="patch elbow") as error:
+        Slider(counts, indices, rest, [PatchSetup("elbow", np.array([FACES]))])
+    assert error.value.status == "BAD_PATCH"
+    with pytest.raises(SliderError) as error:
+        Slider(counts, indices, rest, [PatchSetup("elbow", np.arange(FACES), interpolation="limit")])
+    assert error.value.status == "UNSUPPORTED"
+    with pytest.raises(SliderError) as error:
+        Slider(counts, indices, rest, [], lookup="egl")
+    assert error.value.status == "UNSUPPORTED"
+
+
+@pytest.mark.parametrize("points", [np.zeros((VERTICES - 1, 3)), np.zeros(VERTICES * 3), np.zeros((VERTICES, 2))])
+def test_points_of_another_shape(sheet, points):
+    with pytest.raises(SliderError, match=rf"points: the shape is .*; it must be {VERTICES} x 3"):
+        sheet.slide(points)
+
+
+def test_bad_points_leave_the_slider_usable(sheet, rest):
+    bad = rest.copy()
+    bad[17, 1] = np.inf
+    with pytest.raises(SliderError, match="17") as error:
+        sheet.slide(bad)
+    assert error.value.status == "BAD_POINTS"
+    assert sheet.slide(rest).points.tobytes() == rest.tobytes()
+
+
+def test_controls_for_another_number_of_patches(sheet, rest):
+    with pytest.raises(SliderError, match="2 given for 1 patches"):
+        sheet.slide(rest, [Controls(), Controls()])
+
+
+def test_threads_share_a_slider(sheet, rest):
+    poses = [bumped(rest, at) for at in np.linspace(2, 10, 16)]
+    alone = [sheet.slide(pose).points.tobytes() for pose in poses]
+    barrier = threading.Barrier(4)
+
+    def slide_all(_):
+        barrier.wait()
+        return [sheet.slide(pose).points.tobytes() for pose in poses]
+
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(slide_all, range(4))) == [alone] * 4
+
+
+def test_workspaces_go_before_their_slider(counts, indices, rest):
+    for _ in range(50):
+        made = Slider(counts, indices, rest, [PatchSetup("sheet", np.arange(FACES))])
+        made.slide(bumped(rest))
+        made.cycle = made
+        del made
+    gc.collect()
+
+
+def test_normals(counts, indices, rest, sheet):
+    cached = np.tile(np.float32([0, 0, 1]), (VERTICES, 1))
+    same = slider.normals(counts, indices, rest, rest, cached, "vertex")
+    assert same.tobytes() == cached.tobytes()
+    points = bumped(rest)
+    slid = sheet.slide(points).points
+    for interpolation, count in [
+        ("vertex", VERTICES),
+        ("varying", VERTICES),
+        ("faceVarying", 4 * FACES),
+        ("uniform", FACES),
+    ]:
+        cached = np.tile(np.float32([0, 0, 1]), (count, 1))
+        right = slider.normals(counts, indices, points, slid, cached, interpolation)
+        left = slider.normals(counts, indices, points, slid, cached, interpolation, left_handed=True)
+        assert np.allclose(np.linalg.norm(right, axis=1), 1, atol=1e-6)  # float32
+        changed = (right != cached).any(axis=1)
+        assert changed.any() and (right[changed, 2] > 0).all() and (left[changed, 2] < 0).all()
+        with pytest.raises(SliderError, match=f"it must be {count} x 3"):
+            slider.normals(counts, indices, points, slid, cached[1:], interpolation)
+
+
+def test_velocities_and_accelerations():
+    # Displacements 0, 1, 4 at 0, 1, 2 seconds, along x: t squared.
+    still = np.zeros((1, 3), np.float32)
+    samples = [slider.Sample(t, still, still + np.float32([t * t, 0, 0])) for t in (0, 1, 2)]
+    cached = np.float32([[5, 6, 7]])
+    assert slider.velocities([samples[0], samples[2]], cached).tolist() == [[7, 6, 7]]
+    assert slider.accelerations(samples, cached).tolist() == [[7, 6, 7]]
+    assert cached.tolist() == [[5, 6, 7]]
+    with pytest.raises(SliderError, match="need 2 samples, not 3"):
+        slider.velocities(samples, cached)
+    with pytest.raises(SliderError):
+        slider.velocities([samples[1], samples[0]], cached)
+
+
+def test_version():
+    assert skinslide.__version__.count(".") == 2
