@@ -1,8 +1,9 @@
 """Prints what the baked examples show: one line a patch, from the reports in OUTDIR/*/bake.json.
 
 usage: table.py OUTDIR
-Stretch is the RMS over the patch's edges of log(length / rest length), in the cache and slid, at the frame where the cache
-has most of it. Times are means over the frames, on one thread, in the core. folded and clamped are the most of any frame.
+Stretch is the RMS over the patch's edges of log(length / rest length), in the cache and slid, at the frame where the
+cache has most of it. Times are means over the frames, on one thread, in the core. folded and clamped are the most of
+any frame.
 """
 
 import json
