@@ -54,7 +54,7 @@ install_skinslide() {
     [ -x "$venv/bin/skinslide" ] && [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ] && return
     say "Building and installing skinslide"
     "$python" -m pip install -q --disable-pip-version-check --no-build-isolation \
-        -Cbuild-dir="$root/build/wheel" "$root"
+        --config-settings build-dir="$root/build/wheel" "$root"
     echo "$wanted" >"$stamp"
 }
 
