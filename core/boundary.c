@@ -155,18 +155,15 @@ static void choose_corners(const ss_patch *patch, const float *rest_points, int3
     sort4(positions);
 }
 
-/* Whether this piece is the one that the corners were given for. */
-static bool has_corners(const ss_patch *patch) {
-    if (!patch->setup->corners)
-        return false;
-    for (int k = 0; k < 4; k++)
-        if (ss_patch_vertex(patch, patch->setup->corners[k]) >= 0)
-            return true;
-    return patch->piece_count == 1;
+bool ss_has_corners(const ss_patch *patch) {
+    for (int k = 0; k < 4 && patch->setup->corners && patch->piece_count > 1; k++)
+        if (ss_patch_vertex(patch, patch->setup->corners[k]) < 0)
+            return false;
+    return patch->setup->corners;
 }
 
 skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, skinslide_error *error) {
-    bool given = has_corners(patch);
+    bool given = ss_has_corners(patch);
     skinslide_boundary boundary = patch->setup->boundary;
     if (boundary == SKINSLIDE_BOUNDARY_AUTO)
         boundary = given ? SKINSLIDE_BOUNDARY_SQUARE : SKINSLIDE_BOUNDARY_CIRCLE;

@@ -29,6 +29,7 @@ struct ss_system {
 struct ss_factor {
     ss_memory memory;
     double *values, *Lx, *D, *row, *right[2];
+    double *held; /* [n] sum of densities to fixed vertices: the right side where all of those are at 1 */
     int *Li, *counts, *pattern, *flag;
 };
 
@@ -154,6 +155,7 @@ skinslide_status ss_factor_create(const ss_system *system, ss_factor **out, skin
     factor->row = SS_NEW(memory, double, n);
     factor->right[0] = SS_NEW(memory, double, n);
     factor->right[1] = SS_NEW(memory, double, n);
+    factor->held = SS_NEW(memory, double, n);
     factor->counts = SS_NEW(memory, int, n);
     factor->pattern = SS_NEW(memory, int, n);
     factor->flag = SS_NEW(memory, int, n);
@@ -181,13 +183,14 @@ static void add_end(const ss_system *system, ss_factor *factor, int32_t vertex, 
     factor->values[system->diagonal[k]] += density;
     if (system->unknown[other] >= 0)
         return;
+    factor->held[k] += density;
     factor->right[0][k] += density * uv[other][0];
     factor->right[1][k] += density * uv[other][1];
 }
 
 static void assemble(const ss_system *system, ss_factor *factor, const double *density, const double (*uv)[2]) {
     for (int32_t k = 0; k < system->n; k++)
-        factor->values[system->diagonal[k]] = factor->right[0][k] = factor->right[1][k] = 0;
+        factor->values[system->diagonal[k]] = factor->right[0][k] = factor->right[1][k] = factor->held[k] = 0;
     for (int32_t e = 0; e < system->edge_count; e++) {
         int32_t a = system->edge_vertex[e][0], b = system->edge_vertex[e][1];
         if (system->entry[e] >= 0)
@@ -204,6 +207,16 @@ static void solve(const ss_system *system, ss_factor *factor, double *x) {
     ldl_ltsolve(system->n, x, Lp, factor->Li, factor->Lx);
 }
 
+/* With every fixed vertex at 1 the solution is 1. What it is off by is what rounding took of small densities beside large ones:
+ * the same share is missing from every embedding. */
+static bool is_accurate(const ss_system *system, ss_factor *factor) {
+    bool accurate = true;
+    solve(system, factor, factor->held);
+    for (int32_t k = 0; k < system->n; k++)
+        accurate = accurate && fabs(factor->held[k] - 1) < 1e-6;
+    return accurate;
+}
+
 skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
                           skinslide_error *error) {
     if (system->n == 0)
@@ -214,7 +227,7 @@ skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const doub
     bool positive = done == system->n;
     for (int32_t k = 0; k < system->n && positive; k++)
         positive = factor->D[k] > 0 && isfinite(factor->D[k]);
-    if (!positive)
+    if (!positive || !is_accurate(system, factor))
         return ss_fail(error, SKINSLIDE_SINGULAR,
                        "%s: its force densities differ too much in size for the embedding to be solved", system->label);
     solve(system, factor, factor->right[0]);

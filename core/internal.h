@@ -113,6 +113,8 @@ int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *leng
 
 /* boundary.c: fixed_uv of the outer loop. */
 skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, skinslide_error *error);
+/* Whether the set-up's corners, where it has them, are this patch's: of several pieces, those of the one that has all four. */
+bool ss_has_corners(const ss_patch *patch);
 /* (cos, sin) of turns of a full circle, turns in [0,1): plain arithmetic only, so the same bits everywhere. */
 void ss_circle(double turns, double out[2]);
 

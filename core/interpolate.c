@@ -96,9 +96,12 @@ bool ss_mean_value_weights(const ss_faces *faces, const double (*uv)[2], const s
         sum += weights[k];
         here = next, before = after;
     }
-    for (int32_t k = 0; k < n; k++)
+    bool bounded = sum > 0;
+    for (int32_t k = 0; k < n; k++) {
         weights[k] /= sum;
-    return sum > 0 && isfinite(sum);
+        bounded = bounded && weights[k] > -1 && weights[k] < 2; /* 0..1 in a convex polygon, anything in a tangled one */
+    }
+    return bounded;
 }
 
 /* ---- Points ---- */

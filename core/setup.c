@@ -182,6 +182,18 @@ static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh
     return status;
 }
 
+/* Corners must be those of one of the set-up's pieces. */
+static skinslide_status check_corners(const skinslide_slider *slider, int32_t setup, skinslide_error *error) {
+    const int32_t *corners = slider->setups[setup].corners;
+    for (int32_t p = 0; p < slider->part_count && corners; p++)
+        if (slider->parts[p].patch->setup_index == setup && ss_has_corners(slider->parts[p].patch))
+            return SKINSLIDE_OK;
+    if (!corners)
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: corners %d, %d, %d and %d are not all on one of its pieces",
+                   slider->setups[setup].name, corners[0], corners[1], corners[2], corners[3]);
+}
+
 static skinslide_status grow_parts(skinslide_slider *slider, int32_t count, skinslide_error *error) {
     ss_part *parts = SS_NEW(&slider->memory, ss_part, (int64_t)slider->part_count + count);
     if (!parts)
@@ -204,6 +216,8 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
         status = grow_parts(slider, pieces.count, error);
     for (int32_t piece = 0; piece < pieces.count && !status; piece++)
         status = add_piece(slider, mesh, setup, &pieces, piece, error);
+    if (!status)
+        status = check_corners(slider, setup, error);
     if (!status)
         status = check_edges(slider, setup, &own->controls, error);
     ss_free(&pieces.memory);
