@@ -1,0 +1,42 @@
+/* Slides one frame of a sheet of four quads: its middle vertex, pulled aside, goes most of the way back. */
+#include <skinslide/skinslide.h>
+#include <stdio.h>
+
+static const int32_t counts[] = {4, 4, 4, 4};
+static const int32_t indices[] = {0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7};
+static const int32_t faces[] = {0, 1, 2, 3};
+static const float rest[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 0, 2, 0, 1, 2, 0, 2, 2, 0};
+
+static int fail(const skinslide_error *error) {
+    fprintf(stderr, "%s: %s\n", skinslide_status_name(error->status), error->message);
+    return 1;
+}
+
+int main(void) {
+    skinslide_mesh mesh = {9, 4, 16, counts, indices, rest};
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    skinslide_patch_setup patch = {0};
+    skinslide_slider *slider;
+    skinslide_workspace *workspace;
+    skinslide_error error;
+    float points[27], slid[27];
+    int i;
+
+    patch.name = "sheet";
+    patch.faces = faces;
+    patch.face_count = 4;
+    patch.controls = controls;
+    for (i = 0; i < 27; ++i)
+        points[i] = rest[i];
+    points[12] = 1.5f;
+    if (skinslide_slider_create(&mesh, &patch, 1, &slider, &error) != SKINSLIDE_OK)
+        return fail(&error);
+    if (skinslide_workspace_create(slider, SKINSLIDE_LOOKUP_AUTO, &workspace, &error) != SKINSLIDE_OK)
+        return fail(&error);
+    if (skinslide_slide(workspace, points, NULL, slid, NULL, &error) != SKINSLIDE_OK)
+        return fail(&error);
+    printf("%s %g\n", skinslide_version(), slid[12]);
+    skinslide_workspace_destroy(workspace);
+    skinslide_slider_destroy(slider);
+    return 0;
+}

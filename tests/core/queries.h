@@ -1,0 +1,14 @@
+/* Points to look up in an embedding, awkward ones most. */
+#ifndef SKINSLIDE_TEST_QUERIES_H
+#define SKINSLIDE_TEST_QUERIES_H
+
+#include "support.h"
+
+/* Anywhere in or a little outside the square; a vertex; on a side, exactly or almost; on a diagonal of a fan; 1e-9 or a unit in
+ * the last place from one of these. */
+void random_query(const ss_faces *faces, const double (*uv)[2], dice *d, double out[2]);
+
+/* A uv for every vertex at random: faces overlap, turn over and cross themselves. */
+double (*tangled(const ss_patch *patch, uint64_t seed))[2];
+
+#endif

@@ -1,0 +1,221 @@
+/* Meshes and poses that are degenerate but legal: nothing crashes, nothing is lost, and what was degraded is counted. */
+#include "support.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void expect_finite(const float *points, int32_t vertex_count) {
+    for (int32_t k = 0; k < 3 * vertex_count; k++)
+        assert_true(isfinite(points[k]));
+}
+
+/* Rest keeps its bits; any pose gives finite points. */
+static void check_poses(const test_mesh *mesh, skinslide_patch_setup choices) {
+    rig r = rig_of(mesh, choices);
+    float *slid = slide_with(&r, mesh, mesh->points, NULL, NULL);
+    assert_same_bytes(slid, mesh->points, POINT_BYTES(mesh));
+    free(slid);
+    for (uint64_t seed = 0; seed < 5; seed++) {
+        float *points = random_pose(mesh, seed);
+        slid = slide_with(&r, mesh, points, NULL, NULL);
+        expect_finite(slid, mesh->vertex_count);
+        free(points), free(slid);
+    }
+    free_rig(&r);
+}
+
+static skinslide_patch_info info_of(const rig *r) {
+    skinslide_patch_info info;
+    skinslide_error error;
+    assert_ok(skinslide_slider_patch_info(r->slider, 0, &info, &error), &error);
+    return info;
+}
+
+static void patches_with_nothing_free(void **state) {
+    (void)state;
+    for (int32_t sides = 3; sides < 9; sides++) {
+        test_mesh mesh = polygon(sides);
+        rig r = rig_of(&mesh, setup_of(NULL, 0));
+        float *points = shaken(&mesh, 1, 1), *slid = slide_with(&r, &mesh, points, NULL, NULL);
+        assert_same_bytes(slid, points, POINT_BYTES(&mesh));
+        assert_int_equal(info_of(&r).free_count, 0);
+        free(points), free(slid);
+        free_rig(&r);
+        free_mesh(&mesh);
+    }
+}
+
+/* Vertices that no face uses, at the ends and between. */
+static void isolated_vertices_keep_their_bits(void **state) {
+    (void)state;
+    test_mesh grid = quad_grid(4, 4), mesh = join_meshes(&grid, &grid);
+    mesh.face_count = grid.face_count, mesh.index_count = grid.index_count;
+    for (int32_t c = 0; c < mesh.index_count; c++)
+        mesh.face_indices[c] = 2 * mesh.face_indices[c] + 1;
+    for (int32_t v = 49; v >= 0; v--)
+        memcpy(mesh.points + 3 * v, grid.points + 3 * (v / 2), sizeof(float[3]));
+    check_poses(&mesh, setup_of(NULL, 0));
+    rig r = rig_of(&mesh, setup_of(NULL, 0));
+    float *points = shaken(&mesh, 1, 0.4), *slid = slide_with(&r, &mesh, points, NULL, NULL);
+    for (int32_t v = 0; v < 50; v += 2)
+        assert_same_bytes(slid + 3 * v, points + 3 * v, sizeof(float[3]));
+    assert_true(largest_difference(slid, points, 150) > 0.01);
+    free(points), free(slid);
+    free_rig(&r);
+    free_mesh(&grid), free_mesh(&mesh);
+}
+
+/* Rows of a grid pulled into one another at rest: edges of no length are counted, in rest and in the pose. */
+static void edges_of_no_length(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(6, 6);
+    for (int32_t i = 0; i < 7; i++)
+        mesh.points[3 * (21 + i) + 1] = 2; /* row 3 lies on row 2 */
+    rig r = rig_of(&mesh, setup_of(NULL, 0));
+    assert_int_equal(info_of(&r).zero_length_edges, 7);
+    skinslide_patch_result result;
+    float *slid = slide_with(&r, &mesh, mesh.points, NULL, &result);
+    assert_int_equal(result.zero_length_edges, 7);
+    free(slid);
+    free_rig(&r);
+    for (int32_t rule = 0; rule < 2; rule++)
+        check_poses(&mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+    free_mesh(&mesh);
+}
+
+/* A disk does not fold however many of its edges have no length, at rest or in the pose: densities differ by a million. */
+static void edges_of_no_length_do_not_fold(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        test_mesh mesh = seed % 2 ? triangle_grid(9, 9) : quad_grid(9, 9);
+        float *points = random_pose(&mesh, seed);
+        dice d = {seed};
+        for (int32_t i = 0; i < 40; i++) {
+            int32_t v = roll_below(&d, 99), w = v + (roll_below(&d, 2) ? 1 : 10);
+            memcpy(points + 3 * w % 300, points + 3 * v, sizeof(float[3]));
+            if (i % 2)
+                memcpy(mesh.points + 3 * w % 300, mesh.points + 3 * v, sizeof(float[3]));
+        }
+        rig r = rig_of(&mesh, setup_of(NULL, 0));
+        skinslide_patch_result result;
+        float *slid = slide_with(&r, &mesh, points, NULL, &result);
+        assert_true(result.zero_length_edges > 0);
+        assert_int_equal(info_of(&r).folded_faces, 0);
+        assert_int_equal(result.folded_faces, 0);
+        expect_finite(slid, mesh.vertex_count);
+        free(points), free(slid);
+        free_rig(&r);
+        free_mesh(&mesh);
+    }
+}
+
+/* All points of a pose in one place: every vertex slides there, that is, not at all. */
+static void a_pose_in_one_place(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++)
+        for (int32_t rule = 0; rule < 2; rule++) {
+            fixture f = make_fixture(i);
+            rig r =
+                rig_of(&f.mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+            float *points = copy_points(&f.mesh);
+            for (int32_t k = 0; k < 3 * f.mesh.vertex_count; k++)
+                points[k] = 2.7f;
+            skinslide_patch_result result;
+            float *slid = slide_with(&r, &f.mesh, points, NULL, &result);
+            assert_same_bytes(slid, points, POINT_BYTES(&f.mesh));
+            assert_int_equal(result.zero_length_edges, info_of(&r).edge_count);
+            assert_true(isfinite(result.stretch_before) && isfinite(result.stretch_after));
+            free(points), free(slid);
+            free_rig(&r);
+            free_mesh(&f.mesh);
+        }
+}
+
+/* A pose on a line, and one in a plane seen edge on, with slivers of all sizes. */
+static void flat_and_sliver_poses(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++)
+        for (int32_t squeeze = 0; squeeze < 3; squeeze++) {
+            fixture f = make_fixture(i);
+            rig r = rig_of(&f.mesh, setup_of(NULL, 0));
+            float *points = random_pose(&f.mesh, 1);
+            for (int32_t k = 0; k < 3 * f.mesh.vertex_count; k++)
+                points[k] *= k % 3 == 0 ? 1 : squeeze == 0 ? 0 : squeeze == 1 ? 1e-7f : k % 3 == 1 ? 1e-20f : 1;
+            float *slid = slide_with(&r, &f.mesh, points, NULL, NULL);
+            expect_finite(slid, f.mesh.vertex_count);
+            free(points), free(slid);
+            free_rig(&r);
+            free_mesh(&f.mesh);
+        }
+}
+
+/* A triangle with two sides on one side of the square has no area there. Of 3 x 3 quads cut in two, vertices 3 and 12 have one
+ * face each, and with these corners lie within a side. Both are reported, and frames go on. */
+static void ears_on_the_square_collapse(void **state) {
+    (void)state;
+    test_mesh mesh = triangle_grid(3, 3);
+    const int32_t corners[4] = {1, 11, 14, 4};
+    rig r = rig_of(&mesh, (skinslide_patch_setup){.corners = corners, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+    skinslide_patch_info info = info_of(&r);
+    assert_int_equal(info.folded_faces, 0);
+    assert_int_equal(info.collapsed_faces, 2);
+    check_poses(&mesh, (skinslide_patch_setup){.corners = corners, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+    check_poses(&mesh, (skinslide_patch_setup){.corners = corners,
+                                               .interpolation = SKINSLIDE_INTERPOLATION_MEAN_VALUE,
+                                               .controls = SKINSLIDE_CONTROLS_DEFAULT});
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* The largest and smallest floats there are. */
+static void sizes_at_the_ends_of_float(void **state) {
+    (void)state;
+    for (int32_t huge = 0; huge < 2; huge++) {
+        test_mesh mesh = quad_grid(8, 8);
+        float scale = huge ? 0.01f * FLT_MAX : FLT_MIN;
+        float *points = random_pose(&mesh, 2);
+        for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
+            mesh.points[k] *= scale, points[k] *= scale;
+        rig r = rig_of(&mesh, setup_of(NULL, 0));
+        skinslide_patch_result result;
+        float *slid = slide_with(&r, &mesh, points, NULL, &result);
+        expect_finite(slid, mesh.vertex_count);
+        assert_true(result.slid_vertices > 0);
+        free(points), free(slid);
+        free_rig(&r);
+        free_mesh(&mesh);
+    }
+}
+
+/* Wound the other way round, as left-handed meshes are: nothing here depends on it. The slide is that of the mirrored mesh. */
+static void either_winding_slides(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(8, 8);
+    float *points = random_pose(&mesh, 3);
+    for (int32_t c = 0; c < mesh.index_count; c += 4) {
+        int32_t swap = mesh.face_indices[c + 1];
+        mesh.face_indices[c + 1] = mesh.face_indices[c + 3], mesh.face_indices[c + 3] = swap;
+    }
+    check_poses(&mesh, setup_of(NULL, 0));
+    rig r = rig_of(&mesh, setup_of(NULL, 0));
+    skinslide_patch_result result;
+    float *slid = slide_with(&r, &mesh, points, NULL, &result);
+    assert_int_equal(result.folded_faces, 0);
+    assert_true(result.slid_vertices > 40);
+    free(points), free(slid);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(patches_with_nothing_free),   cmocka_unit_test(isolated_vertices_keep_their_bits),
+        cmocka_unit_test(edges_of_no_length),          cmocka_unit_test(edges_of_no_length_do_not_fold),
+        cmocka_unit_test(a_pose_in_one_place),         cmocka_unit_test(flat_and_sliver_poses),
+        cmocka_unit_test(ears_on_the_square_collapse), cmocka_unit_test(sizes_at_the_ends_of_float),
+        cmocka_unit_test(either_winding_slides),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

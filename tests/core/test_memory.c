@@ -1,0 +1,165 @@
+/* Each allocation fails in turn: OUT_OF_MEMORY, nothing written, nothing lost. The linker sends the core's calloc and free here
+ * (--wrap); the solver's ordering takes its functions from SuiteSparse_config. */
+#include "support.h"
+
+#include <SuiteSparse_config.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *__real_calloc(size_t count, size_t size);
+void __real_free(void *memory);
+void *__wrap_calloc(size_t count, size_t size);
+void __wrap_free(void *memory);
+
+static bool watching;
+static int32_t left_to_give; /* allocations before one fails; below 0: none does */
+static int32_t live;
+
+static bool refuse(void) {
+    return watching && left_to_give >= 0 && left_to_give-- == 0;
+}
+
+void *__wrap_calloc(size_t count, size_t size) {
+    void *memory = refuse() ? NULL : __real_calloc(count, size);
+    live += watching && memory;
+    return memory;
+}
+
+void __wrap_free(void *memory) {
+    live -= watching && memory;
+    __real_free(memory);
+}
+
+static void *solver_malloc(size_t size) {
+    return __wrap_calloc(1, size);
+}
+
+/* ---- Memory of the core itself ---- */
+
+static void counts_that_are_too_large_fail(void **state) {
+    (void)state;
+    ss_memory memory = {0};
+    assert_non_null(ss_new(&memory, 0, 8));
+    assert_false(memory.failed);
+    assert_null(ss_new(&memory, INT64_MAX, 8));
+    assert_true(memory.failed);
+    assert_null(ss_new(&memory, 1, 8)); /* once failed, always failed */
+    ss_free(&memory);
+    memory = (ss_memory){0};
+    assert_null(ss_new(&memory, -1, 8));
+    assert_true(memory.failed);
+    ss_free(&memory);
+    ss_free(&memory);
+}
+
+static void memory_is_zero_and_aligned(void **state) {
+    (void)state;
+    ss_memory memory = {0};
+    for (int32_t count = 1; count < 100; count++) {
+        char *bytes = SS_NEW(&memory, char, count);
+        assert_int_equal((uintptr_t)bytes % _Alignof(max_align_t), 0);
+        for (int32_t i = 0; i < count; i++)
+            assert_int_equal(bytes[i], 0);
+        memset(bytes, 1, (size_t)count);
+    }
+    ss_free(&memory);
+}
+
+/* ---- Every call, with every allocation failing ---- */
+
+typedef struct scene {
+    test_mesh mesh;
+    int32_t *faces;
+    skinslide_patch_setup setups[2];
+    skinslide_controls controls[2];
+    painted paint;
+    float *points, *slid, *normals;
+} scene;
+
+/* Two set-ups, of two pieces and holes, painted by the frame, with edges. */
+static void make_scene(scene *s) {
+    static const int32_t edges[2] = {0, 1};
+    static const float factors[1] = {2};
+    test_mesh sheet = quad_grid(5, 5), holed = grid_with_holes(false);
+    s->mesh = join_meshes(&sheet, &holed);
+    s->faces = all_faces(&s->mesh);
+    s->setups[0] = setup_of(s->faces, s->mesh.face_count), s->setups[1] = setup_of(s->faces, 20);
+    s->paint = paint_at_random(&s->mesh, 1);
+    s->controls[0] = s->controls[1] = s->paint.controls;
+    s->controls[0].edges = edges, s->controls[0].edge_density = factors, s->controls[0].edge_count = 1;
+    s->points = random_pose(&s->mesh, 1);
+    s->slid = malloc(POINT_BYTES(&s->mesh));
+    s->normals = calloc((size_t)s->mesh.index_count, sizeof(float[3]));
+    memcpy(s->slid, s->points, POINT_BYTES(&s->mesh));
+    free_mesh(&sheet), free_mesh(&holed);
+}
+
+static void free_scene(scene *s) {
+    free(s->faces), free(s->points), free(s->slid), free(s->normals);
+    free_painted(&s->paint);
+    free_mesh(&s->mesh);
+}
+
+static skinslide_status run_all(scene *s, skinslide_error *error) {
+    skinslide_slider *slider = NULL;
+    skinslide_workspace *workspace = NULL;
+    skinslide_mesh view = view_of(&s->mesh);
+    skinslide_status status = skinslide_slider_create(&view, s->setups, 2, &slider, error);
+    if (!status)
+        status = skinslide_workspace_create(slider, SKINSLIDE_LOOKUP_AUTO, &workspace, error);
+    if (!status)
+        status = skinslide_slide(workspace, s->points, s->controls, s->slid, NULL, error);
+    if (!status)
+        status = skinslide_normals(&view, s->points, s->slid, SKINSLIDE_NORMALS_FACE_VARYING, 0, s->normals, error);
+    skinslide_workspace_destroy(workspace);
+    skinslide_slider_destroy(slider);
+    return status;
+}
+
+static void each_allocation_fails_in_turn(void **state) {
+    (void)state;
+    scene s;
+    make_scene(&s);
+    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
+    int32_t n = 0;
+    for (; status != SKINSLIDE_OK && n < 10000; n++) {
+        skinslide_error error;
+        left_to_give = n, live = 0, watching = true;
+        status = run_all(&s, &error);
+        watching = false;
+        assert_int_equal(live, 0);
+        if (status != SKINSLIDE_OK)
+            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+    }
+    assert_in_range(n, 100, 9999);
+    assert_true(memcmp(s.slid, s.points, POINT_BYTES(&s.mesh)) != 0);
+    free_scene(&s);
+}
+
+/* A frame allocates nothing but what checks the edges that its controls name, so it cannot fail for memory otherwise. */
+static void a_frame_allocates_nothing(void **state) {
+    (void)state;
+    scene s;
+    make_scene(&s);
+    rig r = rig_of_setups(&s.mesh, s.setups, 2);
+    skinslide_error error;
+    left_to_give = 0, watching = true;
+    skinslide_status plain = skinslide_slide(r.workspace, s.points, NULL, s.slid, NULL, &error);
+    watching = false;
+    assert_ok(plain, &error);
+    free_rig(&r);
+    free_scene(&s);
+}
+
+int main(void) {
+    SuiteSparse_config.malloc_func = solver_malloc;
+    SuiteSparse_config.calloc_func = __wrap_calloc;
+    SuiteSparse_config.free_func = __wrap_free;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(counts_that_are_too_large_fail),
+        cmocka_unit_test(memory_is_zero_and_aligned),
+        cmocka_unit_test(each_allocation_fails_in_turn),
+        cmocka_unit_test(a_frame_allocates_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
