@@ -378,6 +378,17 @@ def test_report(shot, out):
     assert MESH in text and "sheet" in text and "clamped" in text
 
 
+def test_added_stretch_is_reported_with_its_worst_frame(shot, out):
+    report = bake_to_file(shot.save().path, out)
+    assert not any("adds stretch" in problem.message for problem in report.problems)
+    results = report.meshes[0].patches[0].results
+    for i, added in ((2, 0.1), (3, 0.2)):
+        results[i] = results[i]._replace(stretch_after=results[i].stretch_before + added)
+    (problem,) = [problem for problem in report.problems if "adds stretch" in problem.message]
+    assert (problem.severity, problem.patch, problem.frame) == ("warning", "sheet", 1004)
+    assert "2 of 5 frames" in problem.message
+
+
 def test_degradations_are_reported(shot, out):
     shot.primvar("weight", Sdf.ValueTypeNames.FloatArray, "vertex").Set(Vt.FloatArray(VERTICES, 2.0))
     report = bake_to_file(shot.save().path, out)

@@ -85,7 +85,7 @@ typedef enum skinslide_boundary {
 
 /* What holds the loops of holes (eyes, nostrils, mouth, the other end of a sleeve). */
 typedef enum skinslide_holes {
-    SKINSLIDE_HOLES_PINNED, /* each where it falls at rest with the holes capped: embeddings do not fold */
+    SKINSLIDE_HOLES_PINNED, /* each where it falls at rest with the holes capped: embeddings rarely fold, and it is counted */
     SKINSLIDE_HOLES_FREE    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
 } skinslide_holes;
 
@@ -204,7 +204,7 @@ typedef struct skinslide_patch_result {
     int32_t slid_vertices;     /* free vertices that moved */
     int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
-    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk or with pinned holes */
+    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
     int64_t walk_steps;        /* faces entered by walking, in all */
@@ -219,12 +219,13 @@ typedef struct skinslide_patch_result {
 
 /* Slides the skin of one frame (paper, section 3): density, embed, locate, interpolate for every patch, then the blend.
  *   points    in  [vertex_count][3] the deformed mesh
- *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force densities
- * that differ from the set-up's cost a second embedding, since rest is then embedded anew. slid      out [vertex_count][3] the
- * corrected points; may be points itself. Vertices outside patches, on outer boundaries and on pinned holes keep their bits,
- * and so does every vertex when points are the rest points. A vertex in several patches moves by the mean of their
- * displacements, weighted by weight times envelope. results   out [patch_count], or NULL Fails with BAD_POINTS (not finite:
- * names the vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY. One thread a workspace. */
+ *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force
+ *                 densities that differ from the set-up's cost a second embedding, since rest is then embedded anew.
+ *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches, on outer
+ *                 boundaries and on pinned holes keep their bits, and so does every vertex when points are the rest points.
+ *                 A vertex in several patches moves by the mean of their displacements, weighted by weight times envelope.
+ *   results   out [patch_count], or NULL
+ * Fails with BAD_POINTS (not finite: names the vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY. One thread a workspace. */
 SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
@@ -243,10 +244,13 @@ typedef enum skinslide_normals_layout {
     SKINSLIDE_NORMALS_UNIFORM       /* [face_count][3] */
 } skinslide_normals_layout;
 
-/* Recomputes the normals, area-weighted over faces, of the elements whose faces have a vertex that slid. Others keep their
- * bits. mesh         in  rest_points are not read cached       in  [vertex_count][3] points before sliding slid         in
- * [vertex_count][3] points after left_handed  in  not 0 where the mesh's orientation is leftHanded normals      in  the
- * cache's, out the corrected; unit length Fails with BAD_MESH, BAD_ARGUMENT, OUT_OF_MEMORY. */
+/* Recomputes the normals, area-weighted over faces, of the elements whose faces have a vertex that slid. Others keep their bits.
+ *   mesh         in      rest_points are not read
+ *   cached       in      [vertex_count][3] points before sliding
+ *   slid         in      [vertex_count][3] points after
+ *   left_handed  in      not 0 where the mesh's orientation is leftHanded
+ *   normals      in out  the cache's, then the corrected; unit length
+ * Fails with BAD_MESH, BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
                                                  skinslide_normals_layout layout, int32_t left_handed, float *normals,
                                                  skinslide_error *error);

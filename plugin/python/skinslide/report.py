@@ -26,6 +26,9 @@ _AT_FRAMES = {
 }
 
 
+_NO_STRETCH = 1e-4  # less is not to be seen
+
+
 @dataclass
 class PatchReport:
     """One patch over all frames."""
@@ -65,9 +68,21 @@ class PatchReport:
         at_rest = [(None, getattr(self.info, name), text) for name, text in _AT_REST.items()]
         at_frames = [self._most(name, text) for name, text in _AT_FRAMES.items()]
         warnings = [*at_rest, *at_frames]
-        return [
+        counted = [
             Problem("warning", prim, self.label, frame, f"{count} {text}") for frame, count, text in warnings if count
         ]
+        return counted + self._stretched(prim)
+
+    def _stretched(self, prim: str) -> list[Problem]:
+        """A warning where sliding adds stretch, as on a smile, or a closed tube embedded from its open end."""
+        added = self.column("stretch_after") - self.column("stretch_before")
+        if not (added > _NO_STRETCH).any():
+            return []
+        worst = added.argmax()
+        before, after = self.results[worst].stretch_before, self.results[worst].stretch_after
+        where = f" ({np.count_nonzero(added > _NO_STRETCH)} of {len(added)} frames have such; this one most)"
+        message = f"sliding adds stretch: {before:.4f} in the cache, {after:.4f} slid{where if len(added) > 1 else ''}"
+        return [Problem("warning", prim, self.label, self.frames[worst], message)]
 
     def _most(self, name: str, text: str) -> tuple[float | None, int, str]:
         counts = self.column(name)
