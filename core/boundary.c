@@ -114,27 +114,37 @@ static skinslide_status find_corners(const ss_patch *patch, int32_t positions[4]
     return SKINSLIDE_OK;
 }
 
-/* Cosine of the angle between two sides at a corner; 1 where a side has no length. */
-static double corner_cosine(const ss_patch *patch, int32_t corner, const float *points) {
+/* Cosine and sine of the angle between two sides at a corner; 1 and 0 where a side has no length. */
+static void corner_angle(const ss_patch *patch, int32_t corner, const float *points, double out[2]) {
     const ss_faces *faces = &patch->faces;
-    int32_t around[3] = {faces->corner_vertex[ss_previous_corner(faces, corner)], faces->corner_vertex[corner],
-                         faces->corner_vertex[ss_next_corner(faces, corner)]};
-    double dot = 0, before = 0, after = 0;
+    const float *here = points + 3 * (int64_t)patch->mesh_vertex[faces->corner_vertex[corner]];
+    const float *before = points + 3 * (int64_t)patch->mesh_vertex[faces->corner_vertex[ss_previous_corner(faces, corner)]];
+    const float *after = points + 3 * (int64_t)patch->mesh_vertex[faces->corner_vertex[ss_next_corner(faces, corner)]];
+    double dot = 0, cross = 0;
     for (int k = 0; k < 3; k++) {
-        double here = points[3 * (int64_t)patch->mesh_vertex[around[1]] + k];
-        double a = points[3 * (int64_t)patch->mesh_vertex[around[0]] + k] - here;
-        double b = points[3 * (int64_t)patch->mesh_vertex[around[2]] + k] - here;
-        dot += a * b, before += a * a, after += b * b;
+        int l = (k + 1) % 3;
+        double a = (double)before[k] - here[k], b = (double)after[k] - here[k];
+        double c = (double)before[l] - here[l], d = (double)after[l] - here[l];
+        dot += a * b;
+        cross += (a * d - c * b) * (a * d - c * b);
     }
-    return before > 0 && after > 0 ? dot / sqrt(before * after) : 1;
+    double length = sqrt(dot * dot + cross);
+    out[0] = length > 0 ? dot / length : 1, out[1] = length > 0 ? sqrt(cross) / length : 0;
 }
 
-/* How wide the patch is open at a boundary vertex: 1 - cosine, summed over its corners there; grows with the angle. */
+/* A number that grows with the angle at which the patch is open at a boundary vertex, however many faces share it: two for every
+ * half turn, then 1 - cosine of what is left. Angles are added as complex numbers are multiplied. */
 static double opening(const ss_patch *patch, int32_t vertex, const float *points) {
-    double sum = 0;
-    for (int32_t c = patch->vertex_corner[vertex]; c >= 0; c = patch->faces.corner_twin[ss_previous_corner(&patch->faces, c)])
-        sum += 1 - corner_cosine(patch, c, points);
-    return sum;
+    double cosine = 1, sine = 0, half_turns = 0;
+    for (int32_t c = patch->vertex_corner[vertex]; c >= 0; c = patch->faces.corner_twin[ss_previous_corner(&patch->faces, c)]) {
+        double angle[2], turned = cosine;
+        corner_angle(patch, c, points, angle);
+        cosine = cosine * angle[0] - sine * angle[1];
+        sine = turned * angle[1] + sine * angle[0];
+        if (sine < 0)
+            cosine = -cosine, sine = -sine, half_turns++;
+    }
+    return 2 * half_turns + 1 - cosine;
 }
 
 /* The sharpest vertex of the loop, then those nearest to a quarter, half and three quarters of the arc from it. */

@@ -217,6 +217,16 @@ static bool is_accurate(const ss_system *system, ss_factor *factor) {
     return accurate;
 }
 
+/* Whether densities differ so much that rounding may matter: below this, a million unknowns keep six digits. */
+static bool is_uneven(const ss_system *system, const double *density) {
+    double least = INFINITY, most = 0;
+    for (int32_t e = 0; e < system->edge_count; e++) {
+        least = density[e] < least ? density[e] : least;
+        most = density[e] > most ? density[e] : most;
+    }
+    return most > 1e4 * least;
+}
+
 skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
                           skinslide_error *error) {
     if (system->n == 0)
@@ -227,7 +237,7 @@ skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const doub
     bool positive = done == system->n;
     for (int32_t k = 0; k < system->n && positive; k++)
         positive = factor->D[k] > 0 && isfinite(factor->D[k]);
-    if (!positive || !is_accurate(system, factor))
+    if (!positive || (is_uneven(system, density) && !is_accurate(system, factor)))
         return ss_fail(error, SKINSLIDE_SINGULAR,
                        "%s: its force densities differ too much in size for the embedding to be solved", system->label);
     solve(system, factor, factor->right[0]);

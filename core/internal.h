@@ -95,6 +95,7 @@ typedef struct ss_patch {
     double (*fixed_uv)[2]; /* [vertex_count], where fixed */
     int32_t *free_vertex;  /* [free_count] in an order in which each has a neighbour before it */
     int32_t *free_before;  /* [free_count] the place in free_vertex of that neighbour, -1 for a first */
+    int32_t *loop_place;   /* [vertex_count] where loop_vertex has the vertex, on loops */
     int32_t *vertex_loop;  /* [vertex_count] the loop that the vertex is on, -1 inside */
 } ss_patch;
 

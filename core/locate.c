@@ -148,18 +148,30 @@ static void search(ss_locator *locator, const double p[2], ss_location *out, ss_
         located->clamped += ss_face_tree_nearest(locator->tree, p, out) > 0;
 }
 
-/* A vertex on a free loop slides along it: to the nearest point of its sides. */
-static void slide_on_loop(const ss_locator *locator, int32_t loop, const double p[2], ss_location *out) {
+/* Puts *out on side i of the loop's sides, counted round it, where that is nearer to p; returns whether it was. */
+static bool try_side(const ss_locator *locator, int32_t loop, int32_t i, const double p[2], double *nearest, ss_location *out) {
     const ss_patch *patch = locator->patch;
-    double best = INFINITY;
-    for (int32_t i = patch->loop_start[loop]; i < patch->loop_start[loop + 1]; i++) {
-        int32_t corner = patch->vertex_corner[patch->loop_vertex[i]];
-        double at[2], square = ss_nearest_on_side(&patch->faces, locator->uv, corner, p, at);
-        if (square < best) {
-            best = square;
-            *out = (ss_location){patch->faces.corner_face[corner], ss_fan_of_side(&patch->faces, corner), {at[0], at[1]}};
-        }
-    }
+    int32_t begin = patch->loop_start[loop], count = patch->loop_start[loop + 1] - begin;
+    int32_t corner = patch->vertex_corner[patch->loop_vertex[begin + (i % count + count) % count]];
+    double at[2], square = ss_nearest_on_side(&patch->faces, locator->uv, corner, p, at);
+    if (square >= *nearest)
+        return false;
+    *nearest = square;
+    *out = (ss_location){patch->faces.corner_face[corner], ss_fan_of_side(&patch->faces, corner), {at[0], at[1]}};
+    return true;
+}
+
+/* A vertex on a free loop slides along it, from its own sides one way or the other for as long as that is nearer to p: it never
+ * jumps across the hole. */
+static void slide_on_loop(const ss_locator *locator, int32_t vertex, const double p[2], ss_location *out) {
+    const ss_patch *patch = locator->patch;
+    int32_t loop = patch->vertex_loop[vertex], own = patch->loop_place[vertex] - patch->loop_start[loop];
+    double nearest = INFINITY;
+    try_side(locator, loop, own, p, &nearest, out);
+    int32_t way = try_side(locator, loop, own - 1, p, &nearest, out) ? -1 : 1;
+    int32_t next = way < 0 ? own - 2 : own + 1;
+    while (try_side(locator, loop, next, p, &nearest, out))
+        next += way;
 }
 
 /* ---- All queries ---- */
@@ -175,7 +187,7 @@ static void locate_one(ss_locator *locator, int32_t i, bool regular, const doubl
         return;
     }
     if (patch->vertex_loop[vertex] >= 0) {
-        slide_on_loop(locator, patch->vertex_loop[vertex], p, out);
+        slide_on_loop(locator, vertex, p, out);
         return;
     }
     int32_t face = regular ? walk(locator, start, p, &on_border, &located->steps) : -1;

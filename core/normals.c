@@ -72,8 +72,14 @@ static void write_normal(const double sum[3], float *normal) {
         normal[k] = (float)(sum[k] / length);
 }
 
+static double dot(const float *a, const float *b) {
+    return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
+}
+
+/* Within a quarter of a degree, whatever their lengths: caches round normals. */
 static bool same_normal(const float *a, const float *b) {
-    return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2] > 1 - 1e-5;
+    double product = dot(a, b);
+    return a == b || (product > 0 && product * product > (1 - 2e-5) * dot(a, a) * dot(b, b));
 }
 
 /* Sums faces around a vertex. With normals of corners, only those that share the normal of one corner. */

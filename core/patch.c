@@ -142,7 +142,7 @@ static void put_outer_first(ss_patch *patch, int32_t *scratch) {
         patch->loop_vertex[i] = scratch[i];
     for (int32_t loop = 0; loop < patch->loop_count; loop++)
         for (int32_t i = patch->loop_start[loop]; i < patch->loop_start[loop + 1]; i++)
-            patch->vertex_loop[patch->loop_vertex[i]] = loop;
+            patch->vertex_loop[patch->loop_vertex[i]] = loop, patch->loop_place[patch->loop_vertex[i]] = i;
 }
 
 /* ---- Lengths ---- */
@@ -230,6 +230,7 @@ static void allocate(ss_patch *patch) {
     patch->loop_start = SS_NEW(memory, int32_t, (int64_t)vertices + 1);
     patch->loop_vertex = SS_NEW(memory, int32_t, vertices);
     patch->vertex_loop = SS_NEW(memory, int32_t, vertices);
+    patch->loop_place = SS_NEW(memory, int32_t, vertices);
     patch->fixed = SS_NEW(memory, uint8_t, vertices);
     patch->fixed_uv = ss_new(memory, vertices, sizeof *patch->fixed_uv);
     patch->free_vertex = SS_NEW(memory, int32_t, vertices);

@@ -47,8 +47,10 @@ static int by_pair(const void *a, const void *b) {
 static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a, int32_t b) {
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
+        if (patch->setup_index != setup)
+            continue;
         int32_t v = ss_patch_vertex(patch, a), w = ss_patch_vertex(patch, b);
-        if (patch->setup_index == setup && v >= 0 && w >= 0 && ss_patch_edge(patch, v, w) >= 0)
+        if (v >= 0 && w >= 0 && ss_patch_edge(patch, v, w) >= 0)
             return true;
     }
     return false;
@@ -185,11 +187,11 @@ static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh
 /* Corners must be those of one of the set-up's pieces. */
 static skinslide_status check_corners(const skinslide_slider *slider, int32_t setup, skinslide_error *error) {
     const int32_t *corners = slider->setups[setup].corners;
-    for (int32_t p = 0; p < slider->part_count && corners; p++)
-        if (slider->parts[p].patch->setup_index == setup && ss_has_corners(slider->parts[p].patch))
-            return SKINSLIDE_OK;
     if (!corners)
         return SKINSLIDE_OK;
+    for (int32_t p = 0; p < slider->part_count; p++)
+        if (slider->parts[p].patch->setup_index == setup && ss_has_corners(slider->parts[p].patch))
+            return SKINSLIDE_OK;
     return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: corners %d, %d, %d and %d are not all on one of its pieces",
                    slider->setups[setup].name, corners[0], corners[1], corners[2], corners[3]);
 }

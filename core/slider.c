@@ -49,15 +49,6 @@ static void make_queries(const ss_patch *patch, ss_bench *bench) {
     }
 }
 
-static void measure_slide(const ss_patch *patch, const ss_bench *bench, skinslide_patch_result *result) {
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        const double *d = bench->displacement[i];
-        double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        result->slid_vertices += length > 0;
-        result->largest_slide = length > result->largest_slide ? length : result->largest_slide;
-    }
-}
-
 static skinslide_status slide_patch(const ss_part *part, ss_bench *bench, const float *points,
                                     const skinslide_controls *controls, skinslide_patch_result *result,
                                     skinslide_error *error) {
@@ -85,7 +76,6 @@ static skinslide_status slide_patch(const ss_part *part, ss_bench *bench, const 
     lap(&time, &result->locate_seconds);
 
     ss_interpolate(patch, uv, bench->locations, points, bench->corner_weights, bench->displacement);
-    measure_slide(patch, bench, result);
     lap(&time, &result->interpolate_seconds);
     return SKINSLIDE_OK;
 }
@@ -102,18 +92,40 @@ static void add_displacement(const ss_patch *patch, const ss_bench *bench, doubl
     }
 }
 
-static void blend(skinslide_workspace *workspace, const float *points, float *slid) {
+/* sum: from sums over patches to the displacement of each vertex. */
+static void blend(skinslide_workspace *workspace) {
     const skinslide_slider *slider = workspace->slider;
     memset(workspace->sum, 0, (size_t)slider->vertex_count * sizeof *workspace->sum);
     for (int32_t p = 0; p < slider->part_count; p++)
         add_displacement(slider->parts[p].patch, &workspace->benches[p], workspace->sum);
-    for (int32_t v = 0; v < slider->vertex_count; v++) {
-        const double *total = workspace->sum[v];
-        bool moves = total[3] > 0 && (total[0] != 0 || total[1] != 0 || total[2] != 0);
+    for (int32_t v = 0; v < slider->vertex_count; v++)
+        for (int k = 0; k < 3 && workspace->sum[v][3] > 0; k++)
+            workspace->sum[v][k] /= workspace->sum[v][3];
+}
+
+static bool moves(const double displacement[3]) {
+    return displacement[0] != 0 || displacement[1] != 0 || displacement[2] != 0;
+}
+
+static void write_points(const skinslide_workspace *workspace, const float *points, float *slid) {
+    for (int32_t v = 0; v < workspace->slider->vertex_count; v++) {
+        const double *displacement = workspace->sum[v];
+        bool moved = moves(displacement);
         for (int k = 0; k < 3; k++) {
             float here = points[3 * (int64_t)v + k];
-            slid[3 * (int64_t)v + k] = moves ? (float)(here + total[k] / total[3]) : here;
+            slid[3 * (int64_t)v + k] = moved ? (float)(here + displacement[k]) : here;
         }
+    }
+}
+
+/* ---- Measures of the result ---- */
+
+static void measure_slide(const ss_patch *patch, const double (*displacement)[4], skinslide_patch_result *result) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        const double *d = displacement[patch->mesh_vertex[patch->free_vertex[i]]];
+        double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        result->slid_vertices += moves(d);
+        result->largest_slide = length > result->largest_slide ? length : result->largest_slide;
     }
 }
 
@@ -148,9 +160,11 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
             return status;
         workspace->results[p].stretch_before = stretch(part->patch, workspace->benches[p].lengths);
     }
-    blend(workspace, points, slid);
+    blend(workspace);
+    write_points(workspace, points, slid);
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
+        measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
         ss_edge_lengths(patch, slid, workspace->benches[p].lengths);
         workspace->results[p].stretch_after = stretch(patch, workspace->benches[p].lengths);
         if (results)

@@ -87,6 +87,33 @@ static void corners_of_a_square_are_found(void **state) {
     free_mesh(&mesh);
 }
 
+/* A square of side 2, all of whose triangles meet at the middle of its lower side, vertex 0. The others follow from the lower
+ * right corner, 1, by quarters: 9 is the upper right, 17 the upper left, 25 the lower left corner. */
+static test_mesh fanned_square(void) {
+    float points[3 * 26] = {1, 0, 0};
+    int32_t counts[24], indices[3 * 24];
+    for (int i = 0; i < 25; i++) {
+        float along = 0.25f * (float)(i % 8), *p = points + 3 * (i + 1);
+        p[0] = i < 8 ? 2 : i < 16 ? 2 - along : 0;
+        p[1] = i < 8 ? along : i < 16 ? 2 : i < 24 ? 2 - along : 0;
+    }
+    for (int f = 0; f < 24; f++)
+        counts[f] = 3, indices[3 * f] = 0, indices[3 * f + 1] = f + 1, indices[3 * f + 2] = f + 2;
+    return copy_mesh(26, 24, counts, indices, points);
+}
+
+/* Half a turn is not sharp because many thin faces share it. */
+static void sharpness_is_of_the_whole_angle(void **state) {
+    (void)state;
+    test_mesh mesh = fanned_square();
+    ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
+    for (int corner = 1; corner < 26; corner += 8)
+        for (int axis = 0; axis < 2; axis++)
+            assert_true(patch->fixed_uv[corner][axis] == 0 || patch->fixed_uv[corner][axis] == 1);
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
+}
+
 /* A hexagon on a line, with sides 1 1 1 1.6 2.4 1, is sharpest at vertex 3, which comes before 5. From there vertices 4 5 0 1 2
  * are at 1.6, 4, 5, 6 and 7 of 8: nearest to the quarters are 4, 5 and 1. The first of these along the loop, 1, goes to (0,0).
  */
@@ -162,10 +189,11 @@ static void bad_corners_are_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_circle_is_cos_and_sin),      cmocka_unit_test(places_on_the_circle_are_shares_of_the_arc),
-        cmocka_unit_test(corners_go_to_the_square),       cmocka_unit_test(a_circle_ignores_corners),
-        cmocka_unit_test(corners_of_a_square_are_found),  cmocka_unit_test(corners_are_the_nearest_to_the_quarters),
-        cmocka_unit_test(four_corners_are_always_chosen), cmocka_unit_test(bad_corners_are_named),
+        cmocka_unit_test(the_circle_is_cos_and_sin),       cmocka_unit_test(places_on_the_circle_are_shares_of_the_arc),
+        cmocka_unit_test(corners_go_to_the_square),        cmocka_unit_test(a_circle_ignores_corners),
+        cmocka_unit_test(corners_of_a_square_are_found),   cmocka_unit_test(corners_are_the_nearest_to_the_quarters),
+        cmocka_unit_test(four_corners_are_always_chosen),  cmocka_unit_test(bad_corners_are_named),
+        cmocka_unit_test(sharpness_is_of_the_whole_angle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,6 +101,22 @@ static void corners_share_what_they_shared(void **state) {
     free_mesh(&mesh);
 }
 
+/* Caches round normals, to half floats for one: their lengths are not 1, and corners share them all the same. */
+static void lengths_of_cached_normals_do_not_matter(void **state) {
+    (void)state;
+    test_mesh mesh = two_triangles();
+    const float lengths[2] = {0.7f, 1.3f};
+    for (int i = 0; i < 2; i++) {
+        float *unit = constant_normals(6, 0, 0, 1), *other = constant_normals(6, 0, 0, lengths[i]);
+        other[1] += 1e-3f;
+        recompute(&mesh, sunk_points, SKINSLIDE_NORMALS_FACE_VARYING, 0, unit);
+        recompute(&mesh, sunk_points, SKINSLIDE_NORMALS_FACE_VARYING, 0, other);
+        assert_same_bytes(unit, other, 5 * sizeof(float[3])); /* around the sixth nothing moved */
+        free(unit), free(other);
+    }
+    free_mesh(&mesh);
+}
+
 /* Against a plain sum over all faces for each vertex. */
 static void vertex_normals_are_area_weighted(void **state) {
     (void)state;
@@ -165,9 +181,13 @@ static void bad_normals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_slid_keeps_normals),     cmocka_unit_test(normals_by_hand),
-        cmocka_unit_test(corners_share_what_they_shared), cmocka_unit_test(vertex_normals_are_area_weighted),
-        cmocka_unit_test(no_area_keeps_the_normal),       cmocka_unit_test(bad_normals),
+        cmocka_unit_test(nothing_slid_keeps_normals),
+        cmocka_unit_test(normals_by_hand),
+        cmocka_unit_test(corners_share_what_they_shared),
+        cmocka_unit_test(vertex_normals_are_area_weighted),
+        cmocka_unit_test(no_area_keeps_the_normal),
+        cmocka_unit_test(bad_normals),
+        cmocka_unit_test(lengths_of_cached_normals_do_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

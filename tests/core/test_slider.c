@@ -395,6 +395,17 @@ static double weight_at(const skinslide_slider *slider, int32_t part, const floa
     return own < 0 || patch->fixed[own] ? 0 : weight[vertex];
 }
 
+/* The largest distance between two places of a vertex that may slide. */
+static double largest_move(const ss_patch *patch, const float *a, const float *b) {
+    double largest = 0;
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        int32_t k = 3 * patch->mesh_vertex[patch->free_vertex[i]];
+        double x = (double)a[k] - b[k], y = (double)a[k + 1] - b[k + 1], z = (double)a[k + 2] - b[k + 2];
+        largest = fmax(largest, sqrt(x * x + y * y + z * z));
+    }
+    return largest;
+}
+
 /* Left and right patches of a grid that share its middle, each with its own weights:
  *     slid = point + (w1 d1 + w2 d2) / (w1 + w2),
  * the displacements d taken from each patch alone, where they were rounded to float: 2^-23 of coordinates under 16. */
@@ -408,7 +419,10 @@ static void overlaps_are_weighted_means(void **state) {
     float *points = random_pose(&mesh, 3);
     float *one = slide_setup(&mesh, points, &setups[0]), *two = slide_setup(&mesh, points, &setups[1]);
     rig r = rig_of_setups(&mesh, setups, 2);
-    float *both = slide_with(&r, &mesh, points, NULL, NULL);
+    skinslide_patch_result results[2];
+    float *both = slide_with(&r, &mesh, points, NULL, results);
+    for (int p = 0; p < 2; p++)
+        assert_near(results[p].largest_slide, largest_move(r.slider->parts[p].patch, both, points), 16 * FLOAT_EPSILON);
     int32_t shared = 0;
     for (int32_t k = 0; k < 3 * mesh.vertex_count; k++) {
         double w1 = weight_at(r.slider, 0, first.weight, k / 3), w2 = weight_at(r.slider, 1, second.weight, k / 3);

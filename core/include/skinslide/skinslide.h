@@ -119,7 +119,8 @@ typedef struct skinslide_controls {
     { 0, 0, 0, 0, 0, 0, 1.0f }
 
 /* One patch as an artist sets it up. Faces that fall into several pieces, connected through edges, become several patches with
- * the same settings; corners then count for the piece that has them. Zero-initialise, then set controls to the default. */
+ * the same settings; corners then count for the piece that has them. Start from SKINSLIDE_PATCH_SETUP_DEFAULT: an envelope of 0,
+ * as zero-initialised memory has it, slides nothing. */
 typedef struct skinslide_patch_setup {
     const char *name;       /* used in messages; copied */
     const int32_t *faces;   /* [face_count] mesh faces, each once */
@@ -132,6 +133,12 @@ typedef struct skinslide_patch_setup {
     skinslide_controls controls; /* used by frames that bring none of their own */
 } skinslide_patch_setup;
 
+#define SKINSLIDE_PATCH_SETUP_DEFAULT                                                                                          \
+    {                                                                                                                          \
+        0, 0, 0, 0, SKINSLIDE_BOUNDARY_AUTO, SKINSLIDE_HOLES_PINNED, SKINSLIDE_RULE_UNIT, SKINSLIDE_INTERPOLATION_AUTO,        \
+            SKINSLIDE_CONTROLS_DEFAULT                                                                                         \
+    }
+
 /* ---- The slider ---------------------------------------------------------------------------------------------------------- */
 
 typedef struct skinslide_slider skinslide_slider;
@@ -139,10 +146,11 @@ typedef struct skinslide_slider skinslide_slider;
 /* Builds every patch of a mesh: connectivity, boundary and holes in the plane, the symbolic factor, the rest embedding.
  *   mesh, setups  in, read during the call only; setups is [setup_count], setup_count >= 0
  *   out           out, the caller's to destroy
- * Fails with BAD_MESH (an index out of range, counts that do not add up, points not finite, and in patches faces of fewer than
- * three or of repeated vertices), BAD_PATCH (no faces, a face twice or out of range, no boundary, an edge with three faces,
+ * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of repeated
+ * vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an edge with three faces,
  * faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not > 0, a weight not
- * finite, edges not of the patch, corners not on the outer loop), SINGULAR, UNSUPPORTED, OUT_OF_MEMORY. */
+ * finite, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED,
+ * OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                        int32_t setup_count, skinslide_slider **out, skinslide_error *error);
 
@@ -208,7 +216,7 @@ typedef struct skinslide_patch_result {
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
     int64_t walk_steps;        /* faces entered by walking, in all */
-    double largest_slide;      /* distance between a vertex's place and its place in the cache; object units */
+    double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
     double stretch_after;      /* and in the result, overlapping patches included */
     double density_seconds;
@@ -221,11 +229,13 @@ typedef struct skinslide_patch_result {
  *   points    in  [vertex_count][3] the deformed mesh
  *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force
  *                 densities that differ from the set-up's cost a second embedding, since rest is then embedded anew.
- *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches, on outer
- *                 boundaries and on pinned holes keep their bits, and so does every vertex when points are the rest points.
- *                 A vertex in several patches moves by the mean of their displacements, weighted by weight times envelope.
+ *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches keep their bits,
+ *                 so do those on the outer boundary or a pinned hole of every patch they are in, and so does every vertex
+ *                 when points are the rest points. A vertex that may slide in several patches moves by the mean of their
+ *                 displacements, weighted by weight times envelope.
  *   results   out [patch_count], or NULL
- * Fails with BAD_POINTS (not finite: names the vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY. One thread a workspace. */
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite: names the vertex), BAD_CONTROL, SINGULAR,
+ * OUT_OF_MEMORY. One thread a workspace. */
 SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
@@ -249,7 +259,7 @@ typedef enum skinslide_normals_layout {
  *   cached       in      [vertex_count][3] points before sliding
  *   slid         in      [vertex_count][3] points after
  *   left_handed  in      not 0 where the mesh's orientation is leftHanded
- *   normals      in out  the cache's, then the corrected; unit length
+ *   normals      in out  the cache's, then the corrected, of unit length; where faces have no area they stay
  * Fails with BAD_MESH, BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
                                                  skinslide_normals_layout layout, int32_t left_handed, float *normals,
