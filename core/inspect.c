@@ -77,3 +77,21 @@ skinslide_status skinslide_workspace_embedding(const skinslide_workspace *worksp
     memcpy(uv, workspace->benches[patch].uv, (size_t)part->patch->vertex_count * sizeof *part->rest_uv);
     return SKINSLIDE_OK;
 }
+
+skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side, uint32_t *texels,
+                                               skinslide_error *error) {
+    const ss_part *part = find_part(workspace ? workspace->slider : NULL, patch, side, error);
+    if (!part)
+        return SKINSLIDE_BAD_ARGUMENT;
+    if (!workspace->idbuffer)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace's lookup is exact: it draws no ID buffer");
+    if (!workspace->has_frame)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
+    const double(*uv)[2] = (const double(*)[2])workspace->benches[patch].uv;
+    skinslide_status status = SKINSLIDE_OK;
+    if (texels)
+        status = ss_idbuffer_read(workspace->idbuffer, patch, uv, texels, error);
+    if (!status)
+        *side = ss_idbuffer_side(workspace->idbuffer, patch);
+    return status;
+}

@@ -181,6 +181,11 @@ ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]);
 
 /* ---- locate.c, facetree.c ---- */
 
+enum { SS_CANDIDATES = 9 };
+
+/* Faces of the texels around a query: that of its own texel or -1, then the other distinct ones, then -1. */
+typedef int32_t ss_candidates[SS_CANDIDATES];
+
 #define SS_STAYS (-1)
 
 typedef struct ss_location {
@@ -202,17 +207,61 @@ double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_loca
 double ss_nearest_on_side(const ss_faces *faces, const double (*uv)[2], int32_t corner, const double p[2], double out[2]);
 
 typedef struct ss_located {
-    int32_t clamped;  /* in no face: put on the nearest */
+    int32_t centre, around; /* in the first candidate, in another */
+    int32_t walked;
     int32_t searched; /* by the tree */
+    int32_t clamped;  /* in no face: put on the nearest */
     int64_t steps;    /* of walks */
 } ss_located;
 
 typedef struct ss_locator ss_locator;
 skinslide_status ss_locator_create(const ss_patch *patch, ss_locator **out, skinslide_error *error);
 void ss_locator_destroy(ss_locator *locator);
-/* Looks up query [free_count][2], in the order of free_vertex, in the faces of uv. */
+/* Looks up query [free_count][2], in the order of free_vertex, in the faces of uv. candidates [free_count], or NULL, are only
+ * a help: any faces at all give the same locations. They are not looked at where the layout is not regular. */
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
-                     ss_location *locations);
+                     const ss_candidates *candidates, ss_location *locations);
+
+/* ---- egl.c: the only file that knows EGL ---- */
+
+/* Fills the table of EGL's and OpenGL ES's functions (egl.h); where it cannot, says why. Tests give tables that fail. */
+struct ss_egl_api;
+typedef bool (*ss_egl_loader)(struct ss_egl_api *api, char *why, size_t size);
+bool ss_egl_load(struct ss_egl_api *api, char *why, size_t size);
+
+typedef struct ss_device_request {
+    ss_egl_loader load;
+    int32_t device;     /* of EGL's devices, or SKINSLIDE_ANY_DEVICE */
+    bool hardware_only; /* a software rasteriser will not do */
+} ss_device_request;
+
+/* ---- idbuffer.c: the faces of embeddings drawn as numbers ---- */
+
+/* What is drawn of one patch. */
+typedef struct ss_id_patch {
+    const ss_faces *faces;
+    int32_t query_count;
+    int32_t side; /* texels; at least 1 */
+} ss_id_patch;
+
+typedef struct ss_idbuffer ss_idbuffer;
+/* patches are copied, their faces are kept. resolution 0: patches[].side, or the device's limit where that is less.
+ * Fails with NO_DEVICE, DEVICE_FAILED, OUT_OF_MEMORY, BAD_ARGUMENT (resolution above the device's limit). */
+skinslide_status ss_idbuffer_create(const ss_device_request *request, const ss_id_patch *patches, int32_t patch_count,
+                                    int32_t resolution, ss_idbuffer **out, skinslide_error *error);
+void ss_idbuffer_destroy(ss_idbuffer *buffer);
+const skinslide_lookup_info *ss_idbuffer_info(const ss_idbuffer *buffer);
+int32_t ss_idbuffer_side(const ss_idbuffer *buffer, int32_t patch);
+/* Starts drawing the faces of uv and gathering the candidates of the queries [query_count][2], and does not wait. A failure
+ * shows in the next call. */
+void ss_idbuffer_draw(ss_idbuffer *buffer, int32_t patch, const double (*uv)[2], const double (*queries)[2]);
+/* The candidates of what was drawn last of the patch: [query_count]. False where the device failed. */
+bool ss_idbuffer_candidates(ss_idbuffer *buffer, int32_t patch, ss_candidates *candidates);
+/* Draws uv and reads the texels: [side][side], 1 + patch face, 0 where there is none. */
+skinslide_status ss_idbuffer_read(ss_idbuffer *buffer, int32_t patch, const double (*uv)[2], uint32_t *texels,
+                                  skinslide_error *error);
+/* The resolution that suits a patch: see skinslide_workspace_options. */
+int32_t ss_id_side(const ss_patch *patch, const double (*rest_uv)[2]);
 
 /* ---- interpolate.c ---- */
 

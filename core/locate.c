@@ -2,8 +2,9 @@
  *
  * Which face: the lowest that holds the point, its border included, among faces with area. All tests are exact, so the answer
  * depends on the embedding alone and not on how it was found. A vertex whose point is its own place stays, whatever else is
- * there. A walk over neighbours starts where the neighbour before it landed; about three steps a query. Where faces may
- * overlap, where a walk goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is
+ * there. Where candidates are proposed, from a texture, the first that holds the point begins; else a walk over neighbours,
+ * which starts where the neighbour before it landed and takes about three steps a query. Where faces may overlap, where a walk
+ * goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is
  * counted. */
 #include "internal.h"
 
@@ -90,35 +91,43 @@ static int32_t walk(const ss_locator *locator, int32_t face, const double p[2], 
 
 /* ---- The tie rule ---- */
 
-static bool touches(const ss_locator *locator, int32_t face, const double p[2]) {
+static bool touches(const ss_locator *locator, int32_t face, const double p[2], bool *on_border) {
     const ss_faces *faces = &locator->patch->faces;
     bool left = false, right = false, below = false, above = false;
+    *on_border = false;
     for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++) {
         const double *q = corner_uv(locator, c);
         left |= q[0] <= p[0], right |= q[0] >= p[0], below |= q[1] <= p[1], above |= q[1] >= p[1];
-        if (side_of(locator, c, p) < 0)
+        int side = side_of(locator, c, p);
+        if (side < 0)
             return false;
+        *on_border |= side == 0;
     }
     return left && right && below && above; /* a face of no area has its whole line inside */
 }
 
-/* p is on the border of a face: gathers all faces that p is on the border of, over the sides p is on. Returns their count. */
+/* p is on the border of a face: gathers all faces that p is on the border of, over the sides p is on. Returns their count; -1
+ * where p is on the boundary, since beyond a hole without area there may be more. */
 static int32_t gather_touching(ss_locator *locator, int32_t face, const double p[2]) {
     const ss_faces *faces = &locator->patch->faces;
     int32_t count = 0;
+    bool bounded = false, on_border;
     locator->stack[count++] = face;
     locator->seen[face] = 1;
     for (int32_t i = 0; i < count; i++)
         for (int32_t c = faces->face_start[locator->stack[i]]; c < faces->face_start[locator->stack[i] + 1]; c++) {
+            if (side_of(locator, c, p) != 0)
+                continue;
             int32_t other = faces->corner_twin[c] < 0 ? -1 : faces->corner_face[faces->corner_twin[c]];
-            if (other < 0 || locator->seen[other] || side_of(locator, c, p) != 0 || !touches(locator, other, p))
+            bounded |= other < 0;
+            if (other < 0 || locator->seen[other] || !touches(locator, other, p, &on_border))
                 continue;
             locator->seen[other] = 1;
             locator->stack[count++] = other;
         }
     for (int32_t i = 0; i < count; i++)
         locator->seen[locator->stack[i]] = 0;
-    return count;
+    return bounded ? -1 : count;
 }
 
 /* The lowest face with area that holds p, given one that does. */
@@ -135,6 +144,21 @@ static bool settle(ss_locator *locator, int32_t face, const double p[2], bool on
             *out = (ss_location){candidate, triangle, {p[0], p[1]}};
     }
     return out->face != INT32_MAX;
+}
+
+/* ---- What a texture proposed ---- */
+
+/* The place in the candidates of the first that holds p, with its answer; -1 where none does. Faces are convex. */
+static int32_t try_candidates(ss_locator *locator, const ss_candidates *candidates, const double p[2], ss_location *out) {
+    for (int32_t k = 0; candidates && k < SS_CANDIDATES; k++) {
+        bool on_border;
+        int32_t face = (*candidates)[k];
+        if (face < 0 && k > 0)
+            break;
+        if (face >= 0 && touches(locator, face, p, &on_border) && settle(locator, face, p, on_border, out))
+            return k;
+    }
+    return -1;
 }
 
 /* ---- What the walk cannot reach ---- */
@@ -176,7 +200,8 @@ static void slide_on_loop(const ss_locator *locator, int32_t vertex, const doubl
 
 /* ---- All queries ---- */
 
-static void locate_one(ss_locator *locator, int32_t i, bool regular, const double p[2], ss_location *out, ss_located *located) {
+static void locate_one(ss_locator *locator, int32_t i, bool regular, const double p[2], const ss_candidates *candidates,
+                       ss_location *out, ss_located *located) {
     const ss_patch *patch = locator->patch;
     int32_t vertex = patch->free_vertex[i], own_face = patch->faces.corner_face[patch->vertex_corner[vertex]];
     int32_t before = patch->free_before[i], start = before < 0 ? own_face : locator->landed[before];
@@ -190,18 +215,23 @@ static void locate_one(ss_locator *locator, int32_t i, bool regular, const doubl
         slide_on_loop(locator, vertex, p, out);
         return;
     }
-    int32_t face = regular ? walk(locator, start, p, &on_border, &located->steps) : -1;
-    if (face < 0 || !settle(locator, face, p, on_border, out))
+    int32_t candidate = regular ? try_candidates(locator, candidates, p, out) : -1;
+    int32_t face = regular && candidate < 0 ? walk(locator, start, p, &on_border, &located->steps) : -1;
+    bool walked = face >= 0 && settle(locator, face, p, on_border, out);
+    located->centre += candidate == 0;
+    located->around += candidate > 0;
+    located->walked += walked;
+    if (candidate < 0 && !walked)
         search(locator, p, out, located);
     locator->landed[i] = out->face;
 }
 
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
-                     ss_location *locations) {
+                     const ss_candidates *candidates, ss_location *locations) {
     ss_located located = {0};
     locator->uv = uv;
     locator->tree_built = false;
     for (int32_t i = 0; i < locator->patch->free_count; i++)
-        locate_one(locator, i, regular, query[i], &locations[i], &located);
+        locate_one(locator, i, regular, query[i], candidates ? &candidates[i] : NULL, &locations[i], &located);
     return located;
 }

@@ -306,21 +306,10 @@ static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_be
     return status ? status : ss_locator_create(patch, &bench->locator, error);
 }
 
-static skinslide_status check_lookup(skinslide_lookup lookup, skinslide_error *error) {
-    if ((unsigned)lookup > SKINSLIDE_LOOKUP_EXACT)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such lookup: %d", (int)lookup);
-    if (lookup == SKINSLIDE_LOOKUP_EGL)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "lookup egl is not supported in this version");
-    return SKINSLIDE_OK;
-}
-
-skinslide_status skinslide_workspace_create(const skinslide_slider *slider, skinslide_lookup lookup, skinslide_workspace **out,
-                                            skinslide_error *error) {
+skinslide_status ss_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,
+                                     ss_egl_loader load, skinslide_workspace **out, skinslide_error *error) {
     if (!slider || !out)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, or no place for the workspace");
-    skinslide_status status = check_lookup(lookup, error);
-    if (status)
-        return status;
     skinslide_workspace *workspace = calloc(1, sizeof *workspace);
     if (!workspace)
         return ss_out_of_memory(error);
@@ -328,9 +317,11 @@ skinslide_status skinslide_workspace_create(const skinslide_slider *slider, skin
     workspace->benches = SS_NEW(&workspace->memory, ss_bench, slider->part_count);
     workspace->results = SS_NEW(&workspace->memory, skinslide_patch_result, slider->part_count);
     workspace->sum = ss_new(&workspace->memory, slider->vertex_count, sizeof *workspace->sum);
-    status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    skinslide_status status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t p = 0; p < slider->part_count && !status; p++)
         status = make_bench(&workspace->memory, &slider->parts[p], &workspace->benches[p], error);
+    if (!status)
+        status = ss_workspace_open_lookup(workspace, options, load, error);
     if (status)
         skinslide_workspace_destroy(workspace);
     else
@@ -338,9 +329,15 @@ skinslide_status skinslide_workspace_create(const skinslide_slider *slider, skin
     return status;
 }
 
+skinslide_status skinslide_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,
+                                            skinslide_workspace **out, skinslide_error *error) {
+    return ss_workspace_create(slider, options, ss_egl_load, out, error);
+}
+
 void skinslide_workspace_destroy(skinslide_workspace *workspace) {
     if (!workspace)
         return;
+    ss_idbuffer_destroy(workspace->idbuffer);
     for (int32_t p = 0; workspace->benches && p < workspace->slider->part_count; p++) {
         ss_factor_destroy(workspace->benches[p].factor);
         ss_locator_destroy(workspace->benches[p].locator);

@@ -49,11 +49,13 @@ static void make_queries(const ss_patch *patch, ss_bench *bench) {
     }
 }
 
-static skinslide_status slide_patch(const ss_part *part, ss_bench *bench, const float *points,
-                                    const skinslide_controls *controls, skinslide_patch_result *result,
-                                    skinslide_error *error) {
+/* The frame's embedding; its texture is being drawn while what follows goes on. */
+static skinslide_status embed_patch(skinslide_workspace *workspace, int32_t p, const float *points,
+                                    const skinslide_controls *controls, skinslide_error *error) {
+    const ss_part *part = &workspace->slider->parts[p];
     const ss_patch *patch = part->patch;
-    const double(*uv)[2] = (const double(*)[2])bench->uv;
+    ss_bench *bench = &workspace->benches[p];
+    skinslide_patch_result *result = &workspace->results[p];
     double time = now();
     skinslide_status status = apply_controls(part, bench, controls, result, error);
     if (status)
@@ -66,18 +68,38 @@ static skinslide_status slide_patch(const ss_part *part, ss_bench *bench, const 
         return status;
     lap(&time, &result->embed_seconds);
 
-    ss_layout layout = ss_lay_out(patch, uv);
-    make_queries(patch, bench);
-    ss_located located = ss_locate(bench->locator, uv, layout.regular, (const double(*)[2])bench->queries, bench->locations);
+    ss_layout layout = ss_lay_out(patch, (const double(*)[2])bench->uv);
     result->folded_faces = layout.folded;
-    result->clamped_vertices = located.clamped;
+    bench->regular = layout.regular;
+    make_queries(patch, bench);
+    if (workspace->idbuffer && layout.regular)
+        ss_idbuffer_draw(workspace->idbuffer, p, (const double(*)[2])bench->uv, (const double(*)[2])bench->queries);
+    lap(&time, &result->locate_seconds);
+    return SKINSLIDE_OK;
+}
+
+/* Where each vertex is in it, and so on the deformed mesh. */
+static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
+    const ss_patch *patch = workspace->slider->parts[p].patch;
+    ss_bench *bench = &workspace->benches[p];
+    skinslide_patch_result *result = &workspace->results[p];
+    const double(*uv)[2] = (const double(*)[2])bench->uv;
+    double time = now();
+    bool asked = workspace->idbuffer && bench->regular && patch->free_count > 0;
+    bool proposed = asked && ss_idbuffer_candidates(workspace->idbuffer, p, bench->candidates);
+    ss_located located = ss_locate(bench->locator, uv, bench->regular, (const double(*)[2])bench->queries,
+                                   proposed ? (const ss_candidates *)bench->candidates : NULL, bench->locations);
+    result->lost_textures = asked && !proposed;
+    result->found_in_centre = located.centre;
+    result->found_in_3x3 = located.around;
+    result->walked_vertices = located.walked;
     result->searched_vertices = located.searched;
+    result->clamped_vertices = located.clamped;
     result->walk_steps = located.steps;
     lap(&time, &result->locate_seconds);
 
     ss_interpolate(patch, uv, bench->locations, points, bench->corner_weights, bench->displacement);
     lap(&time, &result->interpolate_seconds);
-    return SKINSLIDE_OK;
 }
 
 /* ---- The blend ---- */
@@ -153,12 +175,14 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         return status;
     workspace->has_frame = false;
     for (int32_t p = 0; p < slider->part_count; p++) {
-        const ss_part *part = &slider->parts[p];
-        const skinslide_controls *own = controls ? &controls[part->patch->setup_index] : NULL;
+        const skinslide_controls *own = controls ? &controls[slider->parts[p].patch->setup_index] : NULL;
         workspace->results[p] = (skinslide_patch_result){0};
-        if ((status = slide_patch(part, &workspace->benches[p], points, own, &workspace->results[p], error)))
+        if ((status = embed_patch(workspace, p, points, own, error)))
             return status;
-        workspace->results[p].stretch_before = stretch(part->patch, workspace->benches[p].lengths);
+    }
+    for (int32_t p = 0; p < slider->part_count; p++) {
+        slide_patch(workspace, p, points);
+        workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->benches[p].lengths);
     }
     blend(workspace);
     write_points(workspace, points, slid);

@@ -35,6 +35,8 @@ typedef struct ss_bench {
     ss_location *locations;    /* [free_count] */
     double (*displacement)[3]; /* [free_count] */
     double *corner_weights;    /* [largest face] */
+    bool regular;              /* this frame's layout */
+    ss_candidates *candidates; /* [free_count], NULL with lookup EXACT */
 } ss_bench;
 
 struct skinslide_workspace {
@@ -44,10 +46,21 @@ struct skinslide_workspace {
     skinslide_patch_result *results; /* [part_count] */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
     bool has_frame;
+    ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
+    skinslide_lookup_info lookup;
 };
 
 /* Controls of one frame, [setup_count]. */
 skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
                                          skinslide_error *error);
+
+/* ---- lookup.c ---- */
+
+/* skinslide_workspace_create, with EGL by another loader. */
+skinslide_status ss_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,
+                                     ss_egl_loader load, skinslide_workspace **out, skinslide_error *error);
+/* Makes the workspace's ID buffer, where its options come to EGL. */
+skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const skinslide_workspace_options *options,
+                                          ss_egl_loader load, skinslide_error *error);
 
 #endif

@@ -14,3 +14,6 @@ done
 
 say "What they show"
 "$python" "$root/examples/table.py" "$out"
+
+say "Lookup by colour-ID rendering"
+"$python" "$root/examples/lookup.py" "$out"

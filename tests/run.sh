@@ -18,6 +18,9 @@ c_tests() {
     ctest --test-dir "$build" --output-on-failure --no-tests=error -j "$(nproc)"
 }
 
+say "Device of the lookup egl"
+"$python" -c 'import skinslide; d = skinslide.choose_lookup("egl"); print(d.device_name, d.renderer, d.driver, sep=", ")'
+
 say "C tests"
 c_tests tests
 say "C tests under AddressSanitizer and UndefinedBehaviorSanitizer"

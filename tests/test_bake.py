@@ -17,6 +17,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdValidation, Vt
 import skinslide
 from skinslide import (
     FrameProblem,
+    Lookup,
     PatchSetup,
     Slider,
     StageError,
@@ -468,7 +469,8 @@ def test_a_read_only_folder(shot, tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"lookup": "egl"}, "egl"),
+        ({"lookup": Lookup("egl", device=999)}, "there is no EGL device 999"),
+        ({"lookup": Lookup("egl", device=-1)}, "no such device: -1"),
         ({"lookup": "magic"}, "'magic' is not one of auto, egl, exact"),
         ({"jobs": 0}, "jobs is 0"),
         ({"frames": "one"}, "'one'"),

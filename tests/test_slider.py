@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import skinslide
-from skinslide import Controls, PatchSetup, Slider, SliderError, slider
+from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError, slider
 
 SIZE = 12  # quads a side
 VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2
@@ -165,8 +165,8 @@ def test_what_the_core_says_arrives(counts, indices, rest):
         Slider(counts, indices, rest, [PatchSetup("elbow", np.arange(FACES), interpolation="limit")])
     assert error.value.status == "UNSUPPORTED"
     with pytest.raises(SliderError) as error:
-        Slider(counts, indices, rest, [], lookup="egl")
-    assert error.value.status == "UNSUPPORTED"
+        Slider(counts, indices, rest, [], lookup=Lookup("egl", device=999))
+    assert error.value.status == "NO_DEVICE"
 
 
 @pytest.mark.parametrize("points", [np.zeros((VERTICES - 1, 3)), np.zeros(VERTICES * 3), np.zeros((VERTICES, 2))])

@@ -11,6 +11,7 @@
 #include <time.h>
 
 enum { FRAMES = 9 };
+static const skinslide_workspace_options exact = {SKINSLIDE_LOOKUP_EXACT, SKINSLIDE_ANY_DEVICE, 0};
 
 static double now(void) {
     struct timespec time;
@@ -52,7 +53,7 @@ static cost measure(const test_mesh *mesh, int32_t side) {
     skinslide_slider *slider = slider_of(mesh);
     skinslide_workspace *workspace = NULL;
     skinslide_error error;
-    stop_unless(skinslide_workspace_create(slider, SKINSLIDE_LOOKUP_EXACT, &workspace, &error) == SKINSLIDE_OK, error.message);
+    stop_unless(skinslide_workspace_create(slider, &exact, &workspace, &error) == SKINSLIDE_OK, error.message);
     float *slid = copy_points(mesh);
     cost costs[FRAMES];
     for (int i = 0; i < FRAMES; i++) { /* a bump that travels under the sheet */
@@ -99,14 +100,14 @@ static void print_lookups(int32_t side) {
     skinslide_workspace *workspace = NULL;
     const ss_part *part = &slider->parts[0];
     float *points = bumped(&mesh, 0.5 * side, 0.5 * side, 0.15 * side, 0.15 * side), *slid = copy_points(&mesh);
-    stop_unless(!skinslide_workspace_create(slider, SKINSLIDE_LOOKUP_EXACT, &workspace, NULL), "no workspace");
+    stop_unless(!skinslide_workspace_create(slider, &exact, &workspace, NULL), "no workspace");
     stop_unless(!skinslide_slide(workspace, points, NULL, slid, NULL, NULL), "no frame");
     const ss_bench *bench = &workspace->benches[0];
     const double(*uv)[2] = (const double(*)[2])bench->uv, (*queries)[2] = (const double(*)[2])bench->queries;
     double seconds[2] = {1e9, 1e9};
     for (int i = 0; i < 2 * FRAMES; i++) {
         double start = now();
-        ss_locate(bench->locator, uv, i % 2 == 0, queries, bench->locations);
+        ss_locate(bench->locator, uv, i % 2 == 0, queries, NULL, bench->locations);
         double taken = now() - start;
         seconds[i % 2] = taken < seconds[i % 2] ? taken : seconds[i % 2];
     }

@@ -31,7 +31,7 @@ int main(void) {
     points[12] = 1.5f;
     if (skinslide_slider_create(&mesh, &patch, 1, &slider, &error) != SKINSLIDE_OK)
         return fail(&error);
-    if (skinslide_workspace_create(slider, SKINSLIDE_LOOKUP_AUTO, &workspace, &error) != SKINSLIDE_OK)
+    if (skinslide_workspace_create(slider, NULL, &workspace, &error) != SKINSLIDE_OK)
         return fail(&error);
     if (skinslide_slide(workspace, points, NULL, slid, NULL, &error) != SKINSLIDE_OK)
         return fail(&error);

@@ -57,7 +57,7 @@ rig rig_of_setups(const test_mesh *mesh, const skinslide_patch_setup *setups, in
     skinslide_mesh view = view_of(mesh);
     skinslide_error error;
     assert_ok(skinslide_slider_create(&view, setups, count, &r.slider, &error), &error);
-    assert_ok(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_AUTO, &r.workspace, &error), &error);
+    assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
     return r;
 }
 

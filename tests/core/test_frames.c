@@ -18,7 +18,7 @@ typedef struct shot {
 static skinslide_workspace *new_workspace(const rig *r) {
     skinslide_workspace *workspace = NULL;
     skinslide_error error;
-    assert_ok(skinslide_workspace_create(r->slider, SKINSLIDE_LOOKUP_EXACT, &workspace, &error), &error);
+    assert_ok(skinslide_workspace_create(r->slider, NULL, &workspace, &error), &error);
     return workspace;
 }
 

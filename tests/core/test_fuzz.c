@@ -156,7 +156,7 @@ static bool try_once(dice *d) {
         assert_in_range(strlen(error.message), 5, sizeof error.message - 1);
         assert_null(strchr(error.message, '\n'));
     } else {
-        assert_ok(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_AUTO, &r.workspace, &error), &error);
+        assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
         exercise(&r, &mesh, d, &paint);
     }
     free_rig(&r);

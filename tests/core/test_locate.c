@@ -61,7 +61,7 @@ static void compare_all(const ss_patch *patch, const double (*uv)[2], dice *d) {
     assert_ok(ss_locator_create(patch, &locator, &error), &error);
     bool regular = ss_lay_out(patch, uv).regular;
     for (int pass = 0; pass < 2; pass++) {
-        ss_located located = ss_locate(locator, uv, regular && pass == 0, (const double(*)[2])q.at, q.found);
+        ss_located located = ss_locate(locator, uv, regular && pass == 0, (const double(*)[2])q.at, NULL, q.found);
         int32_t clamped = 0;
         for (int32_t i = 0; i < patch->free_count; i++)
             compare(patch, uv, patch->free_vertex[i], q.at[i], &q.found[i], &clamped);

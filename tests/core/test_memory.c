@@ -101,12 +101,13 @@ static void free_scene(scene *s) {
 }
 
 static skinslide_status run_all(scene *s, skinslide_error *error) {
+    const skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 64};
     skinslide_slider *slider = NULL;
     skinslide_workspace *workspace = NULL;
     skinslide_mesh view = view_of(&s->mesh);
     skinslide_status status = skinslide_slider_create(&view, s->setups, 2, &slider, error);
     if (!status)
-        status = skinslide_workspace_create(slider, SKINSLIDE_LOOKUP_AUTO, &workspace, error);
+        status = skinslide_workspace_create(slider, &options, &workspace, error);
     if (!status)
         status = skinslide_slide(workspace, s->points, s->controls, s->slid, NULL, error);
     if (!status)

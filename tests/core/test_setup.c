@@ -347,11 +347,10 @@ static void bad_workspaces(void **state) {
     rig r = rig_of(&mesh, setup_of(NULL, 0));
     skinslide_workspace *const untouched = (skinslide_workspace *)&mesh, *workspace = untouched;
     skinslide_error error;
-    assert_fails(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_EGL, &workspace, &error), &error, SKINSLIDE_UNSUPPORTED,
-                 "lookup egl is not supported in this version");
-    assert_fails(skinslide_workspace_create(r.slider, (skinslide_lookup)3, &workspace, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+    skinslide_workspace_options options = {(skinslide_lookup)3, SKINSLIDE_ANY_DEVICE, 0};
+    assert_fails(skinslide_workspace_create(r.slider, &options, &workspace, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no such lookup: 3");
-    assert_fails(skinslide_workspace_create(NULL, SKINSLIDE_LOOKUP_AUTO, &workspace, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+    assert_fails(skinslide_workspace_create(NULL, NULL, &workspace, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no slider, or no place for the workspace");
     assert_ptr_equal(workspace, untouched);
     skinslide_workspace_destroy(NULL);

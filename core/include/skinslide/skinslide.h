@@ -44,7 +44,9 @@ extern "C" {
     X(BAD_CONTROL, "a control of the patch is not valid")                                                                      \
     X(BAD_POINTS, "the points are not valid")                                                                                  \
     X(SINGULAR, "the embedding cannot be solved")                                                                              \
-    X(UNSUPPORTED, "not supported")
+    X(UNSUPPORTED, "not supported")                                                                                            \
+    X(NO_DEVICE, "no device for the lookup")                                                                                   \
+    X(DEVICE_FAILED, "the device of the lookup failed")
 
 #define SKINSLIDE_STATUS_ENUM(name, text) SKINSLIDE_##name,
 typedef enum skinslide_status { SKINSLIDE_STATUSES(SKINSLIDE_STATUS_ENUM) SKINSLIDE_STATUS_COUNT } skinslide_status;
@@ -190,31 +192,79 @@ SKINSLIDE_API skinslide_status skinslide_slider_embedding(const skinslide_slider
 
 /* ---- Frames -------------------------------------------------------------------------------------------------------------- */
 
-/* How rest vertices are looked up in the frame's embedding; the answer is the same bit for bit. AUTO: EXACT. */
+/* How rest vertices are looked up in the frame's embedding; where they are found is the same bit for bit. */
 typedef enum skinslide_lookup {
-    SKINSLIDE_LOOKUP_AUTO,
-    SKINSLIDE_LOOKUP_EGL,  /* proposed by colour-ID rendering: UNSUPPORTED in this version */
-    SKINSLIDE_LOOKUP_EXACT /* walking from face to face */
+    SKINSLIDE_LOOKUP_AUTO, /* EGL where it has a hardware device; EXACT on software rasterisers and where EGL is missing or its
+                              device fails when the workspace is made */
+    SKINSLIDE_LOOKUP_EGL,  /* proposed by rendering a colour a face (paper, section 3.3), decided exactly, and walked for where
+                              the texture missed */
+    SKINSLIDE_LOOKUP_EXACT /* by walking from face to face */
 } skinslide_lookup;
+
+#define SKINSLIDE_ANY_DEVICE (-1)
+
+/* How a workspace works. Start from SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT. */
+typedef struct skinslide_workspace_options {
+    skinslide_lookup lookup;
+    int32_t device;     /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
+                           order, hardware before software, then its surfaceless platform, then its default display */
+    int32_t resolution; /* texels along a side of the texture; 0: for each patch, the power of two from 256 to 4096, within the
+                           device's limit, that gives four texels along a side for each free vertex under the root, and up to
+                           four times as many where the smallest face of the rest embedding would be under a texel */
+} skinslide_workspace_options;
+
+#define SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT                                                                                    \
+    { SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE, 0 }
+
+/* What options come to on this machine. */
+typedef struct skinslide_lookup_info {
+    skinslide_lookup lookup;    /* EGL or EXACT; for EXACT what follows is empty but for the reason */
+    int32_t device;             /* its number, or SKINSLIDE_ANY_DEVICE where the display has none */
+    int32_t software;           /* 1: a software rasteriser */
+    int32_t largest_resolution; /* texels along a side, the device's limit */
+    char device_name[96];       /* "EGL device 0 (/dev/dri/card0)" */
+    char renderer[128];         /* as the driver names the device */
+    char driver[128];           /* its version */
+    char reason[480];           /* why AUTO came to EXACT, or how the device failed last; one line, or empty */
+} skinslide_lookup_info;
+
+/* Says what options, or the default for NULL, come to; makes a context and drops it where that must be tried.
+ * Fails with BAD_ARGUMENT (no such lookup, device or resolution), NO_DEVICE (lookup EGL: names all that was tried, with EGL's
+ * errors), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
+                                                       skinslide_error *error);
 
 typedef struct skinslide_workspace skinslide_workspace;
 
-/* Memory for frames of a slider, for use by one thread at a time. The slider must outlive it.
- * Fails with OUT_OF_MEMORY, BAD_ARGUMENT (no such lookup), UNSUPPORTED. */
-SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider *slider, skinslide_lookup lookup,
-                                                          skinslide_workspace **out, skinslide_error *error);
+/* Memory for frames of a slider, for use by one thread at a time, not always the same. The slider must outlive it. With lookup
+ * EGL it has an OpenGL ES context of its own, which is current only within calls: whatever EGL context the thread had is
+ * current again after each. A thread that has a context of another window system, such as GLX, current cannot use EGL.
+ *   options  in, or NULL: the default
+ * Fails with OUT_OF_MEMORY, BAD_ARGUMENT (no such lookup, device or resolution), and with lookup EGL NO_DEVICE, DEVICE_FAILED. */
+SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider *slider,
+                                                          const skinslide_workspace_options *options, skinslide_workspace **out,
+                                                          skinslide_error *error);
 
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_destroy(skinslide_workspace *workspace);
 
-/* What happened to one patch in one frame. Everything but the seconds is the same in every run. */
+/* What a workspace's options came to. Fails with BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace, skinslide_lookup_info *info,
+                                                          skinslide_error *error);
+
+/* What happened to one patch in one frame. Everything but the seconds is the same in every run with the same lookup; how
+ * vertices were found depends on the lookup, its resolution and its device. */
 typedef struct skinslide_patch_result {
     int32_t slid_vertices;     /* free vertices that moved */
     int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
     int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
+    int32_t found_in_centre;   /* vertices in the face of their own texel of the texture */
+    int32_t found_in_3x3;      /* in another face of the texels around it */
+    int32_t walked_vertices;   /* found by walking */
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
+    int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was walked for */
     int64_t walk_steps;        /* faces entered by walking, in all */
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
@@ -244,6 +294,13 @@ SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, c
  * Fails with BAD_ARGUMENT where there is no such patch or no frame yet. */
 SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
                                                              skinslide_error *error);
+
+/* The texture of lookup EGL: the last frame's embedding, drawn again. Pictures are made of it.
+ *   side    out  texels along a side
+ *   texels  out  [side][side], in rows of u from v = 0 on: 1 + patch face, 0 where there is none; NULL: only side is wanted
+ * Fails with BAD_ARGUMENT where there is no such patch, no frame yet, or the lookup is EXACT; DEVICE_FAILED, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
+                                                             uint32_t *texels, skinslide_error *error);
 
 /* ---- What else a cache holds --------------------------------------------------------------------------------------------- */
 

@@ -13,7 +13,17 @@ from skinslide.frames import FrameSpecError, UsageError, parse_frames
 from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
 from skinslide.report import BakeReport
 from skinslide.setup import setup
-from skinslide.slider import Controls, Frame, PatchSetup, Slider, SliderError, version
+from skinslide.slider import (
+    Controls,
+    Frame,
+    Lookup,
+    LookupInfo,
+    PatchSetup,
+    Slider,
+    SliderError,
+    choose_lookup,
+    version,
+)
 
 __version__ = version()
 
@@ -31,6 +41,8 @@ __all__ = [
     "Frame",
     "FrameProblem",
     "FrameSpecError",
+    "Lookup",
+    "LookupInfo",
     "PatchSetup",
     "Problem",
     "Slider",
@@ -41,6 +53,7 @@ __all__ = [
     "bake",
     "bake_to_file",
     "check",
+    "choose_lookup",
     "cmake_dir",
     "parse_frames",
     "setup",

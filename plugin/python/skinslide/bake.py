@@ -28,7 +28,7 @@ from skinslide.output import OverLayer, author_on_stage, check_output, layer_in_
 from skinslide.problems import FrameProblem, Problem, StageProblems, core_problem, errors
 from skinslide.progress import Progress
 from skinslide.report import BakeReport, MeshReport
-from skinslide.slider import Slider, SliderError, check_lookup
+from skinslide.slider import Lookup, Slider, SliderError, choose_lookup
 from skinslide.stage import open_stage
 
 Frames = Sequence[float] | str | None
@@ -48,7 +48,7 @@ def bake_to_file(
     *,
     prims: Sequence[str] | None = None,
     frames: Frames = None,
-    lookup: str = "auto",
+    lookup: str | Lookup = "auto",
     jobs: int = 1,
     progress: Progress | None = None,
     max_folded: int | None = None,
@@ -58,6 +58,7 @@ def bake_to_file(
 
     prims     mesh paths; None: every mesh with a patch
     frames    stage times, or a spec such as "101:109x2"; None: the authored samples
+    lookup    auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had
     jobs      frames slid at once; the result does not depend on it
     progress  called after each frame with the frames done and in all
     Raises UsageError, StageProblems, FrameProblem (also where max_folded or max_clamped is exceeded), StageError.
@@ -74,7 +75,7 @@ def bake(
     *,
     prims: Sequence[str] | None = None,
     frames: Frames = None,
-    lookup: str = "auto",
+    lookup: str | Lookup = "auto",
     jobs: int = 1,
     progress: Progress | None = None,
     max_folded: int | None = None,
@@ -103,12 +104,18 @@ class _Plan:
 
     @classmethod
     def read(
-        cls, stage: Usd.Stage, prims: Sequence[str] | None, frames: Frames, lookup: str, jobs: int, limits: Limits
+        cls,
+        stage: Usd.Stage,
+        prims: Sequence[str] | None,
+        frames: Frames,
+        lookup: str | Lookup,
+        jobs: int,
+        limits: Limits,
     ) -> "_Plan":
         if jobs < 1:
             raise UsageError(f"jobs is {jobs}; it must be at least 1")
         with _as_usage_error():
-            check_lookup(lookup)
+            choose_lookup(lookup)
         asked = None if frames is None else checked_frames(frames)
         meshes, problems = read_meshes(stage, prims)
         sliders = _build_sliders(meshes, lookup, problems)
@@ -211,7 +218,7 @@ class _MeshBake:
                     raise FrameProblem(Problem("error", self._mesh.path, info.name, _frame(time), message))
 
 
-def _build_sliders(meshes: list[SlidMesh], lookup: str, problems: list[Problem]) -> list[Slider]:
+def _build_sliders(meshes: list[SlidMesh], lookup: str | Lookup, problems: list[Problem]) -> list[Slider]:
     sliders = []
     for mesh in meshes:
         try:

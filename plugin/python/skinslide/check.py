@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 from pxr import Usd
 
+from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh, is_skinned, read_meshes
 from skinslide.problems import Problem, StageProblems, errors, frame_text
 from skinslide.samples import sample_problems
-from skinslide.slider import PatchInfo, Slider, SliderError
+from skinslide.slider import Lookup, PatchInfo, Slider, SliderError, choose_lookup
 from skinslide.stage import open_stage
 
 
@@ -47,10 +49,39 @@ class CheckedMesh:
 
 
 @dataclass(frozen=True)
+class CheckedLookup:
+    """What a bake would look up with. Where that is exact, the device is the one that egl would have, if any."""
+
+    lookup: str
+    reason: str
+    device: str
+    renderer: str
+    driver: str
+    software: bool
+
+    @classmethod
+    def choose(cls, lookup: Lookup) -> CheckedLookup:
+        chosen = choose_lookup(lookup)
+        device = chosen
+        if chosen.lookup != "egl":
+            with contextlib.suppress(SliderError):
+                device = choose_lookup(replace(lookup, method="egl"))
+        reason = chosen.reason or ("asked for" if lookup.method != "auto" else "")
+        return cls(chosen.lookup, reason, device.device_name, device.renderer, device.driver, bool(device.software))
+
+    def lines(self) -> Iterator[str]:
+        yield f"lookup {self.lookup}" + (f": {self.reason}" if self.reason else "")
+        kind = "a software rasteriser" if self.software else "hardware"
+        device = f"{self.device}: {self.renderer}, {self.driver}, {kind}" if self.device else "no device"
+        yield f"  {'' if self.lookup == 'egl' else 'egl would have '}{device}"
+
+
+@dataclass(frozen=True)
 class CheckReport:
     stage: str
     meshes: list[CheckedMesh]
     problems: list[Problem]
+    lookup: CheckedLookup
 
     @property
     def failed(self) -> bool:
@@ -62,7 +93,7 @@ class CheckReport:
     def text(self) -> str:
         """A line for each mesh, patch and problem, and the verdict."""
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
-        return "\n".join([*lines, *map(str, self.problems), self._verdict()])
+        return "\n".join([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
 
     def _verdict(self) -> str:
         counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}
@@ -85,18 +116,25 @@ def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
         yield f"  {name}: " + ", ".join(f"{count} {getattr(patch, count)}" for count in counts)
 
 
-def check(stage: Usd.Stage | str | Path, prims: Sequence[str] | None = None) -> CheckReport:
+def check(
+    stage: Usd.Stage | str | Path, prims: Sequence[str] | None = None, *, lookup: str | Lookup = "auto"
+) -> CheckReport:
     """Checks a stage without changing it. Reads every sample; StageError where the stage cannot be opened.
 
-    prims  paths of prims to look at with everything below them; None: the whole stage
+    prims   paths of prims to look at with everything below them; None: the whole stage
+    lookup  what a bake would be asked for; UsageError where it cannot be had
     """
+    try:
+        chosen = CheckedLookup.choose(Lookup.of(lookup))
+    except SliderError as error:
+        raise UsageError(str(error)) from error
     name = stage.GetRootLayer().identifier if isinstance(stage, Usd.Stage) else str(stage)
     stage = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
     meshes, problems = read_meshes(stage, prims)
     checked = [_check_mesh(mesh, problems) for mesh in meshes]
     problems += _composition_problems(stage)
     severities = ("error", "warning", "note")
-    return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)))
+    return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)), chosen)
 
 
 def _composition_problems(stage: Usd.Stage) -> Iterator[Problem]:

@@ -11,10 +11,12 @@ from collections.abc import Callable, Sequence
 from skinslide import __version__
 from skinslide.frames import UsageError
 from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
+from skinslide.slider import Lookup
 
 DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
 INTERRUPTED = 130
 
+_DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
 _EXIT_CODES = "exit codes: 0 done, 1 failed, 2 the arguments cannot be used, 3 the stage has problems"
 
 
@@ -75,7 +77,7 @@ def _bake(arguments: argparse.Namespace) -> int:
             arguments.output,
             prims=arguments.prim,
             frames=arguments.frames,
-            lookup=arguments.lookup,
+            lookup=_lookup(arguments),
             jobs=arguments.jobs,
             progress=progress,
             max_folded=arguments.max_folded,
@@ -92,7 +94,7 @@ def _bake(arguments: argparse.Namespace) -> int:
 def _check(arguments: argparse.Namespace) -> int:
     from skinslide.check import check
 
-    report = check(arguments.stage, arguments.prim)
+    report = check(arguments.stage, arguments.prim, lookup=_lookup(arguments))
     if arguments.json:
         _print_json(report.as_dict())
     else:
@@ -154,6 +156,40 @@ def _add_prims(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_lookup(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--lookup",
+        default="auto",
+        choices=("auto", "egl", "exact"),
+        help="how rest vertices are looked up in a frame; the result is the same: egl renders a colour a face, exact "
+        "walks, auto is egl where EGL has a hardware device and exact elsewhere (default: auto)",
+    )
+    command.add_argument(
+        "--egl-device",
+        type=_count,
+        metavar="N",
+        help=f"the one of EGL's devices to use (default: {_DEVICE_VARIABLE} in the environment, else the first that "
+        "works, hardware before software)",
+    )
+    command.add_argument(
+        "--egl-resolution",
+        type=_positive,
+        default=0,
+        metavar="N",
+        help="texels along a side of the texture of faces (default: by the patch, 256 to 4096)",
+    )
+
+
+def _lookup(arguments: argparse.Namespace) -> Lookup:
+    device, named = arguments.egl_device, os.environ.get(_DEVICE_VARIABLE)
+    if device is None and named:
+        try:
+            device = _count(named)
+        except argparse.ArgumentTypeError as bad:
+            raise UsageError(f"{_DEVICE_VARIABLE}: {bad}") from bad
+    return Lookup(arguments.lookup, device, arguments.egl_resolution)
+
+
 def _add_bake(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "-o",
@@ -170,12 +206,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
         help="frames to write, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
         "(default: the authored samples of points and of animated controls)",
     )
-    command.add_argument(
-        "--lookup",
-        default="auto",
-        choices=("auto", "egl", "exact"),
-        help="how rest vertices are looked up in a frame; the result is the same (default: auto, which is exact here)",
-    )
+    _add_lookup(command)
     command.add_argument(
         "--jobs",
         type=_positive,
@@ -197,6 +228,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
 
 def _add_check(command: argparse.ArgumentParser) -> None:
     _add_prims(command)
+    _add_lookup(command)
     command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
 
 

@@ -14,7 +14,7 @@ from skinslide.controls import PatchControls
 from skinslide.faces import read_faces
 from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, core_problem
 from skinslide.rest import read_rest
-from skinslide.slider import Controls, PatchSetup, Slider, SliderError
+from skinslide.slider import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.stage import find_meshes
 from skinslide.topology import Topology, read_topology
 from skinslide.values import FIRST, merged_times, positions
@@ -89,17 +89,17 @@ class SlidMesh:
         frame = None if time.IsDefault() or time.IsEarliestTime() else time.GetValue()
         return Problem("error", self.path, patch, frame, message)
 
-    def slider(self, lookup: str = "auto") -> Slider:
+    def slider(self, lookup: str | Lookup = "auto") -> Slider:
         """The slider of all patches, or StageProblems with each patch that is bad."""
         try:
             return self.build(self.patches, lookup)
         except SliderError as error:
             raise StageProblems(self._patch_problems(lookup) or [self._core_problem(error)]) from error
 
-    def build(self, patches: Sequence[PatchSetup], lookup: str = "auto") -> Slider:
+    def build(self, patches: Sequence[PatchSetup], lookup: str | Lookup = "auto") -> Slider:
         return Slider(self.face_counts, self.face_indices, self.rest_points, patches, lookup=lookup)
 
-    def _patch_problems(self, lookup: str) -> list[Problem]:
+    def _patch_problems(self, lookup: str | Lookup) -> list[Problem]:
         """What is wrong with each patch alone: the core stops at the first."""
         found: list[Problem] = []
         for patch in self.patches:

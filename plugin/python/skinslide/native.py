@@ -48,6 +48,28 @@ class PatchSetup:
     controls: Controls = field(default_factory=Controls)
 
 
+@dataclass(frozen=True)
+class Lookup:
+    """How rest vertices are looked up, as in `skinslide_workspace_options`. Where they are found is always the same."""
+
+    method: str = "auto"  # auto, egl, exact
+    device: int | None = None  # number of one of EGL's devices; None: the first that works
+    resolution: int = 0  # texels along a side; 0: by the patch
+
+    @staticmethod
+    def of(lookup: "str | Lookup") -> "Lookup":
+        return lookup if isinstance(lookup, Lookup) else Lookup(lookup)
+
+    def options(self) -> Any:
+        method = enum_value("lookup", self.method, "")
+        device = -1 if self.device is None else self.device
+        if self.device is not None and not 0 <= self.device < 2**31:
+            raise SliderError("BAD_ARGUMENT", f"no such device: {self.device}")
+        if not 0 <= self.resolution < 2**31:
+            raise SliderError("BAD_ARGUMENT", f"no such resolution: {self.resolution}")
+        return ffi.new("skinslide_workspace_options *", (method, device, self.resolution))
+
+
 def _tuple_of(struct: str, name: str) -> type:
     """A named tuple with the fields of a struct of the header."""
     return namedtuple(name, [field_name for field_name, _ in ffi.typeof(struct).fields])
@@ -55,6 +77,7 @@ def _tuple_of(struct: str, name: str) -> type:
 
 PatchInfo: Any = _tuple_of("skinslide_patch_info", "PatchInfo")
 PatchResult: Any = _tuple_of("skinslide_patch_result", "PatchResult")
+LookupInfo: Any = _tuple_of("skinslide_lookup_info", "LookupInfo")
 
 
 def tokens(setting: str) -> tuple[str, ...]:

@@ -22,6 +22,7 @@ _AT_FRAMES = {
     "clamped_weights": "weights or envelopes outside 0..1, clamped",
     "folded_faces": "faces turned over in the embedding",
     "zero_length_edges": "edges of no length, taken as 1e-6 of the mean rest edge",
+    "lost_textures": "textures lost by a failing device, each vertex walked for instead",
     "searched_vertices": "vertices the walk could not reach, found by search",
 }
 

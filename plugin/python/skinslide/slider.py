@@ -13,6 +13,8 @@ from skinslide._core import ffi, lib
 from skinslide.native import (
     Arguments,
     Controls,
+    Lookup,
+    LookupInfo,
     PatchInfo,
     PatchResult,
     PatchSetup,
@@ -30,6 +32,8 @@ from skinslide.native import (
 __all__ = [
     "Controls",
     "Frame",
+    "Lookup",
+    "LookupInfo",
     "PatchInfo",
     "PatchResult",
     "PatchSetup",
@@ -37,7 +41,7 @@ __all__ = [
     "Slider",
     "SliderError",
     "accelerations",
-    "check_lookup",
+    "choose_lookup",
     "normals",
     "tokens",
     "velocities",
@@ -74,12 +78,12 @@ class Slider:
         rest_points: np.ndarray,
         patches: Sequence[PatchSetup],
         *,
-        lookup: str = "auto",
+        lookup: str | Lookup = "auto",
     ):
         native = Arguments()
         mesh = native.mesh(face_counts, face_indices, rest_points)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
-        self._lookup = enum_value("lookup", lookup, "")
+        self._lookup = Lookup.of(lookup).options()
         self._names = tuple(patch.name for patch in patches)
         setups = ffi.new("skinslide_patch_setup[]", len(patches))
         for setup, patch in zip(setups, patches, strict=True):
@@ -120,6 +124,21 @@ class Slider:
         """The rest embedding of a patch in the unit square, float64 (patch vertices, 2)."""
         return self._patch_array(lib.skinslide_slider_embedding, patch, "vertex_count", np.float64, 2)
 
+    def id_buffer(self, points: np.ndarray, patch: int) -> np.ndarray:
+        """The texture of lookup egl for a frame: uint32 (side, side), rows from v = 0; 1 + patch face, 0 for none."""
+        native, side = Arguments(), ffi.new("int32_t *")
+        cached = native.points(points, self._sizes.vertices, "points")
+        slid = ffi.new("float[]", 3 * self._sizes.vertices)
+        workspace = self._take_workspace()
+        try:
+            call(lib.skinslide_slide, workspace, cached, ffi.NULL, slid, ffi.NULL)
+            call(lib.skinslide_workspace_id_buffer, workspace, patch, side, ffi.NULL)
+            texels = np.empty((side[0], side[0]), np.uint32)
+            call(lib.skinslide_workspace_id_buffer, workspace, patch, side, writable("uint32_t[]", texels))
+        finally:
+            self._give_back(workspace)
+        return texels
+
     def _info(self, patch: int) -> PatchInfo:
         info = ffi.new("skinslide_patch_info *")
         call(lib.skinslide_slider_patch_info, self._slider, patch, info)
@@ -156,9 +175,12 @@ class Slider:
             self._idle.append(workspace)
 
 
-def check_lookup(lookup: str) -> None:
-    """Raises SliderError for a lookup that is unknown, or that the core does not have."""
-    Slider([3], [0, 1, 2], np.zeros((3, 3)), [], lookup=lookup)
+def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
+    """What a lookup comes to on this machine, as `skinslide_lookup_info`; SliderError where it cannot be had."""
+    info = ffi.new("skinslide_lookup_info *")
+    call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info)
+    chosen = read(LookupInfo, info)
+    return chosen._replace(lookup=tokens("lookup")[chosen.lookup])
 
 
 def normals(

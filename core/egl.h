@@ -1,0 +1,123 @@
+/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, idbuffer.c and their tests. */
+#ifndef SKINSLIDE_EGL_H
+#define SKINSLIDE_EGL_H
+
+#define EGL_NO_X11 1
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GLES3/gl3.h>
+
+#include "internal.h"
+
+/* What every EGL since 1.4 exports. */
+#define SS_EGL_FUNCTIONS(X)                                                                                                    \
+    X(PFNEGLBINDAPIPROC, eglBindAPI)                                                                                           \
+    X(PFNEGLCHOOSECONFIGPROC, eglChooseConfig)                                                                                 \
+    X(PFNEGLCREATECONTEXTPROC, eglCreateContext)                                                                               \
+    X(PFNEGLCREATEPBUFFERSURFACEPROC, eglCreatePbufferSurface)                                                                 \
+    X(PFNEGLDESTROYCONTEXTPROC, eglDestroyContext)                                                                             \
+    X(PFNEGLDESTROYSURFACEPROC, eglDestroySurface)                                                                             \
+    X(PFNEGLGETCURRENTCONTEXTPROC, eglGetCurrentContext)                                                                       \
+    X(PFNEGLGETCURRENTDISPLAYPROC, eglGetCurrentDisplay)                                                                       \
+    X(PFNEGLGETCURRENTSURFACEPROC, eglGetCurrentSurface)                                                                       \
+    X(PFNEGLGETDISPLAYPROC, eglGetDisplay)                                                                                     \
+    X(PFNEGLGETERRORPROC, eglGetError)                                                                                         \
+    X(PFNEGLGETPROCADDRESSPROC, eglGetProcAddress)                                                                             \
+    X(PFNEGLINITIALIZEPROC, eglInitialize)                                                                                     \
+    X(PFNEGLMAKECURRENTPROC, eglMakeCurrent)                                                                                   \
+    X(PFNEGLQUERYAPIPROC, eglQueryAPI)                                                                                         \
+    X(PFNEGLQUERYSTRINGPROC, eglQueryString)
+
+/* NULL where the client extensions do not have them. */
+#define SS_EGL_EXTENSIONS(X)                                                                                                   \
+    X(PFNEGLGETPLATFORMDISPLAYEXTPROC, eglGetPlatformDisplayEXT)                                                               \
+    X(PFNEGLQUERYDEVICESEXTPROC, eglQueryDevicesEXT)                                                                           \
+    X(PFNEGLQUERYDEVICESTRINGEXTPROC, eglQueryDeviceStringEXT)
+
+#define SS_GL_FUNCTIONS(X)                                                                                                     \
+    X(PFNGLATTACHSHADERPROC, glAttachShader)                                                                                   \
+    X(PFNGLBEGINTRANSFORMFEEDBACKPROC, glBeginTransformFeedback)                                                               \
+    X(PFNGLBINDBUFFERPROC, glBindBuffer)                                                                                       \
+    X(PFNGLBINDBUFFERBASEPROC, glBindBufferBase)                                                                               \
+    X(PFNGLBINDFRAMEBUFFERPROC, glBindFramebuffer)                                                                             \
+    X(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                                                                           \
+    X(PFNGLBINDTEXTUREPROC, glBindTexture)                                                                                     \
+    X(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray)                                                                             \
+    X(PFNGLBUFFERDATAPROC, glBufferData)                                                                                       \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, glCheckFramebufferStatus)                                                               \
+    X(PFNGLCLEARBUFFERUIVPROC, glClearBufferuiv)                                                                               \
+    X(PFNGLCOMPILESHADERPROC, glCompileShader)                                                                                 \
+    X(PFNGLCREATEPROGRAMPROC, glCreateProgram)                                                                                 \
+    X(PFNGLCREATESHADERPROC, glCreateShader)                                                                                   \
+    X(PFNGLDELETESHADERPROC, glDeleteShader)                                                                                   \
+    X(PFNGLDISABLEPROC, glDisable)                                                                                             \
+    X(PFNGLDRAWARRAYSPROC, glDrawArrays)                                                                                       \
+    X(PFNGLENABLEPROC, glEnable)                                                                                               \
+    X(PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                                                             \
+    X(PFNGLENDTRANSFORMFEEDBACKPROC, glEndTransformFeedback)                                                                   \
+    X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, glFramebufferRenderbuffer)                                                             \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, glFramebufferTexture2D)                                                                   \
+    X(PFNGLGENBUFFERSPROC, glGenBuffers)                                                                                       \
+    X(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers)                                                                             \
+    X(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                                                                           \
+    X(PFNGLGENTEXTURESPROC, glGenTextures)                                                                                     \
+    X(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays)                                                                             \
+    X(PFNGLGETERRORPROC, glGetError)                                                                                           \
+    X(PFNGLGETINTEGERVPROC, glGetIntegerv)                                                                                     \
+    X(PFNGLGETPROGRAMIVPROC, glGetProgramiv)                                                                                   \
+    X(PFNGLGETPROGRAMINFOLOGPROC, glGetProgramInfoLog)                                                                         \
+    X(PFNGLGETSTRINGPROC, glGetString)                                                                                         \
+    X(PFNGLGETUNIFORMLOCATIONPROC, glGetUniformLocation)                                                                       \
+    X(PFNGLLINKPROGRAMPROC, glLinkProgram)                                                                                     \
+    X(PFNGLMAPBUFFERRANGEPROC, glMapBufferRange)                                                                               \
+    X(PFNGLREADPIXELSPROC, glReadPixels)                                                                                       \
+    X(PFNGLRENDERBUFFERSTORAGEPROC, glRenderbufferStorage)                                                                     \
+    X(PFNGLSHADERSOURCEPROC, glShaderSource)                                                                                   \
+    X(PFNGLTEXPARAMETERIPROC, glTexParameteri)                                                                                 \
+    X(PFNGLTEXSTORAGE2DPROC, glTexStorage2D)                                                                                   \
+    X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, glTransformFeedbackVaryings)                                                         \
+    X(PFNGLUNIFORM1IPROC, glUniform1i)                                                                                         \
+    X(PFNGLUNMAPBUFFERPROC, glUnmapBuffer)                                                                                     \
+    X(PFNGLUSEPROGRAMPROC, glUseProgram)                                                                                       \
+    X(PFNGLVERTEXATTRIBIPOINTERPROC, glVertexAttribIPointer)                                                                   \
+    X(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer)                                                                     \
+    X(PFNGLVIEWPORTPROC, glViewport)
+
+typedef struct ss_egl_api {
+#define SS_MEMBER(type, name) type name;
+    SS_EGL_FUNCTIONS(SS_MEMBER)
+    SS_EGL_EXTENSIONS(SS_MEMBER)
+    SS_GL_FUNCTIONS(SS_MEMBER)
+#undef SS_MEMBER
+    GLenum (*glGetGraphicsResetStatus)(void); /* NULL where contexts cannot tell that they were lost */
+} ss_egl_api;
+
+/* A context on a display, made current only between enter and leave. */
+typedef struct ss_egl {
+    ss_egl_api api;
+    EGLDisplay display;
+    EGLContext context;
+    EGLSurface surface; /* EGL_NO_SURFACE, or a pixel where contexts need a surface */
+    skinslide_lookup_info info;
+} ss_egl;
+
+/* What was current on the thread before. */
+typedef struct ss_egl_before {
+    EGLenum api;
+    EGLDisplay display;
+    EGLContext context;
+    EGLSurface draw, read;
+    EGLint failure; /* of an enter that failed */
+} ss_egl_before;
+
+/* Makes a context, which is not current yet. Fails with NO_DEVICE, naming all that was tried and EGL's error for each. */
+skinslide_status ss_egl_open(const ss_device_request *request, ss_egl **out, skinslide_error *error);
+/* NULL does nothing. Never ends the display, which the process shares. */
+void ss_egl_close(ss_egl *egl);
+/* Makes the context current and remembers what was; where it fails, what was current still is. */
+bool ss_egl_enter(const ss_egl *egl, ss_egl_before *before);
+void ss_egl_leave(const ss_egl *egl, const ss_egl_before *before);
+/* "EGL_BAD_ALLOC"; "an unknown error" for a number that EGL does not have. */
+const char *ss_egl_error_name(EGLint code);
+
+#endif

@@ -1,0 +1,92 @@
+/* Which lookup a workspace has: what its options come to on this machine. */
+#include "slider.h"
+
+#include <string.h>
+
+static skinslide_status check_options(const skinslide_workspace_options *options, skinslide_error *error) {
+    if ((unsigned)options->lookup > SKINSLIDE_LOOKUP_EXACT)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such lookup: %d", (int)options->lookup);
+    if (options->device < SKINSLIDE_ANY_DEVICE)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such device: %d", options->device);
+    if (options->resolution < 0)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such resolution: %d", options->resolution);
+    return SKINSLIDE_OK;
+}
+
+/* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with
+ * EGL for its absence; a lack of memory is no choice. */
+skinslide_status ss_open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
+                                int32_t patch_count, ss_idbuffer **out, skinslide_lookup_info *info, skinslide_error *error) {
+    const skinslide_workspace_options standard = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
+    const skinslide_workspace_options *own = options ? options : &standard;
+    skinslide_status status = check_options(own, error);
+    if (status)
+        return status;
+    *info = (skinslide_lookup_info){.lookup = SKINSLIDE_LOOKUP_EXACT, .device = SKINSLIDE_ANY_DEVICE};
+    if (own->lookup == SKINSLIDE_LOOKUP_EXACT)
+        return SKINSLIDE_OK;
+    ss_device_request request = {load, own->device, own->lookup == SKINSLIDE_LOOKUP_AUTO};
+    skinslide_error why = {0};
+    status = ss_idbuffer_create(&request, patches, patch_count, own->resolution, out, &why);
+    if (!status)
+        *info = *ss_idbuffer_info(*out);
+    bool absent = status == SKINSLIDE_NO_DEVICE || status == SKINSLIDE_DEVICE_FAILED;
+    if (own->lookup == SKINSLIDE_LOOKUP_AUTO && absent) {
+        memcpy(info->reason, why.message, sizeof info->reason);
+        return SKINSLIDE_OK;
+    }
+    if (status == SKINSLIDE_OUT_OF_MEMORY)
+        return ss_out_of_memory(error);
+    const char *name = own->lookup == SKINSLIDE_LOOKUP_EGL ? "egl" : "auto";
+    return status ? ss_fail(error, status, "lookup %s: %s", name, why.message) : SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
+                                         skinslide_error *error) {
+    ss_idbuffer *buffer = NULL;
+    skinslide_lookup_info chosen;
+    if (!info)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the answer");
+    skinslide_status status = ss_open_lookup(options, ss_egl_load, NULL, 0, &buffer, &chosen, error);
+    ss_idbuffer_destroy(buffer);
+    if (!status)
+        *info = chosen;
+    return status;
+}
+
+skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace, skinslide_lookup_info *info,
+                                            skinslide_error *error) {
+    if (!workspace || !info)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, or no place for the answer");
+    *info = workspace->idbuffer ? *ss_idbuffer_info(workspace->idbuffer) : workspace->lookup;
+    return SKINSLIDE_OK;
+}
+
+/* The part of each patch that is drawn: [part_count]. */
+static void describe_patches(const skinslide_slider *slider, ss_id_patch *patches) {
+    for (int32_t p = 0; p < slider->part_count; p++) {
+        const ss_part *part = &slider->parts[p];
+        patches[p] = (ss_id_patch){&part->patch->faces, part->patch->free_count,
+                                   ss_id_side(part->patch, (const double(*)[2])part->rest_uv)};
+    }
+}
+
+skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const skinslide_workspace_options *options,
+                                          ss_egl_loader load, skinslide_error *error) {
+    const skinslide_slider *slider = workspace->slider;
+    ss_memory scratch = {0};
+    ss_id_patch *patches = SS_NEW(&scratch, ss_id_patch, slider->part_count);
+    if (!patches)
+        return ss_out_of_memory(error);
+    describe_patches(slider, patches);
+    skinslide_status status =
+        ss_open_lookup(options, load, patches, slider->part_count, &workspace->idbuffer, &workspace->lookup, error);
+    ss_free(&scratch);
+    for (int32_t p = 0; p < slider->part_count && workspace->idbuffer && !status; p++) {
+        workspace->benches[p].candidates =
+            ss_new(&workspace->memory, slider->parts[p].patch->free_count, sizeof(ss_candidates));
+        if (!workspace->benches[p].candidates)
+            status = ss_out_of_memory(error);
+    }
+    return status;
+}
