@@ -1,7 +1,7 @@
 /* What the files of the core know of each other. One file a stage of the walk:
  *
- *     mesh ─► patch (boundary, holes) ─► system ─► embed(rest)        once a shot
- *             density ─► embed(frame) ─► locate ─► interpolate        every frame, in slider.c
+ *     mesh ─► patch (boundary, holes) ─► system ─► embed(rest)            once a shot
+ *             density ─► embed(frame) ─► locate ─► interpolate (─► cage)  every frame, in slider.c
  *
  * Names begin with ss_, so that the static library can be linked into any program. */
 #ifndef SKINSLIDE_INTERNAL_H
@@ -11,6 +11,10 @@
 #include <stddef.h>
 
 #include "skinslide/skinslide.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* ---- memory.c: an object's arrays, all freed at once ---- */
 
@@ -274,5 +278,99 @@ void ss_interpolate(const ss_patch *patch, const double (*uv)[2], const ss_locat
 void ss_linear_weights(const ss_faces *faces, const double (*uv)[2], const ss_location *location, double weights[3]);
 bool ss_mean_value_weights(const ss_faces *faces, const double (*uv)[2], const ss_location *location, double *weights);
 int32_t ss_largest_face(const ss_faces *faces);
+
+/* ---- subdivision.c ---- */
+
+bool ss_is_subdivided(const skinslide_mesh *mesh);
+/* Of a subdivided mesh that passed ss_check_mesh: names the face, vertex, crease or sharpness that cannot be. */
+skinslide_status ss_check_subdivision(const skinslide_mesh *mesh, skinslide_error *error);
+
+/* ---- parameter.cpp, limit.cpp: the limit surface; the latter is the only file that knows OpenSubdiv ---- */
+
+/* A point of a face. Quads: bilinear, from corner 0 to 1 and to 3. Triangles of the loop scheme: weights of corners 1 and 2.
+ * Other polygons: bilinear in the quad at a corner, from it to the middles of the side after and of the side before it. */
+typedef struct ss_parameter {
+    int32_t corner; /* of the face, in polygons; else -1 */
+    double st[2];
+} ss_parameter;
+
+/* The parameters of a location in the embedding. loop: the scheme is. */
+ss_parameter ss_parametrise(const ss_faces *faces, bool loop, const double (*uv)[2], const ss_location *location);
+
+typedef struct ss_topology ss_topology; /* a subdivided mesh, checked; keeps the mesh and its arrays */
+typedef struct ss_surfaces ss_surfaces; /* limit surfaces of some of its faces: immutable, and good without it */
+
+skinslide_status ss_topology_create(const skinslide_mesh *mesh, ss_topology **out, skinslide_error *error);
+void ss_topology_destroy(ss_topology *topology);
+/* BAD_PATCH where a face has none. label begins messages. */
+skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,
+                                    ss_surfaces **out, skinslide_error *error);
+void ss_surfaces_destroy(ss_surfaces *surfaces);
+/* Doubles of scratch for ss_limit_prepare. */
+int32_t ss_surfaces_scratch(const ss_surfaces *surfaces);
+/* The most that ss_limit_stencil writes. */
+int32_t ss_surfaces_most_vertices(const ss_surfaces *surfaces);
+/* A limit point is the sum of weights times points of mesh vertices, of which one may be there twice. Returns their count. */
+int32_t ss_limit_stencil(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const int32_t **vertices,
+                         double *weights);
+/* Gathers what makes the face's surface from the mesh's points, less origin, for ss_limit_point. face counts in the mesh_faces
+ * that the surfaces are of. */
+void ss_limit_prepare(const ss_surfaces *surfaces, int32_t face, const float *points, const double origin[3], double *scratch);
+void ss_limit_point(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double out[3]);
+/* The same with the unit normal, of zeros where the surface has none, and the other way round where faces are left-handed. */
+void ss_limit_frame(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double point[3],
+                    double normal[3]);
+/* The parameters of a place in the quad at a corner: see skinslide_limit_place. */
+ss_parameter ss_limit_parameter(const ss_surfaces *surfaces, int32_t face, int32_t corner, double s, double t);
+
+/* ---- sparse.c: the only file that knows KLU ---- */
+
+/* A matrix by rows. */
+typedef struct ss_rows {
+    int32_t row_count, column_count;
+    int32_t *start; /* [row_count + 1] */
+    int32_t *column;
+    double *value;
+} ss_rows;
+
+typedef struct ss_sparse ss_sparse;           /* A with A'A factored: immutable */
+typedef struct ss_sparse_work ss_sparse_work; /* one a thread */
+
+/* SINGULAR where the condition of A'A leaves too few digits. rows are copied; label begins messages. */
+skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_sparse **out, skinslide_error *error);
+void ss_sparse_destroy(ss_sparse *sparse);
+skinslide_status ss_sparse_work_create(const ss_sparse *sparse, ss_sparse_work **out, skinslide_error *error);
+void ss_sparse_work_destroy(ss_sparse_work *work);
+/* Adds to x [column_count][3] the y of least |A y - b|, for b [row_count][3], and takes A y away from r [row_count][3]. */
+void ss_sparse_correct(ss_sparse_work *work, const double (*b)[3], double (*x)[3], double (*r)[3]);
+/* Takes A x away from r. */
+void ss_sparse_subtract(const ss_sparse *sparse, const double (*x)[3], double (*r)[3]);
+
+/* ---- cage.c: interpolation LIMIT ---- */
+
+typedef struct ss_cage ss_cage;           /* limit surfaces and factor of a patch: immutable */
+typedef struct ss_cage_work ss_cage_work; /* one a thread */
+
+/* One patch in one frame. */
+typedef struct ss_pose {
+    const float *points;          /* [mesh vertex_count][3] */
+    const double *lengths;        /* [edge_count] */
+    const double (*uv)[2];        /* [vertex_count] Ud */
+    const double (*queries)[2];   /* [free_count] */
+    const ss_location *locations; /* [free_count] */
+} ss_pose;
+
+skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
+                                skinslide_error *error);
+void ss_cage_destroy(ss_cage *cage);
+skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, skinslide_error *error);
+void ss_cage_work_destroy(ss_cage_work *work);
+/* displacement [free_count]: in the linear one, out the one that keeps the limit surface. Returns how many vertices were
+ * damped. */
+int32_t ss_move_cage(ss_cage_work *work, const ss_pose *pose, double (*displacement)[3]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

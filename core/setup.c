@@ -11,12 +11,12 @@ static int ascending(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-static skinslide_status check_choices(const skinslide_patch_setup *setup, skinslide_error *error) {
+static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, skinslide_error *error) {
     if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE ||
         (unsigned)setup->rule > SKINSLIDE_RULE_FAST || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no such boundary, holes, rule or interpolation", setup->name);
-    if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "patch %s: interpolation limit is not supported in this version",
+    if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT && !ss_is_subdivided(mesh))
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: interpolation limit needs a mesh that is subdivided",
                        setup->name);
     return SKINSLIDE_OK;
 }
@@ -167,6 +167,15 @@ static skinslide_status split(const skinslide_mesh *mesh, const skinslide_patch_
     return status;
 }
 
+/* What the limit surface asks for beyond prepare(). */
+static skinslide_status add_cage(const skinslide_slider *slider, const skinslide_mesh *mesh, ss_part *part,
+                                 skinslide_error *error) {
+    if (part->patch->setup->interpolation != SKINSLIDE_INTERPOLATION_LIMIT)
+        return SKINSLIDE_OK;
+    return ss_cage_create(slider->topology, part->patch, mesh->subdivision->scheme == SKINSLIDE_SCHEME_LOOP, &part->cage,
+                          error);
+}
+
 /* Appends a part to the slider for one piece of a set-up. */
 static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup,
                                   const split_faces *pieces, int32_t piece, skinslide_error *error) {
@@ -181,6 +190,8 @@ static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh
         slider->part_count++;
         status = prepare(&slider->memory, part, &slider->setups[setup].controls, error);
     }
+    if (!status)
+        status = add_cage(slider, mesh, part, error);
     return status;
 }
 
@@ -196,6 +207,13 @@ static skinslide_status check_corners(const skinslide_slider *slider, int32_t se
                    slider->setups[setup].name, corners[0], corners[1], corners[2], corners[3]);
 }
 
+static skinslide_status need_topology(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error) {
+    if (slider->topology)
+        return SKINSLIDE_OK;
+    skinslide_status status = ss_check_subdivision(mesh, error);
+    return status ? status : ss_topology_create(mesh, &slider->topology, error);
+}
+
 static skinslide_status grow_parts(skinslide_slider *slider, int32_t count, skinslide_error *error) {
     ss_part *parts = SS_NEW(&slider->memory, ss_part, (int64_t)slider->part_count + count);
     if (!parts)
@@ -209,7 +227,9 @@ static skinslide_status grow_parts(skinslide_slider *slider, int32_t count, skin
 static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup, skinslide_error *error) {
     const skinslide_patch_setup *own = &slider->setups[setup];
     split_faces pieces = {0};
-    skinslide_status status = check_choices(own, error);
+    skinslide_status status = check_choices(mesh, own, error);
+    if (!status && own->interpolation == SKINSLIDE_INTERPOLATION_LIMIT)
+        status = need_topology(slider, mesh, error);
     if (!status)
         status = split(mesh, own, &pieces, error);
     if (!status)
@@ -228,13 +248,21 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
 
 /* ---- The slider ---- */
 
-static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_patch_setup *setups, skinslide_error *error) {
+static skinslide_interpolation choose_interpolation(const skinslide_mesh *mesh, skinslide_interpolation choice) {
+    if (choice != SKINSLIDE_INTERPOLATION_AUTO)
+        return choice;
+    return ss_is_subdivided(mesh) ? SKINSLIDE_INTERPOLATION_LIMIT : SKINSLIDE_INTERPOLATION_LINEAR;
+}
+
+static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
+                                    skinslide_error *error) {
     slider->setups = SS_NEW(&slider->memory, skinslide_patch_setup, slider->setup_count);
     for (int32_t i = 0; i < slider->setup_count && slider->setups; i++) {
         const char *name = setups[i].name ? setups[i].name : "";
         char *copy = SS_NEW(&slider->memory, char, (int64_t)strlen(name) + 1);
         slider->setups[i] = setups[i];
         slider->setups[i].name = copy ? strcpy(copy, name) : copy;
+        slider->setups[i].interpolation = choose_interpolation(mesh, setups[i].interpolation);
     }
     return slider->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
@@ -260,9 +288,11 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
     if (!slider)
         return ss_out_of_memory(error);
     slider->vertex_count = mesh->vertex_count, slider->face_count = mesh->face_count, slider->setup_count = setup_count;
-    status = copy_setups(slider, setups, error);
+    status = copy_setups(slider, mesh, setups, error);
     for (int32_t i = 0; i < setup_count && !status; i++)
         status = add_setup(slider, mesh, i, error);
+    ss_topology_destroy(slider->topology);
+    slider->topology = NULL;
     if (status) {
         skinslide_slider_destroy(slider);
         return status;
@@ -276,6 +306,7 @@ void skinslide_slider_destroy(skinslide_slider *slider) {
     if (!slider)
         return;
     for (int32_t p = 0; p < slider->part_count; p++) {
+        ss_cage_destroy(slider->parts[p].cage);
         ss_system_destroy(slider->parts[p].system);
         ss_patch_destroy(slider->parts[p].patch);
     }
@@ -303,6 +334,8 @@ static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_be
     copy_fixed(patch, bench->uv);
     copy_fixed(patch, bench->own_rest_uv);
     skinslide_status status = ss_factor_create(part->system, &bench->factor, error);
+    if (!status && part->cage)
+        status = ss_cage_work_create(part->cage, &bench->cage, error);
     return status ? status : ss_locator_create(patch, &bench->locator, error);
 }
 
@@ -341,6 +374,7 @@ void skinslide_workspace_destroy(skinslide_workspace *workspace) {
     for (int32_t p = 0; workspace->benches && p < workspace->slider->part_count; p++) {
         ss_factor_destroy(workspace->benches[p].factor);
         ss_locator_destroy(workspace->benches[p].locator);
+        ss_cage_work_destroy(workspace->benches[p].cage);
     }
     ss_free(&workspace->memory);
     free(workspace);

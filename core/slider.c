@@ -99,15 +99,22 @@ static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *
     lap(&time, &result->locate_seconds);
 
     ss_interpolate(patch, uv, bench->locations, points, bench->corner_weights, bench->displacement);
+    if (bench->cage) {
+        ss_pose pose = {points, bench->lengths, uv, (const double(*)[2])bench->queries, bench->locations};
+        result->damped_vertices = ss_move_cage(bench->cage, &pose, bench->displacement);
+    }
     lap(&time, &result->interpolate_seconds);
 }
 
 /* ---- The blend ---- */
 
+/* A vertex of no weight keeps its limit point, for which it follows its neighbours, but has no say where patches overlap. */
+static const double least_weight = 1e-30;
+
 /* Sums weight times displacement, and weight, over the patches of each vertex. */
 static void add_displacement(const ss_patch *patch, const ss_bench *bench, double (*sum)[4]) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = bench->weights[i];
+        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = fmax(bench->weights[i], least_weight);
         for (int k = 0; k < 3; k++)
             total[k] += weight * bench->displacement[i][k];
         total[3] += weight;

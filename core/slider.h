@@ -13,13 +13,16 @@ typedef struct ss_part {
     double *weights;      /* [free_count] weight times envelope of the set-up's controls */
     int32_t clamped_weights;
     ss_layout rest_layout;
+    ss_cage *cage; /* NULL unless its interpolation is LIMIT */
 } ss_part;
 
 struct skinslide_slider {
     ss_memory memory;
     int32_t vertex_count, face_count, setup_count, part_count;
-    skinslide_patch_setup *setups; /* [setup_count] names copied; their arrays are the caller's, and not kept */
-    ss_part *parts;                /* [part_count] */
+    skinslide_patch_setup
+        *setups;           /* [setup_count] names copied, interpolation not AUTO; their arrays are the caller's, and not kept */
+    ss_part *parts;        /* [part_count] */
+    ss_topology *topology; /* while the slider is built, once a set-up needs it */
 };
 
 /* What one thread needs to slide one patch. */
@@ -35,6 +38,7 @@ typedef struct ss_bench {
     ss_location *locations;    /* [free_count] */
     double (*displacement)[3]; /* [free_count] */
     double *corner_weights;    /* [largest face] */
+    ss_cage_work *cage;        /* NULL unless the part has one */
     bool regular;              /* this frame's layout */
     ss_candidates *candidates; /* [free_count], NULL with lookup EXACT */
 } ss_bench;

@@ -257,7 +257,7 @@ CASES = [
     Case("token: holes", prop("holes", "open"), "'open'; it must be one of pinned, free"),
     Case("token: rule", prop("forceDensityRule", "slow"), "'slow'; it must be one of unit, fast"),
     Case("token: interpolation", prop("interpolation", "cubic"), "'cubic'; it must be one of auto, linear"),
-    Case("interpolation: limit", prop("interpolation", "limit"), "limit"),
+    Case("interpolation: limit", prop("interpolation", "limit"), "limit needs a mesh that is subdivided"),
     Case("prim: point instancer", in_point_instancer, "prototype of the point instancer /World/crowd", None),
     Case("prim: no patch name", applied_without_name, "applied without a patch's name", None),
 ]

@@ -485,9 +485,9 @@ def test_options_that_cannot_be(shot, out, options, message):
     assert not out.exists()
 
 
-def test_the_interpolation_that_is_not_there_yet(shot, out):
+def test_limit_needs_a_mesh_that_is_subdivided(shot, out):
     shot.over.CreateAttribute("skinSlide:sheet:interpolation", Sdf.ValueTypeNames.Token).Set("limit")
-    with pytest.raises(StageProblems, match="limit"):
+    with pytest.raises(StageProblems, match="limit needs a mesh that is subdivided"):
         bake_to_file(shot.save().path, out)
 
 

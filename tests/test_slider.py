@@ -163,7 +163,7 @@ def test_what_the_core_says_arrives(counts, indices, rest):
     assert error.value.status == "BAD_PATCH"
     with pytest.raises(SliderError) as error:
         Slider(counts, indices, rest, [PatchSetup("elbow", np.arange(FACES), interpolation="limit")])
-    assert error.value.status == "UNSUPPORTED"
+    assert error.value.status == "BAD_CONTROL"
     with pytest.raises(SliderError) as error:
         Slider(counts, indices, rest, [], lookup=Lookup("egl", device=999))
     assert error.value.status == "NO_DEVICE"

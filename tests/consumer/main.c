@@ -13,7 +13,7 @@ static int fail(const skinslide_error *error) {
 }
 
 int main(void) {
-    skinslide_mesh mesh = {9, 4, 16, counts, indices, rest};
+    skinslide_mesh mesh = {9, 4, 16, counts, indices, rest, NULL};
     skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     skinslide_patch_setup patch = {0};
     skinslide_slider *slider;

@@ -100,11 +100,21 @@ static void free_scene(scene *s) {
     free_mesh(&s->mesh);
 }
 
+/* Subdivided, so that its patches have limit surfaces and their factor. */
+static skinslide_mesh view_of_scene(const scene *s) {
+    static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    skinslide_mesh view = view_of(&s->mesh);
+    view.subdivision = &catmull_clark;
+    return view;
+}
+
 static skinslide_status run_all(scene *s, skinslide_error *error) {
     const skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 64};
     skinslide_slider *slider = NULL;
     skinslide_workspace *workspace = NULL;
-    skinslide_mesh view = view_of(&s->mesh);
+    const skinslide_limit_place place = {5, 0.5f, 0.5f};
+    float point[3];
+    skinslide_mesh view = view_of_scene(s);
     skinslide_status status = skinslide_slider_create(&view, s->setups, 2, &slider, error);
     if (!status)
         status = skinslide_workspace_create(slider, &options, &workspace, error);
@@ -112,6 +122,8 @@ static skinslide_status run_all(scene *s, skinslide_error *error) {
         status = skinslide_slide(workspace, s->points, s->controls, s->slid, NULL, error);
     if (!status)
         status = skinslide_normals(&view, s->points, s->slid, SKINSLIDE_NORMALS_FACE_VARYING, 0, s->normals, error);
+    if (!status)
+        status = skinslide_limit_points(&view, s->points, &place, 1, point, error);
     skinslide_workspace_destroy(workspace);
     skinslide_slider_destroy(slider);
     return status;
@@ -142,8 +154,11 @@ static void a_frame_allocates_nothing(void **state) {
     (void)state;
     scene s;
     make_scene(&s);
-    rig r = rig_of_setups(&s.mesh, s.setups, 2);
+    rig r = {0};
+    skinslide_mesh view = view_of_scene(&s);
     skinslide_error error;
+    assert_ok(skinslide_slider_create(&view, s.setups, 2, &r.slider, &error), &error);
+    assert_ok(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_AUTO, &r.workspace, &error), &error);
     left_to_give = 0, watching = true;
     skinslide_status plain = skinslide_slide(r.workspace, s.points, NULL, s.slid, NULL, &error);
     watching = false;

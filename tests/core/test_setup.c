@@ -182,7 +182,7 @@ static void bad_choices(void **state) {
     setup = setup_of(nine, 9), setup.interpolation = (skinslide_interpolation)4;
     expect_setup(setup, SKINSLIDE_BAD_ARGUMENT, text);
     setup.interpolation = SKINSLIDE_INTERPOLATION_LIMIT;
-    expect_setup(setup, SKINSLIDE_UNSUPPORTED, "patch all: interpolation limit is not supported in this version");
+    expect_setup(setup, SKINSLIDE_BAD_CONTROL, "patch all: interpolation limit needs a mesh that is subdivided");
 }
 
 /* ---- Controls: refused alike in a set-up and in a frame ---- */

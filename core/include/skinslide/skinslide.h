@@ -67,14 +67,53 @@ SKINSLIDE_API const char *skinslide_version(void);
 
 /* ---- The mesh and its patches -------------------------------------------------------------------------------------------- */
 
+/* How a mesh is subdivided when rendered, in the words of UsdGeomMesh. The fallbacks of USD come first, so that an initialiser
+ * that names nothing but the scheme gives USD's. */
+typedef enum skinslide_scheme {
+    SKINSLIDE_SCHEME_NONE,
+    SKINSLIDE_SCHEME_CATMULL_CLARK,
+    SKINSLIDE_SCHEME_LOOP, /* triangles only */
+    SKINSLIDE_SCHEME_BILINEAR
+} skinslide_scheme;
+
+typedef enum skinslide_boundary_rule {
+    SKINSLIDE_BOUNDARY_RULE_EDGE_AND_CORNER, /* the surface reaches edges with one face, and vertices with one face */
+    SKINSLIDE_BOUNDARY_RULE_EDGE_ONLY,
+    SKINSLIDE_BOUNDARY_RULE_NONE /* faces at the boundary of the mesh are holes */
+} skinslide_boundary_rule;
+
+typedef enum skinslide_triangle_rule {
+    SKINSLIDE_TRIANGLE_RULE_CATMULL_CLARK,
+    SKINSLIDE_TRIANGLE_RULE_SMOOTH /* Catmull-Clark only */
+} skinslide_triangle_rule;
+
+/* The subdivision of a mesh. Sharpness is >= 0, and 10 or more is infinitely sharp. */
+typedef struct skinslide_subdivision {
+    skinslide_scheme scheme;
+    skinslide_boundary_rule boundary_rule;
+    skinslide_triangle_rule triangle_rule;
+    int32_t crease_count;
+    int32_t crease_index_count;      /* the sum of crease_lengths */
+    int32_t crease_sharpness_count;  /* crease_count, or one for each edge of each crease: crease_index_count - crease_count */
+    const int32_t *crease_lengths;   /* [crease_count] vertices of each crease, each >= 2 */
+    const int32_t *crease_indices;   /* [crease_index_count] mesh vertices; successive ones of a crease must share an edge */
+    const float *crease_sharpnesses; /* [crease_sharpness_count] */
+    int32_t corner_count;
+    const int32_t *corner_indices;   /* [corner_count] mesh vertices */
+    const float *corner_sharpnesses; /* [corner_count] */
+    int32_t hole_count;
+    const int32_t *hole_indices; /* [hole_count] mesh faces that are not rendered */
+} skinslide_subdivision;
+
 /* A polygon mesh at rest. Counts and indices are those of UsdGeomMesh. */
 typedef struct skinslide_mesh {
     int32_t vertex_count;
     int32_t face_count;
-    int32_t index_count;         /* the sum of face_vertex_counts */
-    const int32_t *face_counts;  /* [face_count] vertices of each face */
-    const int32_t *face_indices; /* [index_count] mesh vertices, face by face */
-    const float *rest_points;    /* [vertex_count][3] the pose in which nothing slides */
+    int32_t index_count;                      /* the sum of face_vertex_counts */
+    const int32_t *face_counts;               /* [face_count] vertices of each face */
+    const int32_t *face_indices;              /* [index_count] mesh vertices, face by face */
+    const float *rest_points;                 /* [vertex_count][3] the pose in which nothing slides */
+    const skinslide_subdivision *subdivision; /* NULL: none */
 } skinslide_mesh;
 
 /* Where the outer boundary of a patch goes (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
@@ -97,12 +136,17 @@ typedef enum skinslide_rule {
     SKINSLIDE_RULE_FAST  /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
 } skinslide_rule;
 
-/* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LINEAR. */
+/* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
+ * LIMIT keeps the shape of the limit surface and not that of the faces: from the LINEAR result, the limit points of the free
+ * vertices and of the middles of the patch's faces are taken back, along the normal, to where each is looked up on the limit
+ * surface of the deformed mesh, as near as the free vertices can take all of them with every other held. It can be as near as
+ * faces are fine for the slide. A vertex that this would take farther from its LINEAR place than half the mean edge of the
+ * face it lands in is put at that distance, and counted as damped: the solve rings where a target jumps over a crease. */
 typedef enum skinslide_interpolation {
     SKINSLIDE_INTERPOLATION_AUTO,
     SKINSLIDE_INTERPOLATION_LINEAR,     /* barycentric, in the triangle fan from the face's first vertex */
     SKINSLIDE_INTERPOLATION_MEAN_VALUE, /* mean value coordinates in the polygon */
-    SKINSLIDE_INTERPOLATION_LIMIT       /* on the subdivision limit surface: UNSUPPORTED in this version */
+    SKINSLIDE_INTERPOLATION_LIMIT       /* on the subdivision limit surface */
 } skinslide_interpolation;
 
 /* What an artist paints and animates on a patch. Start from SKINSLIDE_CONTROLS_DEFAULT. Force densities multiply each other and
@@ -152,7 +196,9 @@ typedef struct skinslide_slider skinslide_slider;
  * vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an edge with three faces,
  * faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not > 0, a weight not
  * finite, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED,
- * OUT_OF_MEMORY. */
+ * OUT_OF_MEMORY. With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that
+ * is not an edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a
+ * hole of the surface), BAD_CONTROL (the mesh is not subdivided). */
 SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                        int32_t setup_count, skinslide_slider **out, skinslide_error *error);
 
@@ -258,6 +304,7 @@ typedef struct skinslide_patch_result {
     int32_t slid_vertices;     /* free vertices that moved */
     int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
+    int32_t damped_vertices;   /* LIMIT only: brought back towards their place under LINEAR */
     int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t found_in_centre;   /* vertices in the face of their own texel of the texture */
@@ -301,6 +348,27 @@ SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_wor
  * Fails with BAD_ARGUMENT where there is no such patch, no frame yet, or the lookup is EXACT; DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
                                                              uint32_t *texels, skinslide_error *error);
+
+/* ---- The limit surface ---------------------------------------------------------------------------------------------------- */
+
+/* A place on a limit surface. Every face of n vertices is n quads, one a corner, that meet at its middle: s goes from the
+ * corner along its side to the next corner, t along the side to the one before, and both are 1 at the middle of the face. */
+typedef struct skinslide_limit_place {
+    int32_t corner; /* an index of face_indices */
+    float s, t;     /* 0..1 */
+} skinslide_limit_place;
+
+/* Points of the limit surface of a subdivided mesh.
+ *   mesh     in   rest_points are not read
+ *   points   in   [vertex_count][3]
+ *   places   in   [count]
+ *   out      out  [count][3]
+ * Fast where places of one face follow each other.
+ * Fails with BAD_ARGUMENT, BAD_MESH (as above, or a mesh that is not subdivided), BAD_PATCH (a place on a hole), BAD_POINTS,
+ * OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_limit_points(const skinslide_mesh *mesh, const float *points,
+                                                      const skinslide_limit_place *places, int32_t count, float *out,
+                                                      skinslide_error *error);
 
 /* ---- What else a cache holds --------------------------------------------------------------------------------------------- */
 

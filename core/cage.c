@@ -1,0 +1,336 @@
+/* Interpolation LIMIT: moves the cage so that the limit surface keeps its shape and only its parameters slide.
+ *
+ *     d = linear displacement;  twice:  r = (t - L Md) - L d,   d += argmin | L y - n (n.r) |
+ *                                                                     y
+ * A row of L has the weights with which free vertices make one sample of the limit surface: the limit points of the free
+ * vertices, and the middles of the patch's faces, which keep the surface from ringing in between. t is the point of the limit
+ * surface of Md at which the sample is looked up, a middle at the mean of its corners' queries, and n the normal there. L
+ * depends on the mesh alone: it is factored once a shot. Taking the whole of r in place of its part along n would slide the
+ * samples by exactly what was looked up, but rings where the slide changes within a few faces, and bunches the texture up.
+ *
+ * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near each sample,
+ * so that where the mesh is does not matter. */
+#include "internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where a sample is on the patch when nothing slides. */
+typedef struct sample {
+    int32_t face;       /* patch face */
+    ss_parameter at;    /* in it */
+    int32_t origin;     /* a mesh vertex near by */
+    int32_t free_index; /* of the vertex that it is the limit point of; -1 for the middle of the face */
+} sample;
+
+struct ss_cage {
+    ss_memory memory;
+    const ss_patch *patch;
+    bool loop; /* the scheme is */
+    ss_surfaces *surfaces;
+    ss_sparse *factor;
+    int32_t sample_count; /* free_count limit points, then face_count middles */
+    sample *samples;
+    int32_t *free_index; /* [vertex_count] place in free_vertex, -1 where held */
+    ss_rows stencils;    /* [sample_count] columns are mesh vertices */
+};
+
+struct ss_cage_work {
+    ss_memory memory;
+    const ss_cage *cage;
+    ss_sparse_work *factor;
+    ss_face_tree *tree;
+    double (*residual)[3]; /* [sample_count] r */
+    double (*normal)[3];   /* [sample_count] n */
+    double (*along)[3];    /* [sample_count] n (n.r) */
+    double (*solution)[3]; /* [free_count] d */
+    double *scratch;       /* [ss_surfaces_scratch] */
+};
+
+/* ---- Samples ---- */
+
+static void list_samples(ss_cage *cage) {
+    const ss_patch *patch = cage->patch;
+    const ss_faces *faces = &patch->faces;
+    sample *next = cage->samples;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        cage->free_index[v] = -1;
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        int32_t vertex = patch->free_vertex[i], corner = patch->vertex_corner[vertex], face = faces->corner_face[corner];
+        ss_parameter at = ss_limit_parameter(cage->surfaces, face, corner - faces->face_start[face], 0, 0);
+        cage->free_index[vertex] = i;
+        *next++ = (sample){face, at, patch->mesh_vertex[vertex], i};
+    }
+    for (int32_t f = 0; f < faces->face_count; f++) {
+        int32_t origin = patch->mesh_vertex[faces->corner_vertex[faces->face_start[f]]];
+        *next++ = (sample){f, ss_limit_parameter(cage->surfaces, f, 0, 1, 1), origin, -1};
+    }
+}
+
+/* ---- The system ---- */
+
+static const double negligible = 1e-13; /* weights that OpenSubdiv leaves where there are none */
+
+/* Row s of the stencils, for which there is room. */
+static void append_stencil(const ss_cage *cage, int32_t s, double *weights, ss_rows *rows) {
+    const sample *own = &cage->samples[s];
+    const int32_t *vertices;
+    int32_t count = ss_limit_stencil(cage->surfaces, own->face, &own->at, &vertices, weights);
+    int32_t begin = rows->start[s], end = begin;
+    for (int32_t k = 0; k < count; k++) {
+        int32_t place = begin;
+        if (fabs(weights[k]) < negligible)
+            continue;
+        while (place < end && rows->column[place] != vertices[k])
+            place++;
+        if (place == end)
+            rows->column[end] = vertices[k], rows->value[end++] = 0;
+        rows->value[place] += weights[k];
+    }
+    rows->start[s + 1] = end;
+}
+
+static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
+    int32_t count = cage->sample_count, most = ss_surfaces_most_vertices(cage->surfaces);
+    ss_rows *rows = &cage->stencils;
+    ss_memory scratch = {0};
+    double *weights = SS_NEW(&scratch, double, most);
+    rows->row_count = count;
+    rows->start = SS_NEW(&cage->memory, int32_t, (int64_t)count + 1);
+    rows->column = SS_NEW(&cage->memory, int32_t, (int64_t)count * most);
+    rows->value = SS_NEW(&cage->memory, double, (int64_t)count *most);
+    skinslide_status status = cage->memory.failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    for (int32_t s = 0; s < count && !status; s++)
+        append_stencil(cage, s, weights, rows);
+    ss_free(&scratch);
+    return status;
+}
+
+/* Drops the columns of held vertices, whose p - Md is 0. */
+static void restrict_to_free(const ss_cage *cage, ss_rows *rows) {
+    const ss_rows *all = &cage->stencils;
+    for (int32_t s = 0, end = 0; s < all->row_count; s++) {
+        for (int32_t k = all->start[s]; k < all->start[s + 1]; k++) {
+            int32_t vertex = ss_patch_vertex(cage->patch, all->column[k]);
+            if (vertex >= 0 && cage->free_index[vertex] >= 0)
+                rows->column[end] = cage->free_index[vertex], rows->value[end++] = all->value[k];
+        }
+        rows->start[s + 1] = end;
+    }
+}
+
+static skinslide_status factor(ss_cage *cage, skinslide_error *error) {
+    const ss_rows *all = &cage->stencils;
+    ss_memory scratch = {0};
+    ss_rows rows = {.row_count = all->row_count, .column_count = cage->patch->free_count};
+    rows.start = SS_NEW(&scratch, int32_t, (int64_t)all->row_count + 1);
+    rows.column = SS_NEW(&scratch, int32_t, all->start[all->row_count]);
+    rows.value = SS_NEW(&scratch, double, all->start[all->row_count]);
+    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status) {
+        restrict_to_free(cage, &rows);
+        status = ss_sparse_create(&rows, cage->patch->label, &cage->factor, error);
+    }
+    ss_free(&scratch);
+    return status;
+}
+
+/* ---- Creation ---- */
+
+static skinslide_status build(ss_cage *cage, skinslide_error *error) {
+    cage->sample_count = cage->patch->free_count + cage->patch->faces.face_count;
+    cage->samples = SS_NEW(&cage->memory, sample, cage->sample_count);
+    cage->free_index = SS_NEW(&cage->memory, int32_t, cage->patch->vertex_count);
+    if (cage->memory.failed)
+        return ss_out_of_memory(error);
+    list_samples(cage);
+    skinslide_status status = list_stencils(cage, error);
+    return status ? status : factor(cage, error);
+}
+
+skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
+                                skinslide_error *error) {
+    ss_cage *cage = calloc(1, sizeof *cage);
+    if (!cage)
+        return ss_out_of_memory(error);
+    cage->patch = patch, cage->loop = loop;
+    skinslide_status status =
+        ss_surfaces_create(topology, patch->mesh_face, patch->faces.face_count, patch->label, &cage->surfaces, error);
+    if (!status)
+        status = build(cage, error);
+    if (status)
+        ss_cage_destroy(cage);
+    else
+        *out = cage;
+    return status;
+}
+
+void ss_cage_destroy(ss_cage *cage) {
+    if (!cage)
+        return;
+    ss_sparse_destroy(cage->factor);
+    ss_surfaces_destroy(cage->surfaces);
+    ss_free(&cage->memory);
+    free(cage);
+}
+
+skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, skinslide_error *error) {
+    ss_cage_work *work = calloc(1, sizeof *work);
+    if (!work)
+        return ss_out_of_memory(error);
+    work->cage = cage;
+    work->residual = ss_new(&work->memory, cage->sample_count, sizeof *work->residual);
+    work->normal = ss_new(&work->memory, cage->sample_count, sizeof *work->normal);
+    work->along = ss_new(&work->memory, cage->sample_count, sizeof *work->along);
+    work->solution = ss_new(&work->memory, cage->patch->free_count, sizeof *work->solution);
+    work->scratch = SS_NEW(&work->memory, double, ss_surfaces_scratch(cage->surfaces));
+    skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status)
+        status = ss_sparse_work_create(cage->factor, &work->factor, error);
+    if (!status)
+        status = ss_face_tree_create(&cage->patch->faces, &work->tree, error);
+    if (status)
+        ss_cage_work_destroy(work);
+    else
+        *out = work;
+    return status;
+}
+
+void ss_cage_work_destroy(ss_cage_work *work) {
+    if (!work)
+        return;
+    ss_face_tree_destroy(work->tree);
+    ss_sparse_work_destroy(work->factor);
+    ss_free(&work->memory);
+    free(work);
+}
+
+/* ---- Targets of one frame ---- */
+
+/* Looks the middle of a face up, at the mean of where its corners are looked up. It stays where all of them do. */
+static ss_location locate_middle(const ss_cage_work *work, const ss_pose *pose, int32_t face) {
+    const ss_faces *faces = &work->cage->patch->faces;
+    int32_t begin = faces->face_start[face], end = faces->face_start[face + 1];
+    ss_location found = {.face = SS_STAYS};
+    double mean[2] = {0, 0};
+    bool stays = true;
+    for (int32_t c = begin; c < end; c++) {
+        int32_t vertex = faces->corner_vertex[c], i = work->cage->free_index[vertex];
+        const double *place = i < 0 ? pose->uv[vertex] : pose->queries[i];
+        stays = stays && (i < 0 || pose->locations[i].face == SS_STAYS);
+        for (int k = 0; k < 2; k++)
+            mean[k] += place[k] / (end - begin);
+    }
+    if (!stays && !ss_face_tree_holding(work->tree, mean, &found))
+        ss_face_tree_nearest(work->tree, mean, &found);
+    return found;
+}
+
+/* Where a sample is looked up: t less the origin, and n. A sample that stays is looked up where it is. */
+static void find_target(const ss_cage_work *work, const ss_pose *pose, const sample *own, const ss_location *location,
+                        const double origin[3], double target[3], double normal[3]) {
+    const ss_cage *cage = work->cage;
+    bool stays = location->face == SS_STAYS;
+    int32_t face = stays ? own->face : location->face;
+    ss_parameter at = stays ? own->at : ss_parametrise(&cage->patch->faces, cage->loop, pose->uv, location);
+    ss_limit_prepare(cage->surfaces, face, pose->points, origin, work->scratch);
+    ss_limit_frame(cage->surfaces, face, &at, work->scratch, target, normal);
+}
+
+/* residual = t - L Md, and n, of sample s. */
+static void list_target(const ss_cage_work *work, const ss_pose *pose, int32_t s) {
+    const sample *own = &work->cage->samples[s];
+    const ss_rows *stencils = &work->cage->stencils;
+    ss_location location = own->free_index < 0 ? locate_middle(work, pose, own->face) : pose->locations[own->free_index];
+    const float *near = pose->points + 3 * (int64_t)own->origin;
+    double origin[3] = {near[0], near[1], near[2]}, *residual = work->residual[s];
+    find_target(work, pose, own, &location, origin, residual, work->normal[s]);
+    for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
+        for (int axis = 0; axis < 3; axis++)
+            residual[axis] -= stencils->value[k] * (pose->points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
+    for (int axis = 0; axis < 3 && location.face == SS_STAYS; axis++)
+        residual[axis] = 0;
+}
+
+static void list_targets(const ss_cage_work *work, const ss_pose *pose) {
+    ss_face_tree_build(work->tree, pose->uv);
+    for (int32_t s = 0; s < work->cage->sample_count; s++)
+        list_target(work, pose, s);
+}
+
+/* ---- The solve ---- */
+
+enum { PASSES = 2 }; /* more come nearer by little, and move vertices along the surface to do so */
+
+/* n (n.r); all of r where the surface has no normal. */
+static void list_along(const ss_cage_work *work) {
+    for (int32_t s = 0; s < work->cage->sample_count; s++) {
+        const double *n = work->normal[s], *r = work->residual[s];
+        double height = n[0] * r[0] + n[1] * r[1] + n[2] * r[2];
+        bool none = n[0] == 0 && n[1] == 0 && n[2] == 0;
+        for (int axis = 0; axis < 3; axis++)
+            work->along[s][axis] = none ? r[axis] : height * n[axis];
+    }
+}
+
+/* From the linear displacement, in solution. */
+static void solve(const ss_cage_work *work) {
+    ss_sparse_subtract(work->cage->factor, (const double(*)[3])work->solution, work->residual);
+    for (int pass = 0; pass < PASSES; pass++) {
+        list_along(work);
+        ss_sparse_correct(work->factor, (const double(*)[3])work->along, work->solution, work->residual);
+    }
+}
+
+/* ---- Damping ---- */
+
+static const double most_deviation = 0.5; /* of the mean edge of the face, between LIMIT and LINEAR */
+
+static double mean_edge(const ss_faces *faces, int32_t face, const double *lengths) {
+    double sum = 0;
+    for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++)
+        sum += lengths[faces->corner_edge[c]];
+    return sum / (ss_fan_size(faces, face) + 2);
+}
+
+static double bound(const ss_cage *cage, const ss_pose *pose, int32_t i) {
+    int32_t face = pose->locations[i].face == SS_STAYS ? cage->samples[i].face : pose->locations[i].face;
+    return most_deviation * mean_edge(&cage->patch->faces, face, pose->lengths);
+}
+
+/* Puts the solution in place of the linear displacement, no farther from it than the bound. Returns whether that held it back.
+ */
+static bool take_damped(const double solution[3], double most, double linear[3]) {
+    double off[3], square = 0;
+    for (int k = 0; k < 3; k++) {
+        off[k] = solution[k] - linear[k];
+        square += off[k] * off[k];
+    }
+    bool damped = square > most * most;
+    double share = damped ? most / sqrt(square) : 1;
+    for (int k = 0; k < 3; k++)
+        linear[k] = damped ? linear[k] + share * off[k] : solution[k];
+    return damped;
+}
+
+/* ---- One frame ---- */
+
+static bool any_slides(const ss_pose *pose, int32_t count) {
+    for (int32_t i = 0; i < count; i++)
+        if (pose->locations[i].face != SS_STAYS)
+            return true;
+    return false;
+}
+
+int32_t ss_move_cage(ss_cage_work *work, const ss_pose *pose, double (*displacement)[3]) {
+    int32_t damped = 0, count = work->cage->patch->free_count;
+    if (!any_slides(pose, count))
+        return 0;
+    memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
+    list_targets(work, pose);
+    solve(work);
+    for (int32_t i = 0; i < count; i++)
+        damped += take_damped(work->solution[i], bound(work->cage, pose, i), displacement[i]);
+    return damped;
+}

@@ -1,0 +1,453 @@
+/* Interpolation LIMIT: what does not slide keeps its bits, what does keeps the limit surface. */
+#define _POSIX_C_SOURCE 200809L /* pthread */
+#include "surface.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+static const skinslide_subdivision loop = {.scheme = SKINSLIDE_SCHEME_LOOP};
+
+/* A slider of one set-up over some faces of a subdivided mesh. */
+static rig subdivided_rig(const test_mesh *mesh, const skinslide_subdivision *own, skinslide_patch_setup setup) {
+    rig r = {0};
+    skinslide_mesh view = view_of(mesh);
+    view.subdivision = own;
+    int32_t *faces = all_faces(mesh);
+    if (!setup.faces)
+        setup.name = "all", setup.faces = faces, setup.face_count = mesh->face_count;
+    skinslide_error error;
+    assert_ok(skinslide_slider_create(&view, &setup, 1, &r.slider, &error), &error);
+    assert_ok(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_AUTO, &r.workspace, &error), &error);
+    free(faces);
+    return r;
+}
+
+static skinslide_patch_setup chosen(skinslide_interpolation interpolation) {
+    skinslide_patch_setup setup = setup_of(NULL, 0);
+    setup.interpolation = interpolation;
+    return setup;
+}
+
+static const skinslide_subdivision *scheme_for(const test_mesh *mesh) {
+    for (int32_t f = 0; f < mesh->face_count; f++)
+        if (mesh->face_counts[f] != 3)
+            return &catmull_clark;
+    return &loop;
+}
+
+/* ---- Bits ---- */
+
+static void rest_slides_nothing(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++)
+        for (int holes = 0; holes < 2; holes++)
+            for (int scheme = 0; scheme < 2; scheme++) {
+                fixture f = make_fixture(i);
+                skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_AUTO);
+                setup.holes = (skinslide_holes)holes;
+                rig r = subdivided_rig(&f.mesh, scheme ? scheme_for(&f.mesh) : &catmull_clark, setup);
+                skinslide_patch_result result;
+                float *slid = slide_with(&r, &f.mesh, f.mesh.points, NULL, &result);
+                assert_same_bytes(slid, f.mesh.points, POINT_BYTES(&f.mesh));
+                assert_int_equal(result.slid_vertices + result.damped_vertices, 0);
+                free(slid);
+                free_rig(&r);
+                free_mesh(&f.mesh);
+            }
+}
+
+static void an_envelope_of_zero_slides_nothing(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
+        fixture f = make_fixture(i);
+        skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_LIMIT);
+        setup.controls.envelope = 0;
+        rig r = subdivided_rig(&f.mesh, &catmull_clark, setup);
+        float *points = random_pose(&f.mesh, (uint64_t)i), *slid = slide_with(&r, &f.mesh, points, NULL, NULL);
+        assert_same_bytes(slid, points, POINT_BYTES(&f.mesh));
+        free(points), free(slid);
+        free_rig(&r);
+        free_mesh(&f.mesh);
+    }
+}
+
+/* Faces (2..9, 2..9) of a 12 x 12 grid: to be freed. */
+static int32_t *inner_faces(const test_mesh *mesh, int32_t *count) {
+    int32_t *faces = all_faces(mesh);
+    *count = 0;
+    for (int32_t f = 0; f < 144; f++)
+        if (f % 12 >= 2 && f % 12 < 10 && f / 12 >= 2 && f / 12 < 10)
+            faces[(*count)++] = f;
+    return faces;
+}
+
+static void held_vertices_keep_their_bits(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(12, 12);
+    skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_LIMIT);
+    int32_t *faces = inner_faces(&mesh, &setup.face_count);
+    setup.faces = faces, setup.name = "inner";
+    rig r = subdivided_rig(&mesh, &catmull_clark, setup);
+    float *points = bumped(&mesh, 5, 6, 2, 3), *slid = slide_with(&r, &mesh, points, NULL, NULL);
+    for (int32_t v = 0; v < mesh.vertex_count; v++) {
+        bool free_vertex = v % 13 > 2 && v % 13 < 10 && v / 13 > 2 && v / 13 < 10;
+        assert_int_equal(memcmp(slid + 3 * v, points + 3 * v, sizeof(float[3])) != 0, free_vertex);
+    }
+    free(points), free(slid), free(faces);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+static void auto_is_limit_where_the_mesh_is_subdivided(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(8, 8);
+    const skinslide_subdivision none = {0};
+    const skinslide_subdivision *subdivisions[3] = {NULL, &none, &catmull_clark};
+    float *points = bumped(&mesh, 4, 4, 2, 3);
+    for (int i = 0; i < 3; i++) {
+        rig own = subdivided_rig(&mesh, subdivisions[i], chosen(SKINSLIDE_INTERPOLATION_AUTO));
+        rig same = subdivided_rig(&mesh, &catmull_clark,
+                                  chosen(i < 2 ? SKINSLIDE_INTERPOLATION_LINEAR : SKINSLIDE_INTERPOLATION_LIMIT));
+        float *slid = slide_with(&own, &mesh, points, NULL, NULL), *expected = slide_with(&same, &mesh, points, NULL, NULL);
+        assert_same_bytes(slid, expected, POINT_BYTES(&mesh));
+        free(slid), free(expected);
+        free_rig(&own), free_rig(&same);
+    }
+    free(points);
+    free_mesh(&mesh);
+}
+
+/* ---- The surface ---- */
+
+enum { SIDE = 3 }; /* samples along a quad of the limit surface */
+
+/* Limit points of all of the mesh, as a mesh of their own: each corner's quad as SIDE x SIDE quads. */
+static test_mesh sampled(const skinslide_mesh *view, const float *points) {
+    int32_t corners = view->index_count, per_corner = (SIDE + 1) * (SIDE + 1);
+    skinslide_limit_place *places = calloc((size_t)(corners * per_corner), sizeof *places);
+    for (int32_t c = 0; c < corners; c++)
+        for (int32_t k = 0; k < per_corner; k++)
+            places[c * per_corner + k] =
+                (skinslide_limit_place){c, (float)(k % (SIDE + 1)) / SIDE, (float)(k / (SIDE + 1)) / SIDE};
+    float *out = malloc((size_t)(corners * per_corner) * sizeof(float[3]));
+    skinslide_error error;
+    assert_ok(skinslide_limit_points(view, points, places, corners * per_corner, out, &error), &error);
+    int32_t faces = corners * SIDE * SIDE, *counts = malloc((size_t)faces * sizeof *counts);
+    int32_t *indices = malloc((size_t)faces * sizeof(int32_t[4]));
+    for (int32_t f = 0; f < faces; f++) {
+        int32_t k = f % (SIDE * SIDE), first = f / (SIDE * SIDE) * per_corner + k / SIDE * (SIDE + 1) + k % SIDE;
+        counts[f] = 4;
+        indices[4 * f] = first, indices[4 * f + 1] = first + 1;
+        indices[4 * f + 2] = first + SIDE + 2, indices[4 * f + 3] = first + SIDE + 1;
+    }
+    test_mesh mesh = copy_mesh(corners * per_corner, faces, counts, indices, out);
+    free(places), free(out), free(counts), free(indices);
+    return mesh;
+}
+
+typedef struct closeness {
+    double most, mean, stretch;
+} closeness;
+
+/* How far the limit surface of the result is from that of the pose, one way. */
+static closeness measure(const test_mesh *mesh, const skinslide_subdivision *own, const float *points,
+                         skinslide_interpolation interpolation) {
+    skinslide_mesh view = view_of(mesh);
+    view.subdivision = own;
+    rig r = subdivided_rig(mesh, own, chosen(interpolation));
+    skinslide_patch_result result;
+    float *slid = slide_with(&r, mesh, points, NULL, &result);
+    test_mesh before = sampled(&view, points), after = sampled(&view, slid);
+    closeness close = {.stretch = result.stretch_after};
+    int32_t count = 0;
+    for (int32_t v = 0; v < after.vertex_count; v += 31, count++) {
+        double distance = distance_to_mesh(&before, before.points, after.points + 3 * v);
+        close.most = fmax(close.most, distance), close.mean += distance;
+    }
+    close.mean /= count;
+    free(slid);
+    free_mesh(&before), free_mesh(&after);
+    free_rig(&r);
+    return close;
+}
+
+/* A bump, which drags what is under it aside. */
+static void expect_closer(const skinslide_subdivision *own, double times) {
+    test_mesh mesh = quad_grid(14, 14);
+    float *points = bumped(&mesh, 7.3, 6.6, 3.2, 2.4);
+    closeness linear = measure(&mesh, own, points, SKINSLIDE_INTERPOLATION_LINEAR);
+    closeness limit = measure(&mesh, own, points, SKINSLIDE_INTERPOLATION_LIMIT);
+    assert_true(limit.most * times < linear.most);
+    assert_true(limit.mean * times < linear.mean);
+    assert_true(limit.stretch < 1.05 * linear.stretch);
+    free(points);
+    free_mesh(&mesh);
+}
+
+static void the_limit_surface_stays_where_it_was(void **state) {
+    (void)state;
+    expect_closer(&catmull_clark, 5);
+}
+
+/* Vertex (i, j) of the grid is 15 j + i. A semi-sharp crease across the patch, under the flank of the bump, and boundary rules.
+ */
+static void creases_and_boundary_rules_are_the_mesh_s_own(void **state) {
+    (void)state;
+    int32_t lengths[1] = {15}, indices[15];
+    const float sharpness[1] = {1.5f};
+    for (int32_t k = 0; k < 15; k++)
+        indices[k] = 15 * k + 9;
+    skinslide_subdivision own = catmull_clark;
+    own.boundary_rule = SKINSLIDE_BOUNDARY_RULE_EDGE_ONLY;
+    expect_closer(&own, 5);
+    own.crease_count = own.crease_sharpness_count = 1, own.crease_index_count = 15;
+    own.crease_lengths = lengths, own.crease_indices = indices, own.crease_sharpnesses = sharpness;
+    expect_closer(&own, 2); /* what is slid over the crease has it somewhere else */
+}
+
+/* Every scheme on every fixture: finite, and nowhere farther from its linear place than the bound. */
+static void every_fixture_stays_within_the_bound(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++)
+        for (int scheme = 1; scheme <= 3; scheme++) {
+            fixture f = make_fixture(i);
+            skinslide_subdivision own = {.scheme = (skinslide_scheme)scheme};
+            if (scheme == SKINSLIDE_SCHEME_LOOP && scheme_for(&f.mesh) != &loop)
+                own.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK, own.triangle_rule = SKINSLIDE_TRIANGLE_RULE_SMOOTH;
+            rig limit = subdivided_rig(&f.mesh, &own, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
+            rig linear = subdivided_rig(&f.mesh, &own, chosen(SKINSLIDE_INTERPOLATION_LINEAR));
+            float *points = random_pose(&f.mesh, (uint64_t)i + 9);
+            float *slid = slide_with(&limit, &f.mesh, points, NULL, NULL),
+                  *flat = slide_with(&linear, &f.mesh, points, NULL, NULL);
+            double longest = 0;
+            for (int32_t face = 0, c = 0; face < f.mesh.face_count; c += f.mesh.face_counts[face++])
+                for (int32_t k = 0; k < f.mesh.face_counts[face]; k++) {
+                    const float *a = points + 3 * f.mesh.face_indices[c + k];
+                    const float *b = points + 3 * f.mesh.face_indices[c + (k + 1) % f.mesh.face_counts[face]];
+                    longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+                }
+            for (int32_t v = 0; v < f.mesh.vertex_count; v++) {
+                const float *a = slid + 3 * v, *b = flat + 3 * v;
+                assert_near(hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]), 0, 0.5001 * longest);
+            }
+            free(points), free(slid), free(flat);
+            free_rig(&limit), free_rig(&linear);
+            free_mesh(&f.mesh);
+        }
+}
+
+static void a_plane_stays_a_plane(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < 2; i++) {
+        test_mesh mesh = i ? brick_wall(8, 6) : quad_grid(9, 9);
+        rig r = subdivided_rig(&mesh, &catmull_clark, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
+        float *points = copy_points(&mesh);
+        for (int32_t v = 0; v < mesh.vertex_count; v++) {
+            float *p = points + 3 * v;
+            p[0] += 0.08f * p[0] * p[0], p[1] += 0.05f * p[0] * p[1]; /* in the plane */
+            p[2] = 0.5f * p[0] - 0.25f * p[1] + 2;
+        }
+        skinslide_patch_result result;
+        float *slid = slide_with(&r, &mesh, points, NULL, &result);
+        assert_true(result.slid_vertices > 10);
+        for (int32_t v = 0; v < mesh.vertex_count; v++)
+            assert_near(slid[3 * v + 2], 0.5 * slid[3 * v] - 0.25 * slid[3 * v + 1] + 2,
+                        4e-6 * extent_of(points, mesh.vertex_count));
+        free(points), free(slid);
+        free_rig(&r);
+        free_mesh(&mesh);
+    }
+}
+
+/* Turned, doubled and moved. Rounding to float of the pose, which moves lookups, is all that differs. */
+static void similarities_commute(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
+        fixture f = make_fixture(i);
+        rig r = subdivided_rig(&f.mesh, &catmull_clark, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
+        float *points = random_pose(&f.mesh, 5), *moved = copy_points(&f.mesh);
+        for (int32_t v = 0; v < f.mesh.vertex_count; v++) {
+            const float *p = points + 3 * v;
+            moved[3 * v] = 3 - 2 * p[1], moved[3 * v + 1] = 2 * p[0] + 1, moved[3 * v + 2] = 2 * p[2] - 7;
+        }
+        float *slid = slide_with(&r, &f.mesh, points, NULL, NULL), *slid_moved = slide_with(&r, &f.mesh, moved, NULL, NULL);
+        double size = extent_of(points, f.mesh.vertex_count);
+        for (int32_t v = 0; v < f.mesh.vertex_count; v++) {
+            assert_near(slid_moved[3 * v], 3 - 2.0 * slid[3 * v + 1], 1e-3 * size);
+            assert_near(slid_moved[3 * v + 1], 2.0 * slid[3 * v] + 1, 1e-3 * size);
+            assert_near(slid_moved[3 * v + 2], 2.0 * slid[3 * v + 2] - 7, 1e-3 * size);
+        }
+        free(points), free(moved), free(slid), free(slid_moved);
+        free_rig(&r);
+        free_mesh(&f.mesh);
+    }
+}
+
+/* Of no weight: its limit point, not its cage point, keeps its place along the surface's normal. */
+static void a_vertex_of_no_weight_keeps_its_limit_point(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(10, 10);
+    float weight[121], *points = bumped(&mesh, 5, 5, 2.5, 2);
+    skinslide_mesh view = view_of(&mesh);
+    view.subdivision = &catmull_clark;
+    skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_LIMIT);
+    for (int32_t v = 0; v < 121; v++)
+        weight[v] = v == 60 ? 0 : 1;
+    setup.controls.weight = weight;
+    rig r = subdivided_rig(&mesh, &catmull_clark, setup);
+    float *slid = slide_with(&r, &mesh, points, NULL, NULL);
+    test_mesh before = sampled(&view, points);
+    skinslide_limit_place place = {4 * 44 + 2, 0, 0}; /* face (4, 4), at its far corner: vertex (5, 5) */
+    assert_int_equal(mesh.face_indices[place.corner], 60);
+    float after[3];
+    skinslide_error error;
+    assert_ok(skinslide_limit_points(&view, slid, &place, 1, after, &error), &error);
+    assert_true(memcmp(slid + 180, points + 180, sizeof(float[3])) != 0);
+    assert_near(distance_to_mesh(&before, before.points, after), 0, 0.02);
+    free(points), free(slid);
+    free_mesh(&before);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- Damping ---- */
+
+/* A spike that one vertex makes: the surface cannot be kept on so few faces, and the result is held back and counted. */
+static void ringing_is_damped_and_counted(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(8, 8);
+    rig limit = subdivided_rig(&mesh, &catmull_clark, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
+    float *points = copy_points(&mesh);
+    points[3 * 40 + 2] = 30, points[3 * 41 + 2] = -30, points[3 * 42 + 2] = 30;
+    skinslide_patch_result result;
+    float *slid = slide_with(&limit, &mesh, points, NULL, &result);
+    assert_true(result.damped_vertices > 0 && result.damped_vertices < 49);
+    free(points), free(slid);
+    free_rig(&limit);
+    free_mesh(&mesh);
+}
+
+/* ---- Threads ---- */
+
+enum { THREADS = 4, FRAMES = 6 };
+
+typedef struct job {
+    const skinslide_slider *slider;
+    float *const *points;
+    float *const *expected;
+    size_t bytes;
+    int first, differ;
+} job;
+
+static void *run_job(void *argument) {
+    job *j = argument;
+    skinslide_workspace *workspace = NULL;
+    float *slid = malloc(j->bytes);
+    j->differ = skinslide_workspace_create(j->slider, SKINSLIDE_LOOKUP_AUTO, &workspace, NULL) ? 1 : 0;
+    for (int k = 0; k < 8 * FRAMES && !j->differ; k++) {
+        int i = (j->first + 5 * k) % FRAMES;
+        j->differ +=
+            skinslide_slide(workspace, j->points[i], NULL, slid, NULL, NULL) || memcmp(slid, j->expected[i], j->bytes) != 0;
+    }
+    skinslide_workspace_destroy(workspace);
+    free(slid);
+    return NULL;
+}
+
+static void threads_give_the_same_bytes(void **state) {
+    (void)state;
+    test_mesh mesh = brick_wall(9, 8);
+    rig r = subdivided_rig(&mesh, &catmull_clark, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
+    float *points[FRAMES], *expected[FRAMES];
+    for (int i = 0; i < FRAMES; i++) {
+        points[i] = random_pose(&mesh, (uint64_t)i);
+        expected[i] = slide_with(&r, &mesh, points[i], NULL, NULL);
+    }
+    pthread_t threads[THREADS];
+    job jobs[THREADS];
+    for (int t = 0; t < THREADS; t++) {
+        jobs[t] = (job){r.slider, points, expected, POINT_BYTES(&mesh), t, -1};
+        assert_int_equal(pthread_create(&threads[t], NULL, run_job, &jobs[t]), 0);
+    }
+    for (int t = 0; t < THREADS; t++) {
+        assert_int_equal(pthread_join(threads[t], NULL), 0);
+        assert_int_equal(jobs[t].differ, 0);
+    }
+    for (int i = 0; i < FRAMES; i++)
+        free(points[i]), free(expected[i]);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- Bad input, and what is near it ---- */
+
+static void holes_of_the_surface(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(12, 12);
+    skinslide_mesh view = view_of(&mesh);
+    skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_AUTO);
+    int32_t *faces = inner_faces(&mesh, &setup.face_count), inside[1] = {65}, beside[1] = {13};
+    setup.faces = faces, setup.name = "inner";
+    skinslide_subdivision own = catmull_clark;
+    view.subdivision = &own;
+    own.hole_count = 1, own.hole_indices = inside;
+    skinslide_slider *slider = NULL;
+    skinslide_error error;
+    assert_fails(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, SKINSLIDE_BAD_PATCH,
+                 "patch inner: face 65 has no limit surface: it is one of holeIndices");
+    own.hole_indices = beside; /* next to a corner of the patch: as if it were not there */
+    own.boundary_rule = SKINSLIDE_BOUNDARY_RULE_NONE;
+    rig holed = subdivided_rig(&mesh, &own, setup), whole = subdivided_rig(&mesh, &catmull_clark, setup);
+    float *points = bumped(&mesh, 5, 6, 2, 3);
+    float *slid = slide_with(&holed, &mesh, points, NULL, NULL), *expected = slide_with(&whole, &mesh, points, NULL, NULL);
+    assert_same_bytes(slid, expected, POINT_BYTES(&mesh));
+    free(points), free(slid), free(expected), free(faces);
+    free_rig(&holed), free_rig(&whole);
+    free_mesh(&mesh);
+}
+
+static void boundary_faces_under_the_rule_none(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(3, 3);
+    skinslide_mesh view = view_of(&mesh);
+    skinslide_subdivision own = catmull_clark;
+    own.boundary_rule = SKINSLIDE_BOUNDARY_RULE_NONE;
+    view.subdivision = &own;
+    int32_t *faces = all_faces(&mesh);
+    skinslide_patch_setup setup = setup_of(faces, mesh.face_count);
+    skinslide_slider *slider = NULL;
+    skinslide_error error;
+    assert_fails(
+        skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, SKINSLIDE_BAD_PATCH,
+        "patch all: face 0 has no limit surface: interpolateBoundary none leaves the faces at the boundary of the mesh out");
+    view.subdivision = NULL;
+    setup.interpolation = SKINSLIDE_INTERPOLATION_LIMIT;
+    assert_fails(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, SKINSLIDE_BAD_CONTROL,
+                 "patch all: interpolation limit needs a mesh that is subdivided");
+    assert_null(slider);
+    free(faces);
+    free_mesh(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rest_slides_nothing),
+        cmocka_unit_test(an_envelope_of_zero_slides_nothing),
+        cmocka_unit_test(held_vertices_keep_their_bits),
+        cmocka_unit_test(auto_is_limit_where_the_mesh_is_subdivided),
+        cmocka_unit_test(the_limit_surface_stays_where_it_was),
+        cmocka_unit_test(creases_and_boundary_rules_are_the_mesh_s_own),
+        cmocka_unit_test(every_fixture_stays_within_the_bound),
+        cmocka_unit_test(a_plane_stays_a_plane),
+        cmocka_unit_test(similarities_commute),
+        cmocka_unit_test(a_vertex_of_no_weight_keeps_its_limit_point),
+        cmocka_unit_test(ringing_is_damped_and_counted),
+        cmocka_unit_test(threads_give_the_same_bytes),
+        cmocka_unit_test(holes_of_the_surface),
+        cmocka_unit_test(boundary_faces_under_the_rule_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

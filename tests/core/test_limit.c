@@ -1,0 +1,511 @@
+/* Limit surfaces: against uniform refinement, across sides, and what cannot be one. */
+#include "queries.h"
+#include "refined.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEVELS = 5 };
+
+/* ---- Meshes ---- */
+
+static test_mesh cube(void) {
+    static const float points[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    static const int32_t counts[6] = {4, 4, 4, 4, 4, 4};
+    static const int32_t faces[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
+    return copy_mesh(8, 6, counts, faces, &points[0][0]);
+}
+
+static test_mesh octahedron(void) {
+    static const float points[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    static const int32_t counts[8] = {3, 3, 3, 3, 3, 3, 3, 3};
+    static const int32_t faces[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    return copy_mesh(6, 8, counts, faces, &points[0][0]);
+}
+
+/* A quad grid rolled up both ways. */
+static test_mesh torus(int32_t around, int32_t across) {
+    float points[256][3];
+    int32_t counts[256], faces[256][4];
+    for (int32_t j = 0; j < across; j++)
+        for (int32_t i = 0; i < around; i++) {
+            int32_t v = j * around + i, up = (j + 1) % across * around, right = (i + 1) % around;
+            double a = 6.283185307179586 * i / around, b = 6.283185307179586 * j / across, r = 3 + cos(b);
+            points[v][0] = (float)(r * cos(a)), points[v][1] = (float)(r * sin(a)), points[v][2] = (float)sin(b);
+            counts[v] = 4;
+            faces[v][0] = v, faces[v][1] = j * around + right, faces[v][2] = up + right, faces[v][3] = up + i;
+        }
+    return copy_mesh(around * across, around * across, counts, &faces[0][0], &points[0][0]);
+}
+
+static test_mesh nth_mesh(int32_t i) {
+    switch (i) {
+    case 0:
+        return quad_grid(5, 4);
+    case 1:
+        return cube();
+    case 2:
+        return torus(12, 7);
+    case 3:
+        return brick_wall(5, 4);
+    case 4:
+        return triangle_grid(5, 4);
+    case 5:
+        return octahedron();
+    case 6:
+        return grid_with_holes(false);
+    case 7:
+        return finger(6, 4);
+    default:
+        return random_disk((uint64_t)i, 40);
+    }
+}
+
+enum { MESH_COUNT = 16 };
+
+static bool only_triangles(const test_mesh *mesh) {
+    for (int32_t f = 0; f < mesh->face_count; f++)
+        if (mesh->face_counts[f] != 3)
+            return false;
+    return true;
+}
+
+/* ---- Two implementations ---- */
+
+/* Every third edge of faces sharp: semi-sharp, or infinitely. Some corners, too. Owns its arrays. */
+typedef struct creased {
+    skinslide_subdivision own;
+    int32_t *lengths, *indices, *corners;
+    float *sharpnesses, *corner_sharpnesses;
+} creased;
+
+static creased crease_at_random(const test_mesh *mesh, skinslide_scheme scheme, uint64_t seed) {
+    dice d = {seed};
+    size_t room = (size_t)mesh->index_count;
+    creased c = {.own = {.scheme = scheme}};
+    c.lengths = malloc(room * sizeof *c.lengths), c.indices = malloc(2 * room * sizeof *c.indices);
+    c.sharpnesses = malloc(room * sizeof *c.sharpnesses);
+    c.corners = malloc(room * sizeof *c.corners), c.corner_sharpnesses = malloc(room * sizeof *c.corner_sharpnesses);
+    static const float sharpness[] = {0.5f, 1, 2.3f, 10, 20, INFINITY};
+    int32_t creases = 0, corners = 0;
+    for (int32_t f = 0, start = 0; f < mesh->face_count; start += mesh->face_counts[f++]) {
+        int32_t n = mesh->face_counts[f], k = roll_below(&d, n);
+        c.lengths[creases] = 2;
+        c.indices[2 * creases] = mesh->face_indices[start + k];
+        c.indices[2 * creases + 1] = mesh->face_indices[start + (k + 1) % n];
+        c.sharpnesses[creases++] = sharpness[roll_below(&d, 6)];
+        if (f % 5 == 0) {
+            c.corners[corners] = mesh->face_indices[start];
+            c.corner_sharpnesses[corners++] = sharpness[roll_below(&d, 6)];
+        }
+    }
+    c.own.crease_count = c.own.crease_sharpness_count = creases, c.own.crease_index_count = 2 * creases;
+    c.own.crease_lengths = c.lengths, c.own.crease_indices = c.indices, c.own.crease_sharpnesses = c.sharpnesses;
+    c.own.corner_count = corners, c.own.corner_indices = c.corners, c.own.corner_sharpnesses = c.corner_sharpnesses;
+    return c;
+}
+
+static void free_creased(creased *c) {
+    free(c->lengths), free(c->indices), free(c->corners), free(c->sharpnesses), free(c->corner_sharpnesses);
+}
+
+/* Corners, middles of sides and middles of faces: the core's evaluation, and refinement, which has no vertex in the middle of a
+ * loop triangle. Only rounding to float parts them but at corners, next to which a patch may stand for infinitely many. */
+static void compare(const test_mesh *mesh, const skinslide_subdivision *subdivision, double at_corners) {
+    skinslide_mesh view = view_of(mesh);
+    view.subdivision = subdivision;
+    size_t count = 3 * (size_t)mesh->index_count;
+    skinslide_limit_place *places = malloc(count * sizeof *places);
+    float(*got)[3] = malloc(count * sizeof *got);
+    double(*refined)[3][3] = malloc((size_t)mesh->index_count * sizeof *refined);
+    bool loop = subdivision->scheme == SKINSLIDE_SCHEME_LOOP;
+    for (int32_t c = 0; c < mesh->index_count; c++) {
+        places[3 * c] = (skinslide_limit_place){c, 0, 0};
+        places[3 * c + 1] = (skinslide_limit_place){c, 1, 0};
+        places[3 * c + 2] = loop ? places[3 * c] : (skinslide_limit_place){c, 1, 1};
+    }
+    skinslide_error error;
+    skinslide_status status = skinslide_limit_points(&view, mesh->points, places, (int32_t)count, &got[0][0], &error);
+    if (status == SKINSLIDE_UNSUPPORTED) { /* named below */
+        free(places), free(got), free(refined);
+        return;
+    }
+    assert_ok(status, &error);
+    refine_to_limit(&view, mesh->points, LEVELS, refined);
+    for (size_t i = 0; i < count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_near(got[i][axis], refined[i / 3][i % 3][axis],
+                        i % 3 == 0 || (loop && i % 3 == 2) ? at_corners : 1e-6 * extent_of(mesh->points, mesh->vertex_count));
+    free(places), free(got), free(refined);
+}
+
+static void each_mesh(void (*check)(const test_mesh *mesh, skinslide_scheme scheme, int32_t i)) {
+    for (int32_t i = 0; i < MESH_COUNT; i++) {
+        test_mesh mesh = nth_mesh(i);
+        check(&mesh, SKINSLIDE_SCHEME_CATMULL_CLARK, i);
+        check(&mesh, SKINSLIDE_SCHEME_BILINEAR, i);
+        if (only_triangles(&mesh))
+            check(&mesh, SKINSLIDE_SCHEME_LOOP, i);
+        free_mesh(&mesh);
+    }
+}
+
+static double extent(const test_mesh *mesh) {
+    return extent_of(mesh->points, mesh->vertex_count);
+}
+
+/* Seen at corners: 3.4e-4 of the mesh on random disks, rounding on all others. */
+static void check_smooth(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
+    skinslide_subdivision own = {.scheme = scheme};
+    compare(mesh, &own, (i < 8 ? 1e-6 : 1e-3) * extent(mesh));
+    own.triangle_rule = SKINSLIDE_TRIANGLE_RULE_SMOOTH;
+    compare(mesh, &own, (i < 8 ? 1e-6 : 1e-3) * extent(mesh));
+    own.boundary_rule = SKINSLIDE_BOUNDARY_RULE_EDGE_ONLY;
+    compare(mesh, &own, (i < 8 ? 1e-6 : 1e-3) * extent(mesh));
+}
+
+static void stencils_match_a_refined_mesh(void **state) {
+    (void)state;
+    each_mesh(check_smooth);
+}
+
+/* Seen at corners: 2.9e-3 of the mesh, where creases of several sharpnesses meet. */
+static void check_creased(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
+    creased c = crease_at_random(mesh, scheme, (uint64_t)i + 1);
+    compare(mesh, &c.own, 5e-3 * extent(mesh));
+    free_creased(&c);
+}
+
+static void creases_match_a_refined_mesh(void **state) {
+    (void)state;
+    each_mesh(check_creased);
+}
+
+/* Weights sum to one, so every affine map commutes with the limit. */
+static void check_affine(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
+    creased c = crease_at_random(mesh, scheme, (uint64_t)i);
+    skinslide_mesh view = view_of(mesh);
+    view.subdivision = &c.own;
+    dice d = {(uint64_t)i};
+    skinslide_limit_place places[64];
+    float before[64][3], after[64][3], *mapped = copy_points(mesh);
+    double map[3][4];
+    for (int k = 0; k < 12; k++)
+        (&map[0][0])[k] = roll_between(&d, -2, 2);
+    for (int k = 0; k < 64; k++)
+        places[k] = (skinslide_limit_place){roll_below(&d, mesh->index_count), (float)roll_share(&d), (float)roll_share(&d)};
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        for (int k = 0; k < 3; k++) {
+            const float *p = mesh->points + 3 * v;
+            mapped[3 * v + k] = (float)(map[k][0] * p[0] + map[k][1] * p[1] + map[k][2] * p[2] + map[k][3]);
+        }
+    skinslide_error error;
+    skinslide_status status = skinslide_limit_points(&view, mesh->points, places, 64, &before[0][0], &error);
+    if (!status)
+        status = skinslide_limit_points(&view, mapped, places, 64, &after[0][0], &error);
+    if (status != SKINSLIDE_UNSUPPORTED)
+        assert_ok(status, &error);
+    for (int i2 = 0; i2 < 64 && !status; i2++)
+        for (int k = 0; k < 3; k++) {
+            const float *p = before[i2];
+            assert_near(after[i2][k], map[k][0] * p[0] + map[k][1] * p[1] + map[k][2] * p[2] + map[k][3],
+                        1e-5 * (1 + extent(mesh)));
+        }
+    free(mapped);
+    free_creased(&c);
+}
+
+static void affine_maps_commute(void **state) {
+    (void)state;
+    each_mesh(check_affine);
+}
+
+/* ---- Parameters ---- */
+
+static double point_distance(const double a[3], const double b[3]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+typedef struct surfaces_of_patch {
+    ss_patch *patch;
+    ss_surfaces *surfaces;
+    float *points;
+    double (*uv)[2], *scratch;
+    bool loop;
+} surfaces_of_patch;
+
+static surfaces_of_patch surfaces_for(const test_mesh *mesh, const skinslide_subdivision *own, uint64_t seed) {
+    surfaces_of_patch s = {.patch = patch_of(mesh, setup_of(NULL, 0)), .loop = own->scheme == SKINSLIDE_SCHEME_LOOP};
+    skinslide_mesh view = view_of(mesh);
+    view.subdivision = own;
+    ss_topology *topology;
+    skinslide_error error;
+    assert_ok(ss_check_subdivision(&view, &error), &error);
+    assert_ok(ss_topology_create(&view, &topology, &error), &error);
+    assert_ok(ss_surfaces_create(topology, s.patch->mesh_face, mesh->face_count, "all", &s.surfaces, &error), &error);
+    ss_topology_destroy(topology);
+    s.points = random_pose(mesh, seed);
+    s.uv = embedding_of(s.patch, s.points);
+    s.scratch = malloc((size_t)ss_surfaces_scratch(s.surfaces) * sizeof *s.scratch);
+    return s;
+}
+
+static void free_surfaces(surfaces_of_patch *s) {
+    ss_surfaces_destroy(s->surfaces);
+    ss_patch_destroy(s->patch);
+    free(s->points), free(s->uv), free(s->scratch);
+}
+
+static void point_at(const surfaces_of_patch *s, const ss_location *location, double out[3]) {
+    const double origin[3] = {0, 0, 0};
+    ss_parameter at = ss_parametrise(&s->patch->faces, s->loop, (const double(*)[2])s->uv, location);
+    ss_limit_prepare(s->surfaces, location->face, s->points, origin, s->scratch);
+    ss_limit_point(s->surfaces, location->face, &at, s->scratch, out);
+}
+
+/* A point of a side is the same from both faces, whatever polygons they are. Fitted patches meet along curves that agree to
+ * 1e-4 of the mesh. */
+static void check_sides(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
+    skinslide_subdivision own = {.scheme = scheme};
+    if (i == 1 || i == 2 || i == 5) /* closed: no patch */
+        return;
+    surfaces_of_patch s = surfaces_for(mesh, &own, 3);
+    const ss_faces *faces = &s.patch->faces;
+    double size = extent_of(s.points, mesh->vertex_count);
+    dice d = {(uint64_t)i};
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        int32_t twin = faces->corner_twin[c];
+        if (twin < 0)
+            continue;
+        double share = roll_share(&d), here[3], there[3];
+        const double *a = s.uv[faces->corner_vertex[c]], *b = s.uv[faces->corner_vertex[twin]];
+        ss_location from = {faces->corner_face[c], ss_fan_of_side(faces, c), {0, 0}}, to = from;
+        for (int k = 0; k < 2; k++)
+            from.uv[k] = to.uv[k] = a[k] + share * (b[k] - a[k]);
+        to.face = faces->corner_face[twin], to.triangle = ss_fan_of_side(faces, twin);
+        point_at(&s, &from, here), point_at(&s, &to, there);
+        assert_near(point_distance(here, there), 0, 2e-3 * size);
+    }
+    free_surfaces(&s);
+}
+
+static void surfaces_meet_along_sides(void **state) {
+    (void)state;
+    each_mesh(check_sides);
+}
+
+/* Corners go to corners and middles to middles, exactly as parameters of the face name them. */
+static void check_corners(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
+    skinslide_subdivision own = {.scheme = scheme};
+    if (i == 1 || i == 2 || i == 5)
+        return;
+    surfaces_of_patch s = surfaces_for(mesh, &own, 4);
+    const ss_faces *faces = &s.patch->faces;
+    const double origin[3] = {0, 0, 0};
+    double size = extent_of(s.points, mesh->vertex_count);
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        int32_t face = faces->corner_face[c];
+        const double *p = s.uv[faces->corner_vertex[c]];
+        ss_location location = {face, ss_fan_of_side(faces, c), {p[0], p[1]}};
+        double got[3], expected[3];
+        point_at(&s, &location, got);
+        ss_parameter corner = ss_limit_parameter(s.surfaces, face, c - faces->face_start[face], 0, 0);
+        ss_limit_point(s.surfaces, face, &corner, s.scratch, expected);
+        assert_near(point_distance(got, expected), 0, 1e-6 * size);
+        (void)origin;
+    }
+    free_surfaces(&s);
+}
+
+static void corners_are_found_at_corners(void **state) {
+    (void)state;
+    each_mesh(check_corners);
+}
+
+/* Bilinear in a quad, by hand: the quad (0,0) (4,0) (2,2) (0,2) at s = 1/2, t = 1/2 is the mean of its corners, (1.5, 1). */
+static void a_quad_by_hand(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(1, 1);
+    ss_patch *patch = patch_of(&mesh, setup_of(NULL, 0));
+    const double uv[4][2] = {{0, 0}, {4, 0}, {0, 2}, {2, 2}}; /* vertices of the grid: 0 1 over 2 3, the face 0 1 3 2 */
+    ss_location location = {0, 0, {1.5, 1}};
+    ss_parameter at = ss_parametrise(&patch->faces, false, uv, &location);
+    assert_int_equal(at.corner, -1);
+    assert_near(at.st[0], 0.5, 1e-15);
+    assert_near(at.st[1], 0.5, 1e-15);
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
+}
+
+/* A face of no area and one that is not convex still give parameters within 0..1. */
+static void awkward_faces_give_parameters(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(1, 1);
+    ss_patch *patch = patch_of(&mesh, setup_of(NULL, 0));
+    const double shapes[4][4][2] = {{{0, 0}, {1, 0}, {3, 0}, {2, 0}},
+                                    {{1, 1}, {1, 1}, {1, 1}, {1, 1}},
+                                    {{0, 0}, {1, 0}, {0, 1}, {0.1, 0.1}},
+                                    {{0, 0}, {1, 0}, {0, 1e-14}, {1, 1e-14}}};
+    dice d = {1};
+    for (int shape = 0; shape < 4; shape++)
+        for (int i = 0; i < 100; i++) {
+            ss_location location = {0, i % 2, {roll_share(&d), shape == 3 ? 0 : roll_share(&d)}};
+            ss_parameter at = ss_parametrise(&patch->faces, false, shapes[shape], &location);
+            assert_true(at.st[0] >= 0 && at.st[0] <= 1 && at.st[1] >= 0 && at.st[1] <= 1);
+        }
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
+}
+
+/* ---- Bad input ---- */
+
+static void expect_bad(const skinslide_subdivision *own, skinslide_status expected, const char *text) {
+    test_mesh mesh = quad_grid(3, 3);
+    skinslide_mesh view = view_of(&mesh);
+    view.subdivision = own;
+    const skinslide_limit_place place = {0, 0, 0};
+    float out[3];
+    skinslide_error error;
+    assert_fails(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error, expected, text);
+    int32_t *faces = all_faces(&mesh);
+    skinslide_patch_setup setup = setup_of(faces, mesh.face_count);
+    skinslide_slider *slider = NULL;
+    if (expected != SKINSLIDE_BAD_PATCH)
+        assert_fails(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, expected, text);
+    setup.interpolation = SKINSLIDE_INTERPOLATION_LINEAR; /* which needs no limit surface */
+    assert_ok(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error);
+    skinslide_slider_destroy(slider);
+    free(faces);
+    free_mesh(&mesh);
+}
+
+#define CC .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK
+
+static void bad_subdivisions_are_named(void **state) {
+    (void)state;
+    const int32_t edge[2] = {0, 1}, diagonal[3] = {0, 1, 6}, outside[2] = {0, 16}, lengths[2] = {2, 1}, three[1] = {3};
+    const float one[1] = {1}, negative[1] = {-1}, nan[1] = {NAN}, two[2] = {1, 1};
+    const int32_t hole[1] = {9}, first[1] = {0};
+#define CREASE(...)                                                                                                            \
+    &(skinslide_subdivision){CC,                                                                                               \
+                             .crease_count = 1,                                                                                \
+                             .crease_lengths = lengths,                                                                        \
+                             .crease_index_count = 2,                                                                          \
+                             .crease_indices = edge,                                                                           \
+                             .crease_sharpness_count = 1,                                                                      \
+                             .crease_sharpnesses = one,                                                                        \
+                             __VA_ARGS__}
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Woverride-init"
+    expect_bad(CREASE(.crease_lengths = three, .crease_index_count = 3, .crease_indices = diagonal), SKINSLIDE_BAD_MESH,
+               "crease 0: 1-6 is not an edge of the mesh");
+    expect_bad(CREASE(.crease_indices = outside), SKINSLIDE_BAD_MESH, "crease indices: 16 is not one of the mesh's 16");
+    expect_bad(CREASE(.crease_sharpnesses = negative), SKINSLIDE_BAD_MESH, "crease sharpness 0 is -1; it must be 0 or more");
+    expect_bad(CREASE(.crease_sharpnesses = nan), SKINSLIDE_BAD_MESH, "crease sharpness 0 is ...");
+    expect_bad(CREASE(.crease_count = 2, .crease_index_count = 3), SKINSLIDE_BAD_MESH,
+               "crease 1 has 1 vertices; a crease has 2 or more");
+    expect_bad(CREASE(.crease_index_count = 3), SKINSLIDE_BAD_MESH,
+               "crease lengths add up to 2, but there are 3 crease indices");
+    expect_bad(CREASE(.crease_sharpness_count = 2, .crease_sharpnesses = two), SKINSLIDE_BAD_MESH,
+               "2 crease sharpnesses fit neither 1 creases nor their 1 edges");
+    expect_bad(CREASE(.crease_lengths = NULL), SKINSLIDE_BAD_ARGUMENT, "no array of crease lengths...");
+    expect_bad(CREASE(.crease_indices = NULL), SKINSLIDE_BAD_ARGUMENT, "no array of crease indices...");
+    expect_bad(CREASE(.crease_sharpnesses = NULL), SKINSLIDE_BAD_ARGUMENT, "no array of crease sharpnesses...");
+    expect_bad(CREASE(.corner_count = 1, .corner_indices = three, .corner_sharpnesses = negative), SKINSLIDE_BAD_MESH,
+               "corner sharpness 0 is -1; it must be 0 or more");
+    expect_bad(CREASE(.corner_count = 1, .corner_indices = outside + 1, .corner_sharpnesses = one), SKINSLIDE_BAD_MESH,
+               "corner indices: 16 is not one of the mesh's 16");
+    expect_bad(CREASE(.hole_count = 1, .hole_indices = hole), SKINSLIDE_BAD_MESH, "hole indices: 9 is not one of the mesh's 9");
+    expect_bad(CREASE(.hole_count = 1, .hole_indices = first), SKINSLIDE_BAD_PATCH,
+               "limit points: face 0 has no limit surface: it is one of holeIndices");
+    expect_bad(
+        CREASE(.boundary_rule = SKINSLIDE_BOUNDARY_RULE_NONE), SKINSLIDE_BAD_PATCH,
+        "limit points: face 0 has no limit surface: interpolateBoundary none leaves the faces at the boundary of the...");
+    expect_bad(CREASE(.scheme = SKINSLIDE_SCHEME_LOOP), SKINSLIDE_BAD_MESH,
+               "face 0 has 4 vertices; the loop scheme needs triangles");
+    expect_bad(CREASE(.scheme = (skinslide_scheme)7), SKINSLIDE_BAD_ARGUMENT, "no such subdivision scheme...");
+#pragma GCC diagnostic pop
+}
+
+static void bad_places_are_named(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(2, 2);
+    skinslide_mesh view = view_of(&mesh);
+    skinslide_subdivision own = {CC};
+    float out[3];
+    skinslide_error error;
+    skinslide_limit_place place = {16, 0, 0};
+    assert_fails(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error, SKINSLIDE_BAD_MESH,
+                 "the mesh is not subdivided: it has no limit surface");
+    view.subdivision = &own;
+    assert_fails(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "place 0 is not on the mesh: corner 16, (0, 0)");
+    place = (skinslide_limit_place){0, 1.5f, 0};
+    assert_fails(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "place 0 is not on the mesh: corner 0, (1.5, 0)");
+    assert_fails(skinslide_limit_points(&view, mesh.points, NULL, 1, out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no places, or no room for their points");
+    assert_ok(skinslide_limit_points(&view, mesh.points, NULL, 0, NULL, &error), &error);
+    free_mesh(&mesh);
+}
+
+/* Faces of no size and repeated vertices elsewhere in the mesh: the one is refused, the other OpenSubdiv takes. */
+static void faces_that_cannot_be_subdivided(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(2, 2);
+    skinslide_mesh view = view_of(&mesh);
+    skinslide_subdivision own = {CC};
+    const skinslide_limit_place place = {0, 0, 0};
+    float out[3];
+    skinslide_error error;
+    view.subdivision = &own;
+    mesh.face_counts[2] = 2, mesh.face_counts[3] = 6;
+    assert_fails(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error, SKINSLIDE_BAD_MESH,
+                 "face 2 has 2 vertices; a face that is subdivided has 3 to 65535");
+    mesh.face_counts[2] = mesh.face_counts[3] = 4;
+    mesh.face_indices[15] = mesh.face_indices[14];
+    assert_ok(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error);
+    free_mesh(&mesh);
+}
+
+/* A grid of 2 x 1 quads with a vertex added in its inner side, which then has two faces around it, and a crease there. */
+static void what_crashes_opensubdiv_is_refused(void **state) {
+    (void)state;
+    static const float points[7][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {1, 0.5f, 0}};
+    static const int32_t counts[2] = {5, 5}, indices[10] = {0, 1, 6, 4, 3, 1, 2, 5, 4, 6};
+    static const int32_t lengths[1] = {2}, crease[2] = {1, 6};
+    static const float sharpness[1] = {2};
+    test_mesh mesh = copy_mesh(7, 2, counts, indices, &points[0][0]);
+    skinslide_mesh view = view_of(&mesh);
+    skinslide_subdivision own = {CC};
+    const skinslide_limit_place place = {0, 0, 0};
+    float out[3];
+    skinslide_error error;
+    view.subdivision = &own;
+    assert_ok(skinslide_limit_points(&view, mesh.points, &place, 1, out, &error), &error);
+    own.crease_count = own.crease_sharpness_count = 1, own.crease_index_count = 2;
+    own.crease_lengths = lengths, own.crease_indices = crease, own.crease_sharpnesses = sharpness;
+    skinslide_status status = skinslide_limit_points(&view, mesh.points, &place, 1, out, &error);
+    if (status) /* by OpenSubdiv 3.5.1 and later it is not */
+        assert_fails(status, &error, SKINSLIDE_UNSUPPORTED,
+                     "limit points: face 0 has a crease, the mesh's boundary and a vertex of two faces; OpenSubdiv...");
+    free_mesh(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stencils_match_a_refined_mesh),
+        cmocka_unit_test(creases_match_a_refined_mesh),
+        cmocka_unit_test(affine_maps_commute),
+        cmocka_unit_test(surfaces_meet_along_sides),
+        cmocka_unit_test(corners_are_found_at_corners),
+        cmocka_unit_test(a_quad_by_hand),
+        cmocka_unit_test(awkward_faces_give_parameters),
+        cmocka_unit_test(bad_subdivisions_are_named),
+        cmocka_unit_test(bad_places_are_named),
+        cmocka_unit_test(faces_that_cannot_be_subdivided),
+        cmocka_unit_test(what_crashes_opensubdiv_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,113 @@
+/* Least squares: normal equations hold, a square system is solved, what cannot be is refused. */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A random matrix with a dominant entry in each of its first rows, so that its columns are independent. */
+static ss_rows random_rows(int32_t row_count, int32_t column_count, uint64_t seed) {
+    enum { EXTRA = 3 };
+    dice d = {seed};
+    ss_rows rows = {.row_count = row_count, .column_count = column_count};
+    rows.start = calloc((size_t)row_count + 1, sizeof *rows.start);
+    rows.column = malloc((size_t)row_count * (EXTRA + 1) * sizeof *rows.column);
+    rows.value = malloc((size_t)row_count * (EXTRA + 1) * sizeof *rows.value);
+    for (int32_t i = 0, end = 0; i < row_count; i++) {
+        rows.column[end] = i % column_count, rows.value[end++] = roll_between(&d, 2, 3);
+        for (int32_t k = 1; k <= EXTRA && k < column_count; k++)
+            rows.column[end] = (i + 7 * k * k) % column_count, rows.value[end++] = roll_between(&d, -0.5, 0.5);
+        rows.start[i + 1] = end;
+    }
+    return rows;
+}
+
+static void free_rows(ss_rows *rows) {
+    free(rows->start), free(rows->column), free(rows->value);
+}
+
+/* Of a solution, from b as residual: A'(b - A x) = 0 to rounding, and the residual is kept up. */
+static void check(int32_t row_count, int32_t column_count, uint64_t seed) {
+    ss_rows rows = random_rows(row_count, column_count, seed);
+    dice d = {seed};
+    ss_sparse *sparse;
+    ss_sparse_work *work;
+    skinslide_error error;
+    assert_ok(ss_sparse_create(&rows, "all", &sparse, &error), &error);
+    assert_ok(ss_sparse_work_create(sparse, &work, &error), &error);
+    double(*b)[3] = malloc((size_t)row_count * sizeof *b), (*r)[3] = malloc((size_t)row_count * sizeof *r);
+    double(*x)[3] = calloc((size_t)column_count, sizeof *x), (*gradient)[3] = calloc((size_t)column_count, sizeof *gradient);
+    for (int32_t i = 0; i < row_count; i++)
+        for (int k = 0; k < 3; k++)
+            b[i][k] = r[i][k] = roll_between(&d, -1, 1);
+    ss_sparse_correct(work, (const double(*)[3])b, x, r);
+    ss_sparse_subtract(sparse, (const double(*)[3])x, b);
+    for (int32_t i = 0; i < row_count; i++)
+        for (int32_t k = rows.start[i]; k < rows.start[i + 1]; k++)
+            for (int axis = 0; axis < 3; axis++)
+                gradient[rows.column[k]][axis] += rows.value[k] * b[i][axis];
+    for (int32_t i = 0; i < row_count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_near(r[i][axis], b[i][axis], 1e-13);
+    for (int32_t j = 0; j < column_count; j++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_near(gradient[j][axis], 0, 1e-12);
+    for (int32_t i = 0; i < row_count && row_count == column_count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_near(b[i][axis], 0, 1e-12);
+    free(b), free(r), free(x), free(gradient);
+    ss_sparse_work_destroy(work);
+    ss_sparse_destroy(sparse);
+    free_rows(&rows);
+}
+
+static void normal_equations_hold(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed < 20; seed++) {
+        check(1, 1, seed);
+        check(40, 40, seed);
+        check(90, 31, seed);
+        check(500, 200, seed);
+    }
+}
+
+static void no_columns_are_no_work(void **state) {
+    (void)state;
+    int32_t start[3] = {0, 0, 0}, column[1] = {0};
+    double value[1] = {0};
+    ss_rows rows = {2, 0, start, column, value};
+    double r[2][3] = {{1, 2, 3}, {4, 5, 6}}, b[2][3] = {{1, 1, 1}, {1, 1, 1}};
+    ss_sparse *sparse;
+    ss_sparse_work *work;
+    skinslide_error error;
+    assert_ok(ss_sparse_create(&rows, "all", &sparse, &error), &error);
+    assert_ok(ss_sparse_work_create(sparse, &work, &error), &error);
+    ss_sparse_correct(work, (const double(*)[3])b, NULL, r);
+    assert_true(r[0][0] == 1 && r[1][2] == 6);
+    ss_sparse_work_destroy(work);
+    ss_sparse_destroy(sparse);
+}
+
+/* Two columns that are the same, nearly the same, or empty. */
+static void dependent_columns_are_refused(void **state) {
+    (void)state;
+    int32_t start[3] = {0, 2, 4}, column[4] = {0, 1, 0, 1};
+    ss_sparse *sparse = NULL;
+    skinslide_error error;
+    for (int i = 0; i < 3; i++) {
+        double value[4] = {1, 1, 1, i == 0 ? 1 : 1 + 1e-7};
+        ss_rows rows = {2, i == 2 ? 3 : 2, start, column, value};
+        assert_fails(ss_sparse_create(&rows, "patch all", &sparse, &error), &error, SKINSLIDE_SINGULAR,
+                     "patch all: its vertices do not follow from points of its limit surface");
+        assert_null(sparse);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(normal_equations_hold),
+        cmocka_unit_test(no_columns_are_no_work),
+        cmocka_unit_test(dependent_columns_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
