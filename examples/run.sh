@@ -6,7 +6,7 @@ EXTRA_PACKAGES=()
 
 out=$root/build/examples
 say "Making and baking the examples"
-for example in elbow bicep face finger sleeve chequer; do
+for example in elbow fine_elbow bicep face finger sleeve chequer bump; do
     "$python" "$root/examples/$example/make.py" "$out/$example" >/dev/null
     "$venv/bin/skinslide" check "$out/$example/stage.usda" >"$out/$example/check.txt"
     "$venv/bin/skinslide" bake "$out/$example/stage.usda" -o "$out/$example/slid.usdc" --json --quiet >"$out/$example/bake.json"
@@ -17,3 +17,6 @@ say "What they show"
 
 say "Lookup by colour-ID rendering"
 "$python" "$root/examples/lookup.py" "$out"
+
+say "How far the limit surface of the result is from that of the cache, as a share of the patch's size"
+"$python" "$root/examples/limit_distance.py" "$out"/*/stage.usda

@@ -10,7 +10,7 @@ import json
 import sys
 from pathlib import Path
 
-ORDER = ("elbow", "bicep", "face", "finger", "sleeve", "chequer")
+ORDER = ("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump")
 STAGES = ("density", "embed", "locate", "interpolate")
 HEADINGS = ("example", "vertices", "edges", *(f"{stage} ms" for stage in STAGES), "frame ms")
 RESULTS = ("cache", "slid", "change", "at frame", "folded", "clamped")

@@ -40,9 +40,11 @@ def bone_motions(turns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {bone: motion(bone) for bone in rig}
 
 
-def skin(body: np.ndarray, turns: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Linear blend skinning of the body's points (V, 3): p' = Σ_b w_b (M_b p), (V, 3)."""
-    weights, motions = makehuman.read_weights(), bone_motions(turns)
+def skin(
+    body: np.ndarray, turns: Mapping[str, np.ndarray], weights: Mapping[str, np.ndarray] | None = None
+) -> np.ndarray:
+    """Linear blend skinning of points (V, 3): p' = Σ_b w_b (M_b p), (V, 3); by default the body's, with its weights."""
+    weights, motions = weights or makehuman.read_weights(), bone_motions(turns)
     moved = body.copy()
     for bone, motion in motions.items():
         if not np.array_equal(motion, np.eye(3, 4)):

@@ -21,6 +21,7 @@ from skinslide.slider import (
     PatchSetup,
     Slider,
     SliderError,
+    Subdivision,
     choose_lookup,
     version,
 )
@@ -49,6 +50,7 @@ __all__ = [
     "SliderError",
     "StageError",
     "StageProblems",
+    "Subdivision",
     "UsageError",
     "bake",
     "bake_to_file",

@@ -14,8 +14,9 @@ from skinslide.controls import PatchControls
 from skinslide.faces import read_faces
 from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, core_problem
 from skinslide.rest import read_rest
-from skinslide.slider import Controls, Lookup, PatchSetup, Slider, SliderError
+from skinslide.slider import Controls, Lookup, PatchSetup, Slider, SliderError, Subdivision
 from skinslide.stage import find_meshes
+from skinslide.subdivision import read_subdivision
 from skinslide.topology import Topology, read_topology
 from skinslide.values import FIRST, merged_times, positions
 
@@ -29,6 +30,7 @@ class SlidMesh:
     stage: Usd.Stage  # without it the prim would expire
     prim: Usd.Prim
     topology: Topology
+    subdivision: Subdivision | None  # None where it renders as its faces
     rest_points: np.ndarray  # (V, 3) float32
     rest_source: str  # "primvars:Pref", "points (default)", ...
     patches: list[PatchSetup]  # with the controls of the first time
@@ -97,7 +99,14 @@ class SlidMesh:
             raise StageProblems(self._patch_problems(lookup) or [self._core_problem(error)]) from error
 
     def build(self, patches: Sequence[PatchSetup], lookup: str | Lookup = "auto") -> Slider:
-        return Slider(self.face_counts, self.face_indices, self.rest_points, patches, lookup=lookup)
+        return Slider(
+            self.face_counts,
+            self.face_indices,
+            self.rest_points,
+            patches,
+            lookup=lookup,
+            subdivision=self.subdivision,
+        )
 
     def _patch_problems(self, lookup: str | Lookup) -> list[Problem]:
         """What is wrong with each patch alone: the core stops at the first."""
@@ -137,7 +146,13 @@ def _read_mesh(prim: Usd.Prim, problems: list[Problem]) -> SlidMesh | None:
     if rest is None or not good:
         return None
     setups, animation = zip(*good, strict=True)
-    return SlidMesh(prim.GetStage(), prim, topology, *rest, list(setups), list(animation))
+    before = len(problems)
+    subdivision = None
+    if any(setup.interpolation in ("auto", "limit") for setup in setups):
+        subdivision = _attempt(problems, path, None, read_subdivision, UsdGeom.Mesh(prim))
+    if len(problems) > before:
+        return None
+    return SlidMesh(prim.GetStage(), prim, topology, subdivision, *rest, list(setups), list(animation))
 
 
 def _attempt(problems: list[Problem], prim: str, patch: str | None, read: Callable[..., T], *arguments) -> T | None:

@@ -48,6 +48,21 @@ class PatchSetup:
     controls: Controls = field(default_factory=Controls)
 
 
+@dataclass(frozen=True, eq=False)
+class Subdivision:
+    """How a mesh is subdivided, in the words of UsdGeomMesh; None is none. Sharpness 10 or more is infinitely sharp."""
+
+    scheme: str = "catmullClark"
+    boundary_rule: str = "edgeAndCorner"
+    triangle_rule: str = "catmullClark"
+    crease_lengths: np.ndarray | None = None  # (c,) vertices of each crease
+    crease_indices: np.ndarray | None = None  # (sum of lengths,)
+    crease_sharpnesses: np.ndarray | None = None  # (c,), or one for each edge of each crease
+    corner_indices: np.ndarray | None = None  # (k,)
+    corner_sharpnesses: np.ndarray | None = None  # (k,)
+    hole_indices: np.ndarray | None = None  # (h,) faces
+
+
 @dataclass(frozen=True)
 class Lookup:
     """How rest vertices are looked up, as in `skinslide_workspace_options`. Where they are found is always the same."""
@@ -81,7 +96,8 @@ LookupInfo: Any = _tuple_of("skinslide_lookup_info", "LookupInfo")
 
 
 def tokens(setting: str) -> tuple[str, ...]:
-    """The tokens of a setting: boundary, holes, rule, interpolation, lookup, normals_layout."""
+    """The tokens of a setting: boundary, holes, rule, interpolation, lookup, normals_layout, scheme, boundary_rule,
+    triangle_rule."""
     return tuple(_values_by_token(setting))
 
 
@@ -111,14 +127,38 @@ class Arguments:
     def points(self, values: Any, vertex_count: int, what: str) -> Any:
         return self.pointer(values, np.float32, (vertex_count, 3), what)
 
-    def mesh(self, face_counts: np.ndarray, face_indices: np.ndarray, points: np.ndarray) -> Any:
+    def mesh(
+        self,
+        face_counts: np.ndarray,
+        face_indices: np.ndarray,
+        points: np.ndarray,
+        subdivision: Subdivision | None = None,
+    ) -> Any:
         mesh = ffi.new("skinslide_mesh *")
         self._alive.append(mesh)
         mesh.face_counts = self.pointer(face_counts, np.int32, (-1,), "face counts")
         mesh.face_indices = self.pointer(face_indices, np.int32, (-1,), "face indices")
         mesh.rest_points = self.points(points, -1, "points")
         mesh.face_count, mesh.index_count, mesh.vertex_count = len(face_counts), len(face_indices), len(points)
+        if subdivision is not None:
+            mesh.subdivision = self.subdivision(subdivision)
         return mesh[0]
+
+    def subdivision(self, given: Subdivision) -> Any:
+        target = ffi.new("skinslide_subdivision *")
+        self._alive.append(target)
+        for setting in ("scheme", "boundary_rule", "triangle_rule"):
+            setattr(target, setting, enum_value(setting, getattr(given, setting), ""))
+        for name, dtype in _SUBDIVISION_ARRAYS.items():
+            values = getattr(given, name)
+            setattr(target, name, self.optional(values, dtype, (-1,), name.replace("_", " ")))
+        if _length(given.corner_indices) != _length(given.corner_sharpnesses):
+            got = f"{_length(given.corner_sharpnesses)} values for {_length(given.corner_indices)} corners"
+            raise SliderError("BAD_MESH", f"corner sharpnesses: {got}")
+        target.crease_count, target.crease_index_count = _length(given.crease_lengths), _length(given.crease_indices)
+        target.crease_sharpness_count = _length(given.crease_sharpnesses)
+        target.corner_count, target.hole_count = _length(given.corner_indices), _length(given.hole_indices)
+        return target
 
     def fill_setup(self, target: Any, patch: PatchSetup, sizes: Sizes) -> None:
         where = f"patch {patch.name}: "
@@ -155,6 +195,20 @@ class Arguments:
         for target, patch, name in zip(targets, controls, names, strict=True):
             self.fill_controls(target, patch, sizes, f"patch {name}: ")
         return targets
+
+
+_SUBDIVISION_ARRAYS = {
+    "crease_lengths": np.int32,
+    "crease_indices": np.int32,
+    "crease_sharpnesses": np.float32,
+    "corner_indices": np.int32,
+    "corner_sharpnesses": np.float32,
+    "hole_indices": np.int32,
+}
+
+
+def _length(values: Any) -> int:
+    return 0 if values is None else len(values)
 
 
 def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.ndarray:

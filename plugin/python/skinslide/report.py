@@ -20,6 +20,7 @@ _AT_REST = {
 _AT_FRAMES = {
     "clamped_vertices": "vertices looked up outside every face, put on the nearest",
     "clamped_weights": "weights or envelopes outside 0..1, clamped",
+    "damped_vertices": "vertices brought back towards their place on the faces, where the limit surface rings",
     "folded_faces": "faces turned over in the embedding",
     "zero_length_edges": "edges of no length, taken as 1e-6 of the mean rest edge",
     "lost_textures": "textures lost by a failing device, each vertex walked for instead",

@@ -20,6 +20,7 @@ from skinslide.native import (
     PatchSetup,
     Sizes,
     SliderError,
+    Subdivision,
     as_array,
     call,
     enum_value,
@@ -40,8 +41,10 @@ __all__ = [
     "Sample",
     "Slider",
     "SliderError",
+    "Subdivision",
     "accelerations",
     "choose_lookup",
+    "limit_points",
     "normals",
     "tokens",
     "velocities",
@@ -69,6 +72,7 @@ class Slider:
     face_indices  (sum of counts,) vertices, face by face
     rest_points   (V, 3) the pose in which nothing slides
     patches       faces that fall into several connected pieces become several patches, in `Slider.patches`
+    subdivision   how the mesh is subdivided, on which the interpolation limit depends; None: it is not
     """
 
     def __init__(
@@ -79,9 +83,10 @@ class Slider:
         patches: Sequence[PatchSetup],
         *,
         lookup: str | Lookup = "auto",
+        subdivision: Subdivision | None = None,
     ):
         native = Arguments()
-        mesh = native.mesh(face_counts, face_indices, rest_points)
+        mesh = native.mesh(face_counts, face_indices, rest_points, subdivision)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
         self._lookup = Lookup.of(lookup).options()
         self._names = tuple(patch.name for patch in patches)
@@ -181,6 +186,33 @@ def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
     call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info)
     chosen = read(LookupInfo, info)
     return chosen._replace(lookup=tokens("lookup")[chosen.lookup])
+
+
+def limit_points(
+    face_counts: np.ndarray,
+    face_indices: np.ndarray,
+    points: np.ndarray,
+    subdivision: Subdivision,
+    corners: np.ndarray,
+    places: np.ndarray,
+) -> np.ndarray:
+    """Points of the limit surface of a subdivided mesh, float32 (n, 3).
+
+    A face of n vertices is n quads, one a corner, that meet at its middle.
+
+    corners  (n,) indices of face_indices: which quad
+    places   (n, 2) in 0..1: along the side to the next corner, and to the one before; (1, 1) is the middle of the face
+    """
+    native = Arguments()
+    mesh = native.mesh(face_counts, face_indices, points, subdivision)
+    given = np.empty(len(corners), [("corner", np.int32), ("st", np.float32, 2)])
+    given["corner"] = as_array(corners, np.int32, (-1,), "corners")
+    given["st"] = as_array(places, np.float32, (len(corners), 2), "places")
+    result = np.empty((len(corners), 3), np.float32)
+    pointer = ffi.cast("skinslide_limit_place *", ffi.from_buffer(given))
+    out = writable("float[]", result)
+    call(lib.skinslide_limit_points, ffi.addressof(mesh), mesh.rest_points, pointer, len(corners), out)
+    return result
 
 
 def normals(
