@@ -1,0 +1,326 @@
+#include "compose.h"
+
+#include "names.h"
+
+#include "pxr/base/gf/half.h"
+#include "pxr/base/gf/math.h"
+#include "pxr/base/gf/vec3d.h"
+#include "pxr/base/gf/vec3f.h"
+#include "pxr/base/gf/vec3h.h"
+#include "pxr/base/vt/array.h"
+#include "pxr/usd/ar/resolver.h"
+#include "pxr/usd/ar/resolverContext.h"
+#include "pxr/usd/pcp/layerStack.h"
+#include "pxr/usd/pcp/layerStackIdentifier.h"
+#include "pxr/usd/pcp/mapExpression.h"
+#include "pxr/usd/pcp/node.h"
+#include "pxr/usd/pcp/primIndex.h"
+#include "pxr/usd/sdf/listOp.h"
+#include "pxr/usd/sdf/schema.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace skinslide {
+namespace {
+
+// ---- Interpolation: the arithmetic of Usd, so that a bake and a layer read the same bits ----
+
+template <class T> bool lerpScalar(double alpha, const VtValue &lower, const VtValue &upper, VtValue *out) {
+    if (!lower.IsHolding<T>() || !upper.IsHolding<T>())
+        return false;
+    *out = T(GfLerp(alpha, lower.UncheckedGet<T>(), upper.UncheckedGet<T>()));
+    return true;
+}
+
+template <class T> bool lerpArray(double alpha, const VtValue &lower, const VtValue &upper, VtValue *out) {
+    if (!lower.IsHolding<VtArray<T>>() || !upper.IsHolding<VtArray<T>>())
+        return false;
+    const VtArray<T> &a = lower.UncheckedGet<VtArray<T>>(), &b = upper.UncheckedGet<VtArray<T>>();
+    if (a.size() != b.size())
+        return false;
+    VtArray<T> result(a.size());
+    T *values = result.data();
+    for (size_t i = 0; i < a.size(); i++)
+        values[i] = T(GfLerp(alpha, a.cdata()[i], b.cdata()[i]));
+    *out = VtValue::Take(result);
+    return true;
+}
+
+// Values of other types, and arrays of different lengths, are held.
+VtValue lerp(double alpha, const VtValue &lower, const VtValue &upper) {
+    VtValue value;
+    if (alpha == 0)
+        return lower;
+    if (alpha == 1)
+        return upper;
+    if (lerpArray<GfVec3f>(alpha, lower, upper, &value) || lerpArray<float>(alpha, lower, upper, &value) ||
+        lerpScalar<float>(alpha, lower, upper, &value) || lerpScalar<double>(alpha, lower, upper, &value) ||
+        lerpScalar<GfHalf>(alpha, lower, upper, &value) || lerpArray<double>(alpha, lower, upper, &value) ||
+        lerpArray<GfHalf>(alpha, lower, upper, &value) || lerpArray<GfVec3d>(alpha, lower, upper, &value) ||
+        lerpArray<GfVec3h>(alpha, lower, upper, &value))
+        return value;
+    return lower;
+}
+
+VtValue unblocked(const VtValue &value) {
+    return value.IsHolding<SdfValueBlock>() ? VtValue() : value;
+}
+
+VtValue sample(const SdfLayerRefPtr &layer, const SdfPath &path, double time) {
+    VtValue value;
+    layer->QueryTimeSample(path, time, &value);
+    return unblocked(value);
+}
+
+VtValue sampleAt(const SdfLayerRefPtr &layer, const SdfPath &path, double time) {
+    double lower = 0, upper = 0;
+    if (!layer->GetBracketingTimeSamplesForPath(path, time, &lower, &upper))
+        return VtValue();
+    VtValue below = sample(layer, path, lower);
+    if (GfIsClose(lower, upper, 1e-6) || below.IsEmpty())
+        return below;
+    VtValue above = sample(layer, path, upper);
+    return above.IsEmpty() ? below : lerp((time - lower) / (upper - lower), below, above);
+}
+
+bool isSampled(const SdfLayerRefPtr &layer, const SdfPath &path) {
+    return layer->GetNumTimeSamplesForPath(path) > 0;
+}
+
+} // namespace
+
+// ---- Attribute ----
+
+void Attribute::takeOpinion(const SdfLayerRefPtr &layer, const SdfPath &path, const SdfLayerOffset &toRoot) {
+    _specs.emplace_back(layer, path);
+    if (_typeName.IsEmpty())
+        layer->HasField(path, SdfFieldKeys->TypeName, &_typeName);
+    VtValue value;
+    bool hasDefault = layer->HasField(path, SdfFieldKeys->Default, &value);
+    if (hasDefault && !_defaultResolved) {
+        _defaultResolved = true;
+        _defaultLayer = layer, _defaultPath = path;
+    }
+    if (_resolved)
+        return;
+    Source source = isSampled(layer, path)                            ? Source::Samples
+                    : layer->HasField(path, SdfFieldKeys->Spline)     ? Source::Spline
+                    : hasDefault && !value.IsHolding<SdfValueBlock>() ? Source::Default
+                                                                      : Source::None;
+    if (source == Source::None && !hasDefault)
+        return;
+    _resolved = true, _source = source;
+    _layer = layer, _path = path, _toRoot = toRoot;
+}
+
+bool Attribute::varies() const {
+    return _source == Source::Spline || (_source == Source::Samples && _layer->GetNumTimeSamplesForPath(_path) > 1);
+}
+
+std::vector<double> Attribute::times() const {
+    std::vector<double> times;
+    if (_source == Source::Samples) {
+        for (double time : _layer->ListTimeSamplesForPath(_path))
+            times.push_back(_toRoot * time);
+    }
+    std::sort(times.begin(), times.end());
+    return times;
+}
+
+VtValue Attribute::at(double time) const {
+    if (std::isnan(time))
+        return _defaultResolved ? unblocked(_defaultLayer->GetField(_defaultPath, SdfFieldKeys->Default)) : VtValue();
+    if (_source == Source::Default)
+        return unblocked(_layer->GetField(_path, SdfFieldKeys->Default));
+    if (_source != Source::Samples)
+        return VtValue();
+    // The first sample answers for every time before it.
+    return sampleAt(_layer, _path, std::isinf(time) ? std::numeric_limits<double>::lowest() : _toRoot.GetInverse() * time);
+}
+
+VtValue Attribute::metadata(const TfToken &field) const {
+    VtValue value;
+    for (const auto &[layer, path] : _specs) {
+        if (layer->HasField(path, field, &value))
+            return value;
+    }
+    return VtValue();
+}
+
+TfToken Attribute::token(const TfToken &field, const TfToken &fallback) const {
+    VtValue value = metadata(field);
+    return value.IsHolding<TfToken>() ? value.UncheckedGet<TfToken>() : fallback;
+}
+
+// ---- Prim ----
+
+Prim::Prim(const PcpPrimIndex &index, std::vector<ClipSite> inheritedClips)
+    : _index(&index), _clips(std::move(inheritedClips)) {
+    visit([this](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &node) {
+        if (layer->HasField(path, names().clips))
+            _clips.push_back({node.GetLayerStack(), path});
+        return true;
+    });
+}
+
+void Prim::visit(const Visit &visit) const {
+    PcpNodeRange range = _index->GetNodeRange();
+    for (PcpNodeIterator it = range.first; it != range.second; ++it) {
+        PcpNodeRef node = *it;
+        if (node.IsInert() || !node.HasSpecs())
+            continue;
+        for (const SdfLayerRefPtr &layer : node.GetLayerStack()->GetLayers()) {
+            if (layer->HasSpec(node.GetPath()) && !visit(layer, node.GetPath(), node))
+                return;
+        }
+    }
+}
+
+TfToken Prim::typeName() const {
+    TfToken name;
+    visit([&](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &) {
+        layer->HasField(path, SdfFieldKeys->TypeName, &name);
+        return name.IsEmpty();
+    });
+    return name;
+}
+
+// The strongest that is not `over`; a class that is inherited from does not make a class of what inherits it.
+SdfSpecifier Prim::specifier() const {
+    SdfSpecifier found = SdfSpecifierOver;
+    visit([&](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &node) {
+        SdfSpecifier specifier = SdfSpecifierOver;
+        layer->HasField(path, SdfFieldKeys->Specifier, &specifier);
+        bool inherited = node.GetArcType() == PcpArcTypeInherit || node.GetArcType() == PcpArcTypeSpecialize;
+        if (specifier == SdfSpecifierDef || (specifier == SdfSpecifierClass && !inherited))
+            found = specifier;
+        return found == SdfSpecifierOver;
+    });
+    return found;
+}
+
+bool Prim::active() const {
+    bool active = true;
+    visit([&](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &) {
+        return !layer->HasField(path, SdfFieldKeys->Active, &active);
+    });
+    return active;
+}
+
+std::vector<std::string> Prim::apiSchemas() const {
+    std::vector<SdfTokenListOp> operations;
+    visit([&](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &) {
+        SdfTokenListOp operation;
+        if (layer->HasField(path, names().apiSchemas, &operation))
+            operations.push_back(operation);
+        return true;
+    });
+    TfTokenVector tokens;
+    for (auto it = operations.rbegin(); it != operations.rend(); ++it)
+        it->ApplyOperations(&tokens);
+    return std::vector<std::string>(tokens.begin(), tokens.end());
+}
+
+TfTokenVector Prim::childNames() const {
+    TfTokenVector order;
+    PcpTokenSet prohibited;
+    _index->ComputePrimChildNames(&order, &prohibited);
+    return order;
+}
+
+bool Prim::clipsApply(const PcpNodeRef &node) const {
+    return std::any_of(_clips.begin(), _clips.end(), [&](const ClipSite &site) {
+        return site.layerStack == node.GetLayerStack() && node.GetPath().HasPrefix(site.path);
+    });
+}
+
+Attribute Prim::attribute(const TfToken &name) const {
+    Attribute found;
+    found._name = name.GetString();
+    PcpNodeRange range = _index->GetNodeRange();
+    for (PcpNodeIterator it = range.first; it != range.second; ++it) {
+        PcpNodeRef node = *it;
+        if (node.IsInert() || (!node.HasSpecs() && _clips.empty()))
+            continue;
+        SdfPath path = node.GetPath().AppendProperty(name);
+        bool before = found._resolved;
+        for (const SdfLayerRefPtr &layer : node.GetLayerStack()->GetLayers()) {
+            if (layer->GetSpecType(path) != SdfSpecTypeAttribute)
+                continue;
+            SdfLayerOffset toRoot = node.GetMapToRoot().GetTimeOffset();
+            if (const SdfLayerOffset *offset = node.GetLayerStack()->GetLayerOffsetForLayer(layer))
+                toRoot = toRoot * *offset;
+            found.takeOpinion(layer, path, toRoot);
+        }
+        // Clips are weaker than samples and splines of the site they are authored at, and stronger than its defaults.
+        bool timed = found._source == Attribute::Source::Samples || found._source == Attribute::Source::Spline;
+        found._clipped = found._clipped || (!before && !(found._resolved && timed) && clipsApply(node));
+    }
+    return found;
+}
+
+bool Prim::hasProperty(const TfToken &name) const {
+    bool found = false;
+    visit([&](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &) {
+        found = layer->HasSpec(path.AppendProperty(name));
+        return !found;
+    });
+    return found;
+}
+
+// ---- Composition ----
+
+namespace {
+
+ArResolverContext contextFor(const std::string &resolvedPath) {
+    ArResolverContext bound = ArGetResolver().GetCurrentContext();
+    return bound.IsEmpty() ? ArGetResolver().CreateDefaultContextForAsset(resolvedPath) : bound;
+}
+
+} // namespace
+
+Composition::Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath) : _root(root) {
+    PcpLayerStackIdentifier identifier(root, SdfLayerHandle(), contextFor(resolvedPath));
+    _cache = std::make_unique<PcpCache>(identifier, std::string(), /* usd = */ true);
+}
+
+Prim Composition::prim(const SdfPath &path, std::vector<ClipSite> inheritedClips) {
+    // Asked for before the index is made, so that it is made with its payloads. One at a time, not in parallel: a thread that
+    // waits for tasks of its own may be given one that opens the layer being read.
+    if (path.IsPrimPath())
+        _cache->RequestPayloads({path}, {});
+    return Prim(_cache->ComputePrimIndex(path, &_errors), std::move(inheritedClips));
+}
+
+void Composition::traverse(const std::function<bool(const Prim &)> &visit) {
+    traverseBelow(prim(SdfPath::AbsoluteRootPath()), visit);
+}
+
+void Composition::traverseBelow(const Prim &parent, const std::function<bool(const Prim &)> &visit) {
+    for (const TfToken &name : parent.childNames()) {
+        Prim child = prim(parent.path().AppendChild(name), parent.clips());
+        if (visit(child))
+            traverseBelow(child, visit);
+    }
+}
+
+SdfPathVector Composition::targets(const SdfPath &relationship) {
+    SdfPathVector paths;
+    _cache->ComputeRelationshipTargetPaths(relationship, &paths, false, SdfSpecHandle(), false, nullptr, &_errors);
+    return paths;
+}
+
+std::vector<std::string> Composition::errors() const {
+    std::vector<std::string> messages;
+    std::set<std::string> seen;
+    for (const PcpErrorBasePtr &error : _errors) {
+        std::string message = error->ToString();
+        if (seen.insert(message).second)
+            messages.push_back(message);
+    }
+    return messages;
+}
+
+} // namespace skinslide

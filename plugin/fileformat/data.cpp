@@ -1,0 +1,240 @@
+#include "data.h"
+
+#include "names.h"
+
+#include "pxr/usd/sdf/attributeSpec.h"
+#include "pxr/usd/sdf/layer.h"
+#include "pxr/usd/sdf/primSpec.h"
+#include "pxr/usd/sdf/schema.h"
+#include "pxr/usd/sdf/types.h"
+
+#include <algorithm>
+
+namespace skinslide {
+
+// ---- What is declared ----
+
+namespace {
+
+// The attribute in the layer, of that type and with no value.
+SdfAttributeSpecHandle declare(const SdfLayerRefPtr &layer, const SdfPath &prim, const TfToken &name, const TfToken &type) {
+    SdfPath path = prim.AppendProperty(name);
+    SdfAttributeSpecHandle attribute = layer->GetAttributeAtPath(path);
+    if (!attribute) {
+        SdfPrimSpecHandle owner = SdfCreatePrimInLayer(layer, prim);
+        attribute = SdfAttributeSpec::New(owner, name.GetString(), SdfSchema::GetInstance().FindType(type));
+    }
+    for (const TfToken &field : {SdfFieldKeys->TimeSamples, SdfFieldKeys->Spline})
+        layer->EraseField(path, field);
+    return attribute;
+}
+
+} // namespace
+
+DataRefPtr Data::create(const std::vector<std::shared_ptr<SlidMesh>> &meshes, const SdfLayerRefPtr &shown,
+                        const std::function<SdfAbstractDataConstPtr(const SdfLayer &)> &contentOf) {
+    DataRefPtr data = TfCreateRefPtr(new Data);
+    for (const std::shared_ptr<SlidMesh> &mesh : meshes)
+        data->addMesh(mesh, shown);
+    data->CopyFrom(contentOf(*get_pointer(shown)));
+    return data;
+}
+
+void Data::add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at,
+               const SdfLayerRefPtr &shown) {
+    declare(shown, prim, name, type);
+    if (times.empty()) // the computed default stands for that of the text
+        shown->EraseField(prim.AppendProperty(name), SdfFieldKeys->Default);
+    _computed[prim.AppendProperty(name)] = {times, std::move(at)};
+}
+
+void Data::addMesh(const std::shared_ptr<SlidMesh> &mesh, const SdfLayerRefPtr &shown) {
+    const Source &source = mesh->source();
+    auto compute = [&](const TfToken &name, const char *type, const std::vector<double> &times, Compute at) {
+        add(source.path, name, TfToken(type), times, std::move(at), shown);
+    };
+    compute(names().points, "point3f[]", source.times, [mesh](double time) { return mesh->points(time); });
+    compute(names().extent, "float3[]", source.times, [mesh](double time) { return mesh->extent(time); });
+    if (source.hasNormals) {
+        TfToken name(source.normals.name());
+        std::vector<double> own = source.normals.attribute().times();
+        compute(name, "normal3f[]", source.times.empty() ? own : source.times,
+                [mesh](double time) { return mesh->normals(time); });
+        if (!source.normals.attribute().metadata(names().interpolation).IsEmpty())
+            shown->SetField(source.path.AppendProperty(name), names().interpolation, VtValue(source.normalsInterpolation));
+    }
+    for (const Rate &rate : source.rates) {
+        compute(TfToken(rate.attribute.name()), "vector3f[]", source.times,
+                [mesh, rate](double time) { return mesh->rate(rate, time); });
+    }
+    for (const auto &[name, type] : source.blocked)
+        declare(shown, source.path, name, type)->SetDefaultValue(VtValue(SdfValueBlock()));
+}
+
+// ---- Which attributes and fields are computed ----
+
+const Data::Computed *Data::computed(const SdfPath &path) const {
+    auto found = _computed.find(path);
+    return found == _computed.end() ? nullptr : &found->second;
+}
+
+const Data::Computed *Data::computedField(const SdfPath &path, const TfToken &field) const {
+    if (field != SdfFieldKeys->TimeSamples && field != SdfFieldKeys->Default)
+        return nullptr;
+    const Computed *attribute = computed(path);
+    return attribute && attribute->times.empty() == (field == SdfFieldKeys->Default) ? attribute : nullptr;
+}
+
+VtValue Data::fieldValue(const Computed &attribute) {
+    if (attribute.times.empty())
+        return attribute.at(Attribute::defaultTime);
+    SdfTimeSampleMap samples;
+    for (double time : attribute.times)
+        samples[time] = attribute.at(time);
+    return VtValue::Take(samples);
+}
+
+bool Data::hasSample(const Computed &attribute, double time) {
+    return std::binary_search(attribute.times.begin(), attribute.times.end(), time);
+}
+
+// ---- SdfAbstractData ----
+
+bool Data::StreamsData() const {
+    return true;
+}
+
+bool Data::IsDetached() const {
+    return false;
+}
+
+bool Data::Has(const SdfPath &path, const TfToken &field, SdfAbstractDataValue *value) const {
+    const Computed *attribute = computedField(path, field);
+    if (!attribute)
+        return SdfData::Has(path, field, value);
+    return !value || value->StoreValue(fieldValue(*attribute));
+}
+
+bool Data::Has(const SdfPath &path, const TfToken &field, VtValue *value) const {
+    const Computed *attribute = computedField(path, field);
+    if (!attribute)
+        return SdfData::Has(path, field, value);
+    if (value)
+        *value = fieldValue(*attribute);
+    return true;
+}
+
+bool Data::HasSpecAndField(const SdfPath &path, const TfToken &field, SdfAbstractDataValue *value, SdfSpecType *type) const {
+    *type = GetSpecType(path);
+    return *type != SdfSpecTypeUnknown && Has(path, field, value);
+}
+
+bool Data::HasSpecAndField(const SdfPath &path, const TfToken &field, VtValue *value, SdfSpecType *type) const {
+    *type = GetSpecType(path);
+    return *type != SdfSpecTypeUnknown && Has(path, field, value);
+}
+
+VtValue Data::Get(const SdfPath &path, const TfToken &field) const {
+    const Computed *attribute = computedField(path, field);
+    return attribute ? fieldValue(*attribute) : SdfData::Get(path, field);
+}
+
+const std::type_info &Data::GetTypeid(const SdfPath &path, const TfToken &field) const {
+    if (!computedField(path, field))
+        return SdfData::GetTypeid(path, field);
+    return field == SdfFieldKeys->Default ? typeid(VtVec3fArray) : typeid(SdfTimeSampleMap);
+}
+
+std::vector<TfToken> Data::List(const SdfPath &path) const {
+    std::vector<TfToken> fields = SdfData::List(path);
+    if (const Computed *attribute = computed(path))
+        fields.push_back(attribute->times.empty() ? SdfFieldKeys->Default : SdfFieldKeys->TimeSamples);
+    return fields;
+}
+
+// ---- Samples ----
+
+namespace {
+
+// The times on either side, both the same at a sample and outside the first and last.
+bool bracket(const std::vector<double> &times, double time, double *lower, double *upper) {
+    if (times.empty())
+        return false;
+    auto after = std::lower_bound(times.begin(), times.end(), time);
+    if (after == times.end())
+        *lower = *upper = times.back();
+    else if (after == times.begin() || *after == time)
+        *lower = *upper = *after;
+    else
+        *lower = *(after - 1), *upper = *after;
+    return true;
+}
+
+} // namespace
+
+std::set<double> Data::ListAllTimeSamples() const {
+    std::set<double> times = SdfData::ListAllTimeSamples();
+    for (const auto &[path, attribute] : _computed)
+        times.insert(attribute.times.begin(), attribute.times.end());
+    return times;
+}
+
+std::set<double> Data::ListTimeSamplesForPath(const SdfPath &path) const {
+    const Computed *attribute = computed(path);
+    return attribute ? std::set<double>(attribute->times.begin(), attribute->times.end())
+                     : SdfData::ListTimeSamplesForPath(path);
+}
+
+bool Data::GetBracketingTimeSamples(double time, double *lower, double *upper) const {
+    std::set<double> all = ListAllTimeSamples();
+    return bracket(std::vector<double>(all.begin(), all.end()), time, lower, upper);
+}
+
+size_t Data::GetNumTimeSamplesForPath(const SdfPath &path) const {
+    const Computed *attribute = computed(path);
+    return attribute ? attribute->times.size() : SdfData::GetNumTimeSamplesForPath(path);
+}
+
+bool Data::GetBracketingTimeSamplesForPath(const SdfPath &path, double time, double *lower, double *upper) const {
+    const Computed *attribute = computed(path);
+    return attribute ? bracket(attribute->times, time, lower, upper)
+                     : SdfData::GetBracketingTimeSamplesForPath(path, time, lower, upper);
+}
+
+bool Data::GetPreviousTimeSampleForPath(const SdfPath &path, double time, double *previous) const {
+    const Computed *attribute = computed(path);
+    if (!attribute)
+        return SdfData::GetPreviousTimeSampleForPath(path, time, previous);
+    auto at = std::lower_bound(attribute->times.begin(), attribute->times.end(), time);
+    if (at == attribute->times.begin())
+        return false;
+    *previous = *(at - 1);
+    return true;
+}
+
+bool Data::QueryTimeSample(const SdfPath &path, double time, SdfAbstractDataValue *value) const {
+    const Computed *attribute = computed(path);
+    if (!attribute)
+        return SdfData::QueryTimeSample(path, time, value);
+    return hasSample(*attribute, time) && (!value || value->StoreValue(attribute->at(time)));
+}
+
+bool Data::QueryTimeSample(const SdfPath &path, double time, VtValue *value) const {
+    const Computed *attribute = computed(path);
+    if (!attribute)
+        return SdfData::QueryTimeSample(path, time, value);
+    if (!hasSample(*attribute, time))
+        return false;
+    if (value)
+        *value = attribute->at(time);
+    return true;
+}
+
+const std::type_info &Data::QueryTimeSampleTypeid(const SdfPath &path, double time) const {
+    const Computed *attribute = computed(path);
+    if (!attribute)
+        return SdfData::QueryTimeSampleTypeid(path, time);
+    return hasSample(*attribute, time) ? typeid(VtVec3fArray) : typeid(void);
+}
+
+} // namespace skinslide

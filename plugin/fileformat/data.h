@@ -1,0 +1,70 @@
+// The content of an opened .skinslide layer: its text, and attributes that are computed when a value of them is asked for.
+#ifndef SKINSLIDE_FORMAT_DATA_H
+#define SKINSLIDE_FORMAT_DATA_H
+
+#include "slidMesh.h"
+
+#include "pxr/usd/sdf/data.h"
+
+#include <functional>
+#include <set>
+#include <string>
+#include <unordered_map>
+
+namespace skinslide {
+
+TF_DECLARE_WEAK_AND_REF_PTRS(Data);
+
+class Data : public SdfData {
+  public:
+    // Authors what is declared of the computed attributes into `shown`, an anonymous layer with the text; take() then copies
+    // it. `content` is the data of that layer.
+    static DataRefPtr create(const std::vector<std::shared_ptr<SlidMesh>> &meshes, const SdfLayerRefPtr &shown,
+                             const std::function<SdfAbstractDataConstPtr(const SdfLayer &)> &contentOf);
+
+    // Resolved paths of every file that the values depend on.
+    std::set<std::string> dependencies;
+    std::vector<SdfLayerRefPtr> sources; // kept open, so that a reload finds them
+
+    bool StreamsData() const override;
+    bool IsDetached() const override;
+    bool Has(const SdfPath &path, const TfToken &field, SdfAbstractDataValue *value) const override;
+    bool Has(const SdfPath &path, const TfToken &field, VtValue *value = nullptr) const override;
+    bool HasSpecAndField(const SdfPath &path, const TfToken &field, SdfAbstractDataValue *value,
+                         SdfSpecType *type) const override;
+    bool HasSpecAndField(const SdfPath &path, const TfToken &field, VtValue *value, SdfSpecType *type) const override;
+    VtValue Get(const SdfPath &path, const TfToken &field) const override;
+    const std::type_info &GetTypeid(const SdfPath &path, const TfToken &field) const override;
+    std::vector<TfToken> List(const SdfPath &path) const override;
+    std::set<double> ListAllTimeSamples() const override;
+    std::set<double> ListTimeSamplesForPath(const SdfPath &path) const override;
+    bool GetBracketingTimeSamples(double time, double *lower, double *upper) const override;
+    size_t GetNumTimeSamplesForPath(const SdfPath &path) const override;
+    bool GetBracketingTimeSamplesForPath(const SdfPath &path, double time, double *lower, double *upper) const override;
+    bool GetPreviousTimeSampleForPath(const SdfPath &path, double time, double *previous) const override;
+    bool QueryTimeSample(const SdfPath &path, double time, SdfAbstractDataValue *value) const override;
+    bool QueryTimeSample(const SdfPath &path, double time, VtValue *value) const override;
+    const std::type_info &QueryTimeSampleTypeid(const SdfPath &path, double time) const override;
+
+  private:
+    using Compute = std::function<VtValue(double time)>;
+    struct Computed {
+        std::vector<double> times; // ascending; none: a default
+        Compute at;
+    };
+    const Computed *computed(const SdfPath &path) const;
+    // The computed attribute that has this field, or null.
+    const Computed *computedField(const SdfPath &path, const TfToken &field) const;
+    static VtValue fieldValue(const Computed &attribute);
+    static bool hasSample(const Computed &attribute, double time);
+
+    void addMesh(const std::shared_ptr<SlidMesh> &mesh, const SdfLayerRefPtr &shown);
+    void add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at,
+             const SdfLayerRefPtr &shown);
+
+    std::unordered_map<SdfPath, Computed, SdfPath::Hash> _computed;
+};
+
+} // namespace skinslide
+
+#endif

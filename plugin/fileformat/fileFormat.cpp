@@ -1,0 +1,105 @@
+#include "fileFormat.h"
+
+#include "data.h"
+#include "fault.h"
+#include "layers.h"
+#include "names.h"
+
+#include "pxr/base/tf/diagnostic.h"
+#include "pxr/base/tf/pathUtils.h"
+#include "pxr/base/tf/registryManager.h"
+#include "pxr/base/tf/type.h"
+#include "pxr/usd/pcp/dynamicFileFormatContext.h"
+#include "pxr/usd/sdf/layer.h"
+
+// Layers of the wheels' own TBB: with the headers of another one, classes that hold its containers have other sizes.
+#include <tbb/tbb_stddef.h>
+#if !defined(SKINSLIDE_SYSTEM_USD)
+static_assert(TBB_INTERFACE_VERSION < 12000, "the wheel usd-core is built with TBB 2020; put its headers first");
+#endif
+
+PXR_NAMESPACE_OPEN_SCOPE
+
+using namespace skinslide;
+
+TF_REGISTRY_FUNCTION(TfType) {
+    SDF_DEFINE_FILE_FORMAT(SkinSlideFileFormat, SdfFileFormat);
+}
+
+SkinSlideFileFormat::SkinSlideFileFormat()
+    : SdfFileFormat(TfToken("skinslide"), TfToken("1.0"), TfToken("usd"), std::string("skinslide")) {
+}
+
+bool SkinSlideFileFormat::CanRead(const std::string &file) const {
+    return SdfFileFormat::GetFileExtension(file) == "skinslide";
+}
+
+bool SkinSlideFileFormat::Read(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
+    try {
+        read(layer, resolvedPath, metadataOnly);
+        return true;
+    } catch (const std::exception &bad) {
+        TF_RUNTIME_ERROR("%s %s", resolvedPath.c_str(), bad.what());
+        return false;
+    }
+}
+
+void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
+    std::vector<std::string> problems;
+    Params params = Params::fromArguments(layer->GetFileFormatArguments(), &problems);
+    SdfLayerRefPtr shown = readText(resolvedPath), anchored = anchoredCopy(shown, resolvedPath);
+    std::vector<std::shared_ptr<SlidMesh>> meshes;
+    Sources sources;
+    if (!metadataOnly) {
+        sources = findSources(anchored, resolvedPath);
+        // On a reload, sources may be reloaded after this layer.
+        if (TfDynamic_cast<TfWeakPtr<const Data>>(_GetLayerData(*layer)))
+            SdfLayer::ReloadLayers(std::set<SdfLayerHandle>(sources.layers.begin(), sources.layers.end()));
+        adoptRate(shown, sources);
+        adoptRate(anchored, sources);
+    }
+    if (!metadataOnly && params.live) {
+        Composition composition(anchored, resolvedPath);
+        std::string name = TfGetBaseName(resolvedPath);
+        for (const std::shared_ptr<const Source> &source : readSources(composition, params, &problems))
+            meshes.push_back(std::make_shared<SlidMesh>(source, params, name));
+        std::vector<std::string> errors = composition.errors();
+        problems.insert(problems.end(), errors.begin(), errors.end());
+    }
+    DataRefPtr data = Data::create(meshes, shown, [](const SdfLayer &from) { return _GetLayerData(from); });
+    data->dependencies = std::move(sources.paths);
+    data->sources = std::move(sources.layers);
+    for (const std::string &problem : problems)
+        TF_WARN("%s: %s", resolvedPath.c_str(), problem.c_str());
+    SdfAbstractDataRefPtr content = data;
+    _SetLayerData(layer, content);
+}
+
+bool SkinSlideFileFormat::WriteToString(const SdfLayer &layer, std::string *text, const std::string &comment) const {
+    return SdfFileFormat::FindById(TfToken("usda"))->WriteToString(layer, text, comment);
+}
+
+bool SkinSlideFileFormat::WriteToStream(const SdfSpecHandle &spec, std::ostream &out, size_t indent) const {
+    return SdfFileFormat::FindById(TfToken("usda"))->WriteToStream(spec, out, indent);
+}
+
+std::set<std::string> SkinSlideFileFormat::GetExternalAssetDependencies(const SdfLayer &layer) const {
+    auto data = TfDynamic_cast<TfWeakPtr<const Data>>(_GetLayerData(layer));
+    return data ? data->dependencies : std::set<std::string>();
+}
+
+void SkinSlideFileFormat::ComposeFieldsForFileFormatArguments(const std::string &, const PcpDynamicFileFormatContext &context,
+                                                              FileFormatArguments *arguments, VtValue *) const {
+    for (const auto &[name, value] : Params::argumentsFromAttributes([&](const TfToken &attribute, VtValue *composed) {
+             return context.ComposeAttributeDefaultValue(attribute, composed);
+         }))
+        (*arguments)[name] = value;
+}
+
+bool SkinSlideFileFormat::CanAttributeDefaultValueChangeAffectFileFormatArguments(const TfToken &name, const VtValue &oldValue,
+                                                                                  const VtValue &newValue,
+                                                                                  const VtValue &) const {
+    return Params::isAttribute(name) && oldValue != newValue;
+}
+
+PXR_NAMESPACE_CLOSE_SCOPE

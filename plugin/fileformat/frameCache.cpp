@@ -1,0 +1,92 @@
+#include "frameCache.h"
+
+#include "pxr/base/gf/vec3f.h"
+#include "pxr/base/tf/getenv.h"
+#include "pxr/base/vt/array.h"
+#include "pxr/base/vt/types.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace skinslide {
+namespace {
+
+uint64_t bitsOf(double time) {
+    uint64_t bits = 0;
+    std::memcpy(&bits, &time, sizeof bits);
+    return bits;
+}
+
+size_t sizeOf(const Frame &frame) {
+    size_t points = frame.points.IsHolding<VtVec3fArray>() ? frame.points.UncheckedGet<VtVec3fArray>().size() : 0;
+    return sizeof frame + points * sizeof(GfVec3f);
+}
+
+} // namespace
+
+FrameCache &FrameCache::shared() {
+    // Never destroyed: layers may be closed after the statics of this library are gone.
+    static FrameCache *cache = new FrameCache(static_cast<size_t>(std::max(0, TfGetenvInt("SKINSLIDE_CACHE_MB", 512))) << 20);
+    return *cache;
+}
+
+std::shared_ptr<const Frame> FrameCache::get(const void *owner, double time, const std::function<Frame()> &make) {
+    Key key(owner, bitsOf(time));
+    std::unique_lock<std::mutex> lock(_mutex);
+    for (auto found = _entries.find(key); found != _entries.end(); found = _entries.find(key)) {
+        if (found->second.frame) {
+            _order.splice(_order.end(), _order, found->second.used);
+            return found->second.frame;
+        }
+        _made.wait(lock);
+    }
+    _entries[key]; // announces it
+    lock.unlock();
+    std::shared_ptr<const Frame> frame;
+    try {
+        frame = std::make_shared<const Frame>(make());
+    } catch (...) {
+        lock.lock();
+        _entries.erase(key);
+        _made.notify_all();
+        throw;
+    }
+    lock.lock();
+    keep(key, frame);
+    _made.notify_all();
+    return frame;
+}
+
+void FrameCache::keep(const Key &key, std::shared_ptr<const Frame> frame) {
+    Entry &entry = _entries[key];
+    entry.bytes = sizeOf(*frame);
+    entry.frame = std::move(frame);
+    entry.used = _order.insert(_order.end(), key);
+    _bytes += entry.bytes;
+    evict();
+}
+
+void FrameCache::evict() {
+    while (_bytes > _capacity && !_order.empty()) {
+        auto oldest = _entries.find(_order.front());
+        _bytes -= oldest->second.bytes;
+        _entries.erase(oldest);
+        _order.pop_front();
+    }
+}
+
+void FrameCache::drop(const void *owner) {
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto it = _entries.lower_bound(Key(owner, 0)); it != _entries.end() && it->first.first == owner;) {
+        _bytes -= it->second.bytes;
+        _order.erase(it->second.used);
+        it = _entries.erase(it);
+    }
+}
+
+size_t FrameCache::bytes() const {
+    std::lock_guard<std::mutex> lock(_mutex);
+    return _bytes;
+}
+
+} // namespace skinslide

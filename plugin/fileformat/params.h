@@ -1,0 +1,36 @@
+// What a shot may set from outside: attributes of a prim that payloads a .skinslide file, or arguments of the file format.
+#ifndef SKINSLIDE_FORMAT_PARAMS_H
+#define SKINSLIDE_FORMAT_PARAMS_H
+
+#include "pxr/pxr.h"
+
+#include "pxr/base/tf/token.h"
+#include "pxr/base/vt/value.h"
+#include "pxr/usd/sdf/fileFormat.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace skinslide {
+using namespace PXR_NS;
+
+struct Params {
+    bool live = true;          // false: the layer is its text, with nothing computed
+    double envelope = 1;       // scales the envelope of every patch
+    std::string interpolation; // of every patch, in place of its own; empty: its own
+    std::string lookup = "auto";
+
+    // Values that cannot be used are left out, and said in `problems`.
+    static Params fromArguments(const SdfFileFormat::FileFormatArguments &arguments, std::vector<std::string> *problems);
+
+    using ComposeAttribute = std::function<bool(const TfToken &name, VtValue *value)>;
+    // The arguments that a payload gets from the attributes of its prim; those that are not authored are left out. Values are
+    // percent-encoded, as an identifier of a layer takes them as they are.
+    static SdfFileFormat::FileFormatArguments argumentsFromAttributes(const ComposeAttribute &compose);
+    static bool isAttribute(const TfToken &name);
+};
+
+} // namespace skinslide
+
+#endif
