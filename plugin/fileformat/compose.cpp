@@ -74,15 +74,19 @@ VtValue sample(const SdfLayerRefPtr &layer, const SdfPath &path, double time) {
     return unblocked(value);
 }
 
-VtValue sampleAt(const SdfLayerRefPtr &layer, const SdfPath &path, double time) {
+// As Usd: sought in the layer's time, interpolated in the root's, in which a sample is where it is listed to be.
+VtValue sampleAt(const SdfLayerRefPtr &layer, const SdfPath &path, const SdfLayerOffset &toRoot, double time) {
     double lower = 0, upper = 0;
-    if (!layer->GetBracketingTimeSamplesForPath(path, time, &lower, &upper))
+    // The first sample answers for every time before it.
+    double local = std::isinf(time) ? std::numeric_limits<double>::lowest() : toRoot.GetInverse() * time;
+    if (!layer->GetBracketingTimeSamplesForPath(path, local, &lower, &upper))
         return VtValue();
     VtValue below = sample(layer, path, lower);
     if (GfIsClose(lower, upper, 1e-6) || below.IsEmpty())
         return below;
     VtValue above = sample(layer, path, upper);
-    return above.IsEmpty() ? below : lerp((time - lower) / (upper - lower), below, above);
+    double begin = toRoot * lower, end = toRoot * upper;
+    return above.IsEmpty() ? below : lerp((time - begin) / (end - begin), below, above);
 }
 
 bool isSampled(const SdfLayerRefPtr &layer, const SdfPath &path) {
@@ -136,8 +140,7 @@ VtValue Attribute::at(double time) const {
         return unblocked(_layer->GetField(_path, SdfFieldKeys->Default));
     if (_source != Source::Samples)
         return VtValue();
-    // The first sample answers for every time before it.
-    return sampleAt(_layer, _path, std::isinf(time) ? std::numeric_limits<double>::lowest() : _toRoot.GetInverse() * time);
+    return sampleAt(_layer, _path, _toRoot, time);
 }
 
 VtValue Attribute::metadata(const TfToken &field) const {

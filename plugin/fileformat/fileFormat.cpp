@@ -73,6 +73,8 @@ void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath,
         TF_WARN("%s: %s", resolvedPath.c_str(), problem.c_str());
     SdfAbstractDataRefPtr content = data;
     _SetLayerData(layer, content);
+    // An edit would not be composed, and what is computed hides it.
+    layer->SetPermissionToEdit(false);
 }
 
 bool SkinSlideFileFormat::WriteToString(const SdfLayer &layer, std::string *text, const std::string &comment) const {

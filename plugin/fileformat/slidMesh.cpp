@@ -16,7 +16,21 @@
 namespace skinslide {
 namespace {
 
-std::atomic<uint64_t> solveCount{0};
+std::atomic<uint64_t> solveCount{0}, solving{0}, mostAtOnce{0};
+
+// Counts a solve, for as long as it runs.
+class Counted {
+  public:
+    Counted() {
+        solveCount++;
+        uint64_t now = ++solving, most = mostAtOnce;
+        while (now > most && !mostAtOnce.compare_exchange_weak(most, now)) {
+        }
+    }
+    ~Counted() {
+        solving--;
+    }
+};
 
 void check(skinslide_status status, const skinslide_error &error) {
     if (status != SKINSLIDE_OK)
@@ -160,9 +174,12 @@ VtVec3fArray SlidMesh::slide(double time) {
     }
     skinslide_workspace *workspace = takeWorkspace();
     skinslide_error error = {};
-    solveCount++;
-    skinslide_status status = skinslide_slide(workspace, floatsOf(cached), native.empty() ? nullptr : native.data(),
-                                              floatsOf(&slid), nullptr, &error);
+    skinslide_status status = SKINSLIDE_OK;
+    {
+        Counted counted;
+        status = skinslide_slide(workspace, floatsOf(cached), native.empty() ? nullptr : native.data(), floatsOf(&slid),
+                                 nullptr, &error);
+    }
     giveBack(workspace);
     check(status, error);
     return slid;
@@ -300,4 +317,12 @@ VtValue SlidMesh::rate(const Rate &rate, double time) {
 
 uint64_t skinslideFormatSolveCount() {
     return skinslide::solveCount;
+}
+
+uint64_t skinslideFormatMostAtOnce() {
+    return skinslide::mostAtOnce;
+}
+
+uint64_t skinslideFormatCacheBytes() {
+    return skinslide::FrameCache::shared().bytes();
 }

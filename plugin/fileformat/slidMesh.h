@@ -57,7 +57,12 @@ class SlidMesh {
 
 } // namespace skinslide
 
-// How many frames this process has slid: for tests of laziness.
-extern "C" __attribute__((visibility("default"))) uint64_t skinslideFormatSolveCount();
+// What this process has done, for tests of laziness, of threads and of memory: the frames slid so far, the most that were slid
+// at the same time, and the bytes of frames that are kept.
+extern "C" {
+__attribute__((visibility("default"))) uint64_t skinslideFormatSolveCount();
+__attribute__((visibility("default"))) uint64_t skinslideFormatMostAtOnce();
+__attribute__((visibility("default"))) uint64_t skinslideFormatCacheBytes();
+}
 
 #endif

@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 
 from pxr import Sdf, Usd, UsdGeom, Vt
@@ -156,12 +157,14 @@ class _MeshBake:
         needed = [self.derived.times_needed(time) for time in times]
         solutions = self._solve(sorted(set().union(*needed)))
         solved: dict[Usd.TimeCode, Solved] = {}
-        for time, wanted in zip(times, needed, strict=True):
+        # A later time may need an earlier one than this time does, where controls have samples between those of points.
+        earliest = list(accumulate(reversed([min(wanted) for wanted in needed]), min))[::-1]
+        for time, wanted, oldest in zip(times, needed, earliest, strict=True):
             while not wanted <= solved.keys():
                 solved.update([next(solutions)])
             self._author(time, solved, overs)
             yield time
-            for old in [other for other in solved if other < min(wanted)]:
+            for old in [other for other in solved if other < oldest]:
                 del solved[old]
         for attribute in self.derived.blocked:
             overs.block(attribute)
