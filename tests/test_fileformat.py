@@ -62,7 +62,7 @@ def bends(expected: dict) -> bool:
 
 def test_nothing_is_solved_before_it_is_asked_for(path):
     before = solve_count()
-    stage, mesh = open_mesh(path)
+    _stage, mesh = open_mesh(path)
     attr = mesh.GetPointsAttr()
     assert solve_count() - before == 0
     assert attr.GetTimeSamples() == list(FRAMES)
@@ -82,7 +82,7 @@ def test_nothing_is_solved_before_it_is_asked_for(path):
 
 
 def test_between_two_samples_both_are_solved(path):
-    stage, mesh = open_mesh(path)
+    _stage, mesh = open_mesh(path)
     before = solve_count()
     mesh.GetPointsAttr().Get(1001.5)
     assert solve_count() - before == 2
@@ -152,7 +152,7 @@ def test_velocities_that_cannot_be_recomputed_are_blocked(tmp_path):
     def add_velocities(mesh):
         mesh.CreateVelocitiesAttr().Set(vectors(np.ones((49, 3))), 1001)
 
-    stage, mesh = open_mesh(make(tmp_path, add_velocities))
+    _stage, mesh = open_mesh(make(tmp_path, add_velocities))
     assert mesh.GetVelocitiesAttr().Get(1001) is None
 
 
@@ -173,7 +173,7 @@ def test_a_cache_without_samples_gives_a_default(tmp_path):
 
 
 def test_points_in_the_text_itself(tmp_path):
-    stage, mesh = patched_stage(grid())
+    stage, _mesh = patched_stage(grid())
     path = save(stage, tmp_path / "cache.usda").rename(tmp_path / "x.skinslide")
     expected = samples(baked(path, tmp_path), "points")
     assert bends(expected) and same(samples(Sdf.Layer.FindOrOpen(str(path)), "points"), expected)
@@ -207,7 +207,7 @@ def shot(folder: Path, text: str) -> Path:
     ],
 )
 def test_composed_into_a_shot(tmp_path, expected, text):
-    stage, mesh = open_mesh(shot(tmp_path, text))
+    _stage, mesh = open_mesh(shot(tmp_path, text))
     assert bends(expected)
     assert same({time: points(mesh, time) for time in mesh.GetPointsAttr().GetTimeSamples()}, expected)
 
@@ -225,7 +225,7 @@ def test_a_variant_of_the_shot_chooses(tmp_path, expected):
 
 def test_a_payload_is_moved_and_scaled_in_time(tmp_path, expected):
     text = 'def "World" (payload = @./x.skinslide@ (offset = 10; scale = 2)) {}'
-    stage, mesh = open_mesh(shot(tmp_path, text))
+    _stage, mesh = open_mesh(shot(tmp_path, text))
     assert mesh.GetPointsAttr().GetTimeSamples() == [2012.0, 2014.0, 2016.0]
     assert points(mesh, 2014).tobytes() == expected[1002.0].tobytes()
 
@@ -252,7 +252,7 @@ def test_a_source_of_another_rate(tmp_path):
     bake = baked(path, tmp_path)
     assert bake.timeCodesPerSecond == 30
     assert same(samples(bake, "points"), samples(stage.GetRootLayer(), "points"))
-    slower, mesh = open_mesh(shot(tmp_path, "(timeCodesPerSecond = 24; subLayers = [@./x.skinslide@])"))
+    _slower, mesh = open_mesh(shot(tmp_path, "(timeCodesPerSecond = 24; subLayers = [@./x.skinslide@])"))
     assert mesh.GetPointsAttr().GetTimeSamples() == pytest.approx([frame * 24 / 30 for frame in FRAMES])
 
 
@@ -303,7 +303,7 @@ def test_a_stage_with_a_live_file_is_not_slid_twice(path, tmp_path):
 def test_a_file_above_another_passes_its_points_on(path, tmp_path, expected):
     with said() as messages:
         above = write(tmp_path / "above.skinslide", cache="./x.skinslide")
-        stage, mesh = open_mesh(above)
+        _stage, mesh = open_mesh(above)
         assert points(mesh, 1002).tobytes() == expected[1002.0].tobytes()
     assert any("is slid already, by" in message for message in messages)
 
@@ -319,7 +319,7 @@ def test_live_attributes_become_arguments(tmp_path):
     make(tmp_path, lambda mesh: set_property(mesh, "envelope", 0.5))
     (tmp_path / "quarter").mkdir()
     quarter = make(tmp_path / "quarter", lambda mesh: set_property(mesh, "envelope", 0.25))
-    stage, mesh = open_mesh(payload(tmp_path, "uniform float skinSlide:live:envelope = 0.5"))
+    _stage, mesh = open_mesh(payload(tmp_path, "uniform float skinSlide:live:envelope = 0.5"))
     assert points(mesh, 1002).tobytes() == samples(baked(quarter, tmp_path), "points")[1002.0].tobytes()
 
 
@@ -368,7 +368,7 @@ def test_editing_anything_else_does_not(tmp_path, path):
 )
 def test_live_values_that_cannot_be_used_are_said_and_left_out(tmp_path, expected, live, said_of_it):
     with said() as messages:
-        stage, mesh = open_mesh(payload(tmp_path, live))
+        _stage, mesh = open_mesh(payload(tmp_path, live))
         assert points(mesh, 1002).tobytes() == expected[1002.0].tobytes()
     assert any(said_of_it in message for message in messages)
 
@@ -468,7 +468,7 @@ def test_eight_threads_read_random_frames(tmp_path):
     path = big(tmp_path, 12)
     expected = samples(baked(path, tmp_path), "points")
     before = solve_count()
-    stage, mesh = open_mesh(path)
+    _stage, mesh = open_mesh(path)
 
     def read(seed: int) -> bool:
         order = random.Random(seed).choices(sorted(expected), k=40)
@@ -480,7 +480,7 @@ def test_eight_threads_read_random_frames(tmp_path):
 
 
 def test_two_frames_are_solved_at_the_same_time(tmp_path):
-    stage, mesh = open_mesh(big(tmp_path, 80))
+    _stage, mesh = open_mesh(big(tmp_path, 80))
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda time: points(mesh, time), sorted(mesh.GetPointsAttr().GetTimeSamples())))
     assert most_at_once() >= 2

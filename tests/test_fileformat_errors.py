@@ -1,0 +1,282 @@
+"""What a `.skinslide` file says when it cannot be opened, or slid, and what it gives instead."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Sdf, Ts, Usd, UsdGeom, Vt
+
+import skinslide
+from layers import HEAD, make, open_mesh, points, refusal, said, solve_count, write
+from stages import FRAMES, MESH, PATCH, fin, grid, patched_stage, save, set_primvar, set_property, vectors
+
+FUZZER = Path(__file__).parent / "fuzz_fileformat.py"
+
+
+# ---- Files that do not open ----
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"words", "is not USDA text"),
+        (b"", "is not USDA text"),
+        (b"PXR-USDC\x00\x08", "is not USDA text"),
+        (b"#usda 1.0\n\x00def", "it holds a zero byte"),
+        (b'#usda 1.0\ndef "World" {\n', "is not valid USDA text"),
+    ],
+)
+def test_what_is_not_usda_text_is_refused(tmp_path, content, message):
+    path = tmp_path / "x.skinslide"
+    path.write_bytes(content)
+    refused = refusal(path)
+    assert message in refused and str(path) in refused
+
+
+@pytest.mark.parametrize("cut", [4, 60, 150, 220])
+def test_truncated_text_is_refused(tmp_path, cut):
+    path = make(tmp_path)
+    path.write_text(path.read_text()[:cut])
+    assert "x.skinslide" in refusal(path)
+
+
+@pytest.mark.parametrize(
+    "between", [[], ["a.usda"], ["a.usda", "b.usda"], ["other.skinslide"], ["a.usda", "other.skinslide"]]
+)
+def test_a_file_that_leads_back_to_itself_is_refused(tmp_path, between):
+    chain = ["x.skinslide", *between]
+    for name, following in zip(chain, [*chain[1:], chain[0]], strict=True):
+        (tmp_path / name).write_text(f'#usda 1.0\ndef "World" (references = @./{following}@</World>) {{}}\n')
+    # In a process of its own, since a test that hangs says nothing.
+    script = f"import skinslide; from pxr import Usd; Usd.Stage.Open({str(tmp_path / 'x.skinslide')!r})"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and "leads back to itself" in done.stderr
+
+
+def test_a_cycle_by_a_sublayer_or_an_expression_is_refused(tmp_path):
+    assert "leads back to itself" in refusal(write(tmp_path / "x.skinslide", cache="./x.skinslide"))
+    head = f'{HEAD}; expressionVariables = {{ string X = "y" }}'
+    assert "leads back to itself" in refusal(write(tmp_path / "y.skinslide", head=head, cache='`"./${X}.skinslide"`'))
+
+
+# ---- Files that open, and say what is wrong ----
+
+
+def messages_of(path: Path) -> str:
+    with said() as messages:
+        stage, _ = open_mesh(path)
+        assert stage
+    return "\n".join(messages)
+
+
+def test_a_source_that_is_not_there_is_named(tmp_path):
+    path = write(tmp_path / "x.skinslide")
+    assert str(tmp_path / "cache.usda") in messages_of(path)
+
+
+def test_a_source_that_appears_is_picked_up(tmp_path):
+    path = write(tmp_path / "x.skinslide")
+    with said():
+        stage = Usd.Stage.Open(str(path))
+    save(patched_stage(grid())[0], tmp_path / "cache.usda")
+    assert stage.GetRootLayer().Reload()
+    assert stage.GetRootLayer().GetNumTimeSamplesForPath(f"{MESH}.points") == 3
+
+
+def unset(name):
+    return lambda mesh: mesh.GetPrim().GetAttribute(name).Block()
+
+
+def bad(name, value):
+    return lambda mesh: set_property(mesh, name, value)
+
+
+def paint(name, type_name, interpolation, value):
+    return lambda mesh: set_primvar(
+        mesh, f"skinSlide:{PATCH}:{name}", getattr(Sdf.ValueTypeNames, type_name), interpolation, value
+    )
+
+
+def other_topology(mesh):
+    mesh.GetFaceVertexIndicesAttr().Set(mesh.GetFaceVertexIndicesAttr().Get(), 1001)
+    mesh.GetFaceVertexIndicesAttr().Set(Vt.IntArray([7] * 144), 1003)
+
+
+def no_rest(mesh):
+    mesh.GetPointsAttr().ClearDefault()
+
+
+@pytest.mark.parametrize(
+    ("edit", "message"),
+    [
+        (unset("faceVertexCounts"), "faceVertexCounts has no value"),
+        (lambda mesh: mesh.GetFaceVertexCountsAttr().Set(Vt.IntArray([4])), "faceVertexCounts add up to 4"),
+        (lambda mesh: mesh.GetFaceVertexIndicesAttr().Set(Vt.IntArray([99] * 144)), "face 0 has point 99"),
+        (other_topology, "faceVertexIndices changes at frame 1003"),
+        (lambda mesh: mesh.GetPrim().SetTypeName("Points"), "is a Points; SkinSlideAPI applies to Mesh only"),
+        (lambda mesh: mesh.GetPrim().SetSpecifier(Sdf.SpecifierOver), "is not defined"),
+        (no_rest, "has no rest points"),
+        (lambda mesh: mesh.GetPointsAttr().Set(vectors(np.zeros((3, 3)))), "points (default) has 3 values"),
+        (lambda mesh: mesh.GetPointsAttr().Set(vectors(np.full((49, 3), np.nan))), "points (default)[0] is (nan"),
+        (bad("boundary", "round"), "boundary is 'round'; it must be one of auto, square, circle"),
+        (bad("corners", Vt.IntArray([1, 2])), "corners has 2 values; it must have 4"),
+        (bad("corners", Vt.IntArray([0, 6, 42, 99])), "corners has point 99"),
+        (bad("edges", Vt.IntArray([1])), "it must hold pairs of point indices"),
+        (bad("edges", Vt.IntArray([0, 1])), "edgeForceDensities has 0 values, but"),
+        (bad("envelope", float("nan")), "envelope is nan"),
+        (paint("patch", "BoolArray", "uniform", [True]), "patch has 1 values, but the mesh has 36 faces"),
+        (paint("patch", "BoolArray", "uniform", [False] * 36), "is above 0 on no face"),
+        (paint("patch", "StringArray", "uniform", ["a"]), "it must be bool[], int[] or float[]"),
+        (paint("patch", "BoolArray", "faceVarying", [True]), "it must be uniform (by face) or vertex"),
+        (unset(f"primvars:skinSlide:{PATCH}:patch"), "there is neither"),
+        (paint("weight", "FloatArray", "vertex", [0.5]), "weight has 1 values, but the mesh has 49 points"),
+        (paint("weight", "FloatArray", "vertex", [float("inf")] * 49), "it must be a number"),
+        (paint("weight", "FloatArray", "uniform", [0.5] * 36), "it must be vertex or constant"),
+        (paint("forceDensity", "FloatArray", "vertex", [0.0] * 49), "is 0; it must be finite and above 0"),
+        (paint("forceDensity", "IntArray", "vertex", [1] * 49), "it must be float[]"),
+    ],
+)
+def test_a_mesh_that_cannot_be_slid_is_named_and_left_as_it_is(tmp_path, edit, message):
+    path = make(tmp_path, edit)
+    found = messages_of(path)
+    assert message in found and MESH in found and "x.skinslide" in found
+    with said():
+        assert not Sdf.Layer.FindOrOpen(str(path)).GetAttributeAtPath(f"{MESH}.points")
+
+
+def test_nothing_to_slide_is_said(tmp_path):
+    assert "nothing to slide" in messages_of(
+        make(tmp_path, lambda mesh: mesh.GetPrim().RemoveAPI("SkinSlideAPI", PATCH))
+    )
+
+
+def test_a_prototype_of_a_point_instancer_is_left_as_it_is(tmp_path):
+    def instance(mesh):
+        instancer = UsdGeom.PointInstancer.Define(mesh.GetPrim().GetStage(), "/World/copies")
+        instancer.CreatePrototypesRel().AddTarget(mesh.GetPrim().GetParent().GetPath())
+
+    assert "is a prototype of the point instancer /World/copies" in messages_of(make(tmp_path, instance))
+
+
+def test_a_mesh_in_an_instance_is_left_as_it_is(tmp_path):
+    make(tmp_path)
+    path = tmp_path / "y.skinslide"
+    path.write_text(f'#usda 1.0\n({HEAD})\ndef "World" (references = @./cache.usda@; instanceable = true) {{}}\n')
+    assert "is inside an instance, whose points are shared; author instanceable = false on /World" in messages_of(path)
+
+
+def test_points_from_value_clips_point_at_the_bake(tmp_path):
+    def with_clips(mesh):
+        clips = Usd.ClipsAPI(mesh.GetPrim().GetStage().GetPrimAtPath("/World/char"))
+        clips.SetClipPrimPath("/World/char")
+        clips.SetClipAssetPaths([Sdf.AssetPath("./clip.usda")])
+        clips.SetClipActive([(0, 0)])
+        for frame in FRAMES:
+            mesh.GetPointsAttr().ClearAtTime(frame)
+
+    found = messages_of(make(tmp_path, with_clips))
+    assert "points come from value clips" in found and "bake the stage instead" in found
+
+
+def test_samples_that_beat_value_clips_are_slid(tmp_path):
+    def with_clips(mesh):
+        clips = Usd.ClipsAPI(mesh.GetPrim().GetStage().GetPrimAtPath("/World/char"))
+        clips.SetClipPrimPath("/World/char")
+        clips.SetClipAssetPaths([Sdf.AssetPath("./clip.usda")])
+        clips.SetClipActive([(0, 0)])
+
+    assert "value clips" not in messages_of(make(tmp_path, with_clips))
+
+
+def test_an_envelope_by_spline_points_at_the_bake(tmp_path):
+    def animate(mesh):
+        spline = Ts.Spline("float")
+        spline.SetKnot(Ts.Knot(typeName="float", time=1001, value=0.0))
+        mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(spline)
+
+    assert "is a spline" in messages_of(make(tmp_path, animate))
+
+
+# ---- Frames that fail ----
+
+
+def test_a_set_up_that_the_core_refuses_gives_the_cache(tmp_path):
+    """A fin has an edge with three faces, which shows when the first frame is asked for."""
+    stage, _ = patched_stage(fin())
+    save(stage, tmp_path / "cache.usda")
+    path = write(tmp_path / "x.skinslide")
+    with said() as messages:
+        stage, mesh = open_mesh(path)
+        assert np.array_equal(points(mesh, 1002), fin().moved(1002))
+        mesh.GetExtentAttr().Get(1002)
+        points(mesh, 1002)
+    assert [message for message in messages if "skinslide" in message] == [
+        f"x.skinslide: {MESH}: frame 1002: patch {PATCH}: edge 0-1 has 3 faces; the points are those of the cache"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (np.full((49, 3), np.nan, np.float32), "points[0]"),
+        (np.zeros((5, 3), np.float32), "points has 5 values, but 49 at first"),
+    ],
+)
+def test_a_frame_that_fails_gives_the_cache_and_one_message(tmp_path, value, message):
+    path = make(tmp_path, lambda mesh: mesh.GetPointsAttr().Set(vectors(value), 1002))
+    with said() as messages:
+        _stage, mesh = open_mesh(path)
+        for _ in range(2):
+            assert points(mesh, 1002).tobytes() == value.tobytes()
+        mesh.GetExtentAttr().Get(1002)
+        assert not np.array_equal(points(mesh, 1003), grid().moved(1003))
+    ours = [each for each in messages if "skinslide" in each]
+    assert len(ours) == 1 and ours[0].startswith(f"x.skinslide: {MESH}: frame 1002: ")
+    assert "the points are those of the cache" in ours[0] and (
+        "has 5" in ours[0] or "finite" in ours[0] or message in ours[0]
+    )
+
+
+def test_controls_that_fail_at_a_frame_give_the_cache(tmp_path):
+    def animate(mesh):
+        for frame, factor in zip(FRAMES, (1.0, -1.0, 1.0), strict=True):
+            values = Vt.FloatArray([factor] * 49)
+            set_primvar(mesh, f"skinSlide:{PATCH}:forceDensity", Sdf.ValueTypeNames.FloatArray, "vertex", values, frame)
+
+    with said() as messages:
+        _stage, mesh = open_mesh(make(tmp_path, animate))
+        assert np.array_equal(points(mesh, 1002), grid().moved(1002))
+    assert any("frame 1002" in message and "above 0" in message for message in messages)
+
+
+def test_normals_of_a_wrong_length_are_left_and_named(tmp_path):
+    def add_normals(mesh):
+        mesh.CreateNormalsAttr(vectors([[0, 0, 1]] * 3))
+
+    with said() as messages:
+        _stage, mesh = open_mesh(make(tmp_path, add_normals))
+        assert len(mesh.GetNormalsAttr().Get(1002)) == 3
+    assert any("normals left as they are" in message for message in messages)
+
+
+def test_an_unsupported_lookup_gives_the_cache(tmp_path):
+    path = make(tmp_path)
+    layer = Sdf.Layer.FindOrOpen(str(path), {"envelope": "2e9", "live": "0"})
+    assert not layer.GetAttributeAtPath(f"{MESH}.points")
+    before = solve_count()
+    with said():
+        slid = Sdf.Layer.FindOrOpen(str(path), {"envelope": "7"}).QueryTimeSample(f"{MESH}.points", 1003)
+    # An envelope above 1 counts as 1.
+    assert np.array_equal(slid, Sdf.Layer.FindOrOpen(str(path)).QueryTimeSample(f"{MESH}.points", 1003))
+    assert solve_count() - before == 2
+
+
+def test_mutated_files_neither_crash_nor_hang(tmp_path):
+    plugin = Path(skinslide.__file__).parent / "usd" / "skinslideFileFormat"
+    done = subprocess.run(
+        [sys.executable, FUZZER, plugin, tmp_path, "--count", "150"], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert "150 files" in done.stdout
