@@ -12,8 +12,12 @@ for example in elbow fine_elbow bicep face finger sleeve chequer bump; do
     "$venv/bin/skinslide" bake "$out/$example/stage.usda" -o "$out/$example/slid.usdc" --json --quiet >"$out/$example/bake.json"
 done
 
+"$python" "$root/examples/shot/make.py" "$out/shot" >/dev/null
+"$python" "$root/examples/shot/play.py" "$out/shot/shot.usda" >"$out/shot/play.txt"
+
 say "What they show"
 "$python" "$root/examples/table.py" "$out"
+printf '\n%s: %s\n' "$out/shot/shot.usda, played live" "$(tail -n 2 "$out/shot/play.txt" | head -n 1)"
 
 say "Lookup by colour-ID rendering"
 "$python" "$root/examples/lookup.py" "$out"

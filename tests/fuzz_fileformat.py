@@ -17,14 +17,16 @@ TEXT = Path(__file__).with_name("fuzz.skinslide").read_text()
 PIECES = [
     *(
         "0",
+        "1",
         "-1",
         "99",
         "1e30",
         "nan",
         "-inf",
         "2147483648",
-        "[]",
         "[0]",
+        "1, 2",
+        "[]",
         "(",
         ")",
         "{",
@@ -32,56 +34,54 @@ PIECES = [
         '"',
         "@",
         "None",
-        "over",
-        "class",
     ),
+    *("@./x.skinslide@", "instanceable = true", "\n", ";", "active = false", "\x00", "ÿ", "over", "class"),
+]
+WORDS = [
     *(
-        "payload = @./cache.usda@",
-        "@./x.skinslide@",
-        '"limit"',
-        '"vertex"',
-        '"constant"',
-        "instanceable = true",
-        "\n",
-        ";",
-    ),
-    *(
-        "timeSamples",
-        "default",
-        "double3[]",
-        "half3[]",
-        "string[]",
-        "spline",
-        "clips",
-        "active = false",
+        "point3f",
+        "float",
+        "int",
+        "bool",
+        "double3",
+        "half3",
         "uniform",
-        "\x00",
-        "ÿ",
+        "vertex",
+        "constant",
+        "faceVarying",
+        "one",
+        "two",
     ),
+    *("points", "velocities", "normals", "envelope", "weight", "patch", "indices", "corners", "edges", "def", "over"),
 ]
 
 
 def mutated(source: random.Random) -> str:
+    """Mostly what still parses: a number or a line changed; now and then what does not."""
     text = TEXT
-    for _ in range(source.randint(1, 4)):
-        kind, at = source.randrange(5), source.randrange(len(text))
-        length = source.choice([1, 1, 2, 5, 20, 200])
-        if kind == 0:
-            text = text[:at] + text[at + length :]
-        elif kind == 1:
-            text = text[:at] + source.choice(PIECES) + text[at + source.randrange(4) :]
-        elif kind == 2:
-            text = text[:at] + text[at : at + length] * 2 + text[at + length :]
-        elif kind == 3:
+    for _ in range(source.randint(1, 3)):
+        kind = source.randrange(10)
+        if kind < 7:
+            text = replaced(text, source.choice([i for i, letter in enumerate(text) if letter.isdigit()]), source)
+        elif kind < 8:
             lines = text.split("\n")
-            lines.insert(source.randrange(len(lines)), lines.pop(source.randrange(len(lines))))
+            line = lines.pop(source.randrange(len(lines)))
+            lines[(at := source.randrange(len(lines))) : at] = [line] * source.randrange(3)
             text = "\n".join(lines)
+        elif kind < 9:
+            old, new = source.sample(WORDS, 2)
+            text = text.replace(old, new, source.choice([1, -1]))
         else:
-            digits = [i for i, letter in enumerate(text) if letter.isdigit()]
-            if digits:
-                at = source.choice(digits)
-                text = text[:at] + source.choice(PIECES[:9]) + text[at + 1 :]
+            text = replaced(text, source.randrange(len(text)), source)
     return text
+
+
+def replaced(text: str, at: int, source: random.Random) -> str:
+    return (
+        text[:at]
+        + source.choice(PIECES[: source.choice([7, 7, 7, len(PIECES)])])
+        + text[at + source.choice([1, 1, 5]) :]
+    )
 
 
 def read_everything(path: Path) -> bool:

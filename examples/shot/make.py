@@ -1,0 +1,49 @@
+"""Shot: two of the elbow's arms side by side, opened from one `.skinslide` file: one as cached, one whose skin slides.
+
+`elbow.skinslide` is the elbow's stage under another name: the cache, and a patch on it. `shot.usda` payloads it twice;
+`skinSlide:live:envelope` on each payloading prim says how far the skin slides there. Nothing is baked: points are
+computed when a frame is asked for. Play it with play.py, or open it in usdview from a Python that imports skinslide.
+"""
+
+import sys
+from pathlib import Path
+
+from pxr import Sdf, Usd, UsdGeom
+
+import skinslide  # noqa: F401 (registers the file format)
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from elbow.make import make as make_elbow
+from makers.command import main
+from makers.stage import FIRST_SHOT_FRAME, FRAME_COUNT
+
+ENVELOPES = {"stuck": 0.0, "slid": 1.0}
+APART = 200.0  # cm
+
+
+def make(folder: Path) -> Path:
+    """Writes the example into `folder` and returns the shot's path."""
+    make_elbow(folder).replace(folder / "elbow.skinslide")
+    stage = Usd.Stage.CreateInMemory(load=Usd.Stage.LoadNone)
+    world = UsdGeom.Xform.Define(stage, "/World")
+    stage.SetDefaultPrim(world.GetPrim())
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.centimeters)
+    stage.SetTimeCodesPerSecond(24)
+    stage.SetFramesPerSecond(24)
+    stage.SetStartTimeCode(FIRST_SHOT_FRAME)
+    stage.SetEndTimeCode(FIRST_SHOT_FRAME + FRAME_COUNT - 1)
+    for number, (name, envelope) in enumerate(ENVELOPES.items()):
+        character = UsdGeom.Xform.Define(stage, f"/World/{name}")
+        character.AddTranslateOp().Set((number * APART, 0, 0))
+        character.GetPrim().GetPayloads().AddPayload("./elbow.skinslide")
+        live = character.GetPrim().CreateAttribute(
+            "skinSlide:live:envelope", Sdf.ValueTypeNames.Float, custom=True, variability=Sdf.VariabilityUniform
+        )
+        live.Set(envelope)
+    stage.GetRootLayer().Export(str(folder / "shot.usda"))
+    return folder / "shot.usda"
+
+
+if __name__ == "__main__":
+    main(make, __doc__)
