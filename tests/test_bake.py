@@ -247,6 +247,18 @@ def test_animated_controls_count_as_samples(shot, out):
     assert half.tobytes() == direct(pose(2), envelope=np.float32(2 / 3)).tobytes()
 
 
+def test_a_control_between_the_last_samples_leaves_accelerations_what_they_need(shot, out):
+    """At the last sample they need one that those at the control before it do not."""
+    shot.mesh.CreateAccelerationsAttr()
+    for frame in range(1, 6):
+        shot.mesh.GetAccelerationsAttr().Set(vectors(np.zeros_like(REST)), frame)
+    shot.envelope().Set(0.5, OFFSET + 1)
+    shot.envelope().Set(1.0, OFFSET + 4.5)
+    bake_to_file(shot.save().path, out)
+    _stage, mesh = baked_mesh(out)
+    assert mesh.GetAccelerationsAttr().GetTimeSamples() == [1001, 1002, 1003, 1004, 1004.5, 1005]
+
+
 def test_a_cache_without_samples_gives_defaults(shot, out):
     shot.mesh.GetPointsAttr().Clear()
     shot.mesh.GetPointsAttr().Set(vectors(pose(3)))
