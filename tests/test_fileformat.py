@@ -480,6 +480,25 @@ def test_eight_threads_read_random_frames(tmp_path):
     assert solve_count() - before <= len(expected)
 
 
+def test_many_files_open_at_once_in_one_stage(tmp_path, expected):
+    """Stages open payloads on several threads: each reads files and composes, some of them the same ones."""
+    lines = []
+    for number in range(16):
+        write(tmp_path / f"x{number % 6}.skinslide")
+        lines.append(
+            f'def "c{number}" (payload = @./x{number % 6}.skinslide@) '
+            f"{{\nuniform float skinSlide:live:envelope = {1 - number % 2}\n}}"
+        )
+    script = (
+        "import skinslide, sys; from pxr import Usd; "
+        f"stage = Usd.Stage.Open({str(shot(tmp_path, chr(10).join(lines)))!r}); "
+        "assert all(len(stage.GetAttributeAtPath(f'/c{i}/char/geo/skin_GEO.points').GetTimeSamples()) == 3 "
+        "for i in range(16))"
+    )
+    for _ in range(3):
+        run_python(script)
+
+
 def test_two_frames_are_solved_at_the_same_time(tmp_path):
     _stage, mesh = open_mesh(big(tmp_path, 80))
     with ThreadPoolExecutor(2) as pool:
@@ -493,7 +512,12 @@ def test_two_frames_are_solved_at_the_same_time(tmp_path):
 def run_python(script: str, **environment: str) -> subprocess.CompletedProcess:
     root = Path(__file__).parent.parent
     done = subprocess.run(
-        [sys.executable, "-c", script], cwd=root, env={**os.environ, **environment}, capture_output=True, text=True
+        [sys.executable, "-c", script],
+        cwd=root,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     assert done.returncode == 0, done.stderr
     return done

@@ -12,9 +12,9 @@
 #include "pxr/usd/pcp/dynamicFileFormatContext.h"
 #include "pxr/usd/sdf/layer.h"
 
-// Layers of the wheels' own TBB: with the headers of another one, classes that hold its containers have other sizes.
-#include <tbb/tbb_stddef.h>
+// With the headers of another TBB than USD was built with, classes that hold its containers have other sizes.
 #if !defined(SKINSLIDE_SYSTEM_USD)
+#include <tbb/tbb_stddef.h>
 static_assert(TBB_INTERFACE_VERSION < 12000, "the wheel usd-core is built with TBB 2020; put its headers first");
 #endif
 

@@ -71,11 +71,11 @@ SlidMesh::~SlidMesh() {
     skinslide_slider_destroy(_slider);
 }
 
-// One message for a time, whatever is asked for there.
+// One message for a time, whatever is asked for there; one in all where the set-up is what fails.
 void SlidMesh::say(double time, const std::string &message) {
     {
         std::lock_guard<std::mutex> lock(_mutex);
-        if (!_said.insert(frameText(time)).second)
+        if (!_said.insert(_problem.empty() ? frameText(time) : "").second)
             return;
     }
     TF_WARN("%s: %s: frame %s: %s", _layerName.c_str(), _source->path.GetText(), frameText(time).c_str(), message.c_str());
@@ -108,6 +108,7 @@ void SlidMesh::build() {
         skinslide_error error = {};
         check(skinslide_slider_create(&mesh, setups.data(), static_cast<int32_t>(setups.size()), &_slider, &error), error);
     } catch (const std::exception &bad) {
+        std::lock_guard<std::mutex> lock(_mutex);
         _problem = bad.what();
     }
 }
