@@ -273,6 +273,15 @@ def test_arguments_may_be_given_by_hand(tmp_path):
     assert solve_count() - before == 2
 
 
+def test_a_lookup_that_cannot_be_had_gives_the_cache_and_one_message(tmp_path, monkeypatch):
+    monkeypatch.setenv("SKINSLIDE_EGL_DEVICE", "2147483000")
+    layer = Sdf.Layer.FindOrOpen(str(make(tmp_path)), {"lookup": "egl"})
+    with said() as messages:
+        for frame in FRAMES[1:]:
+            assert np.array_equal(layer.QueryTimeSample(f"{MESH}.points", frame), grid().moved(frame))
+    assert len([message for message in messages if MESH in message]) == 1
+
+
 def test_mutated_files_neither_crash_nor_hang(tmp_path):
     plugin = Path(skinslide.__file__).parent / "usd" / "skinslideFileFormat"
     done = subprocess.run(
