@@ -149,6 +149,25 @@ def test_normals_that_are_no_primvar_are_those_of_a_bake(tmp_path, interpolation
     assert same(samples(open_mesh(path)[0].Flatten(), "normals"), samples(baked(path, tmp_path), "normals"))
 
 
+@pytest.mark.parametrize("scheme", ["catmullClark", "bilinear", None])
+def test_a_subdivision_surface_is_that_of_a_bake(tmp_path, scheme):
+    def subdivide(mesh):
+        if scheme:
+            mesh.GetSubdivisionSchemeAttr().Set(scheme)
+        else:
+            mesh.GetPrim().RemoveProperty("subdivisionScheme")
+        mesh.CreateCreaseIndicesAttr(Vt.IntArray([15, 16, 17]))
+        mesh.CreateCreaseLengthsAttr(Vt.IntArray([3]))
+        mesh.CreateCreaseSharpnessesAttr(Vt.FloatArray([2.5]))
+
+    path = make(tmp_path, subdivide)
+    (tmp_path / "flat").mkdir()
+    flat = make(tmp_path / "flat")
+    expected = samples(baked(path, tmp_path), "points")
+    assert same(samples(open_mesh(path)[0].Flatten(), "points"), expected)
+    assert not same(expected, samples(baked(flat, tmp_path / "flat"), "points"))
+
+
 def test_velocities_that_cannot_be_recomputed_are_blocked(tmp_path):
     def add_velocities(mesh):
         mesh.CreateVelocitiesAttr().Set(vectors(np.ones((49, 3))), 1001)

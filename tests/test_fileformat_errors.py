@@ -120,6 +120,7 @@ def no_rest(mesh):
         (no_rest, "has no rest points"),
         (lambda mesh: mesh.GetPointsAttr().Set(vectors(np.zeros((3, 3)))), "points (default) has 3 values"),
         (lambda mesh: mesh.GetPointsAttr().Set(vectors(np.full((49, 3), np.nan))), "points (default)[0] is (nan"),
+        (lambda mesh: mesh.GetSubdivisionSchemeAttr().Set("butterfly"), "subdivisionScheme is 'butterfly'"),
         (bad("boundary", "round"), "boundary is 'round'; it must be one of auto, square, circle"),
         (bad("corners", Vt.IntArray([1, 2])), "corners has 2 values; it must have 4"),
         (bad("corners", Vt.IntArray([0, 6, 42, 99])), "corners has point 99"),

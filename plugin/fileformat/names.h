@@ -21,7 +21,6 @@ struct Names {
     const TfToken points{"points"}, extent{"extent"}, velocities{"velocities"}, accelerations{"accelerations"};
     const TfToken normals{"normals"}, normalsPrimvar{"primvars:normals"};
     const TfToken faceCounts{"faceVertexCounts"}, faceIndices{"faceVertexIndices"}, orientation{"orientation"};
-    const TfToken subdivisionScheme{"subdivisionScheme"};
     const TfToken indices{"indices"}, elementType{"elementType"}, face{"face"}, leftHanded{"leftHanded"};
     const TfToken prototypes{"prototypes"};
     const TfToken jointIndices{"primvars:skel:jointIndices"}, blendShapes{"skel:blendShapeTargets"};
@@ -59,6 +58,9 @@ inline const std::vector<std::string> boundaryTokens{"auto", "square", "circle"}
 inline const std::vector<std::string> holesTokens{"pinned", "free"};
 inline const std::vector<std::string> ruleTokens{"unit", "fast"};
 inline const std::vector<std::string> interpolationTokens{"auto", "linear", "meanValue", "limit"};
+inline const std::vector<std::string> schemeTokens{"none", "catmullClark", "loop", "bilinear"};
+inline const std::vector<std::string> boundaryRuleTokens{"edgeAndCorner", "edgeOnly", "none"};
+inline const std::vector<std::string> triangleRuleTokens{"catmullClark", "smooth"};
 inline const std::vector<std::string> lookupTokens{"auto", "egl", "exact"};
 
 } // namespace skinslide

@@ -45,6 +45,10 @@ class Patch {
     bool varies() const;               // whether any control does
     std::vector<double> times() const; // of controls that vary
     Controls controlsAt(double time, const Topology &topology) const;
+    // Whether its interpolation depends on how the mesh is subdivided.
+    bool needsSubdivision() const {
+        return _interpolation == SKINSLIDE_INTERPOLATION_AUTO || _interpolation == SKINSLIDE_INTERPOLATION_LIMIT;
+    }
     // Points into this patch and into controls.
     skinslide_patch_setup native(const Controls &controls) const;
 

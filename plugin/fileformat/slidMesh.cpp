@@ -105,6 +105,8 @@ void SlidMesh::build() {
             setups.push_back(patch.native(controls.back()));
         }
         skinslide_mesh mesh = nativeMesh();
+        skinslide_subdivision subdivision = _source->subdivision.native();
+        mesh.subdivision = _source->subdivision.any() ? &subdivision : nullptr;
         skinslide_error error = {};
         check(skinslide_slider_create(&mesh, setups.data(), static_cast<int32_t>(setups.size()), &_slider, &error), error);
     } catch (const std::exception &bad) {

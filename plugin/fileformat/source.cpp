@@ -255,6 +255,9 @@ std::shared_ptr<const Source> readSource(Composition &composition, const Found &
     source->patches = readPatches(composition, found, source->topology, params, problems);
     if (source->patches.size() != found.patches.size())
         return nullptr;
+    if (std::any_of(source->patches.begin(), source->patches.end(),
+                    [](const Patch &patch) { return patch.needsSubdivision(); }))
+        source->subdivision = Subdivision(prim);
     source->pointsTimes = mergedTimes(source->points.times());
     // Points first: where times differ by noise, theirs gives a sample as it was authored.
     std::vector<double> times = source->pointsTimes;

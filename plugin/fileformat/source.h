@@ -3,6 +3,7 @@
 #define SKINSLIDE_FORMAT_SOURCE_H
 
 #include "patches.h"
+#include "subdivision.h"
 
 #include <memory>
 
@@ -18,6 +19,7 @@ struct Rate {
 struct Source {
     SdfPath path;
     Topology topology;
+    Subdivision subdivision; // none where no patch needs it
     VtVec3fArray rest;
     std::vector<Patch> patches;
     Attribute points;
