@@ -104,7 +104,7 @@ def main() -> None:
     arguments = parser.parse_args()
     for library in (Path(pxr.__file__).parent.parent / "usd_core.libs").glob("libusd_ms-*"):
         ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
-    Plug.Registry().RegisterPlugins(str(arguments.plugin))
+    Plug.Registry().RegisterPlugins(str(arguments.plugin.resolve()))
     delegate, source, opened = UsdUtils.CoalescingDiagnosticDelegate(), random.Random(arguments.seed), 0
     (arguments.folder / "cache.usda").write_text('#usda 1.0\nover "World" {}\n')
     for number in range(arguments.count):
