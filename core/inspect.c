@@ -8,7 +8,7 @@ static const ss_part *find_part(const skinslide_slider *slider, int32_t patch, c
     if (slider && out && patch >= 0 && patch < slider->part_count)
         return &slider->parts[patch];
     if (!slider || !out)
-        ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, or no place for the answer");
+        ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider or workspace, or no place for the answer");
     else
         ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no patch %d: the slider has %d", patch, slider->part_count);
     return NULL;

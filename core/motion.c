@@ -1,13 +1,19 @@
 /* Velocities and accelerations of slid points: the cache's own, plus the rate at which the displacement changes. */
 #include "internal.h"
 
+#include <math.h>
+
 static double displacement(const skinslide_sample *sample, int64_t i) {
     return (double)sample->slid[i] - sample->cached[i];
 }
 
-static skinslide_status check_samples(const skinslide_sample *samples, int count, const float *rates, skinslide_error *error) {
-    if (!samples || !rates)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no samples, or no rates to correct");
+static skinslide_status check_samples(int32_t vertex_count, const skinslide_sample *samples, int count, const float *rates,
+                                      skinslide_error *error) {
+    if (vertex_count < 0 || !samples || !rates)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no samples, no rates to correct, or a negative count");
+    for (int k = 0; k < count; k++)
+        if (!samples[k].cached || !samples[k].slid || !isfinite(samples[k].seconds))
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "sample %d has no points, or no finite time", k);
     for (int k = 1; k < count; k++)
         if (!(samples[k].seconds > samples[k - 1].seconds))
             return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "sample times do not ascend: %g s, then %g s", samples[k - 1].seconds,
@@ -17,7 +23,7 @@ static skinslide_status check_samples(const skinslide_sample *samples, int count
 
 skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
                                       skinslide_error *error) {
-    skinslide_status status = check_samples(samples, 2, velocities, error);
+    skinslide_status status = check_samples(vertex_count, samples, 2, velocities, error);
     double step = status ? 1 : samples[1].seconds - samples[0].seconds;
     for (int64_t i = 0; !status && i < 3 * (int64_t)vertex_count; i++) {
         double rate = (displacement(&samples[1], i) - displacement(&samples[0], i)) / step;
@@ -28,7 +34,7 @@ skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_samp
 
 skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *samples, float *accelerations,
                                          skinslide_error *error) {
-    skinslide_status status = check_samples(samples, 3, accelerations, error);
+    skinslide_status status = check_samples(vertex_count, samples, 3, accelerations, error);
     if (status)
         return status;
     double first = samples[1].seconds - samples[0].seconds, second = samples[2].seconds - samples[1].seconds;

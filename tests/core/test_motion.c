@@ -60,14 +60,19 @@ static void bad_samples(void **state) {
                  "sample times do not ascend: -0.5 s, then -0.5 s");
     m.samples[1].seconds = NAN;
     assert_fails(skinslide_accelerations(1, m.samples, rates, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "sample times do not ascend: -0.5 s, then ...");
+                 "sample 1 has no points, or no finite time");
+    make_moves(&m);
+    m.samples[0].slid = NULL;
+    assert_fails(skinslide_velocities(1, m.samples, rates, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "sample 0 has no points, or no finite time");
     make_moves(&m);
     m.samples[2].seconds = 0;
     assert_fails(skinslide_accelerations(1, m.samples, rates, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "sample times do not ascend: 0.25 s, then 0 s");
-    const char *text = "no samples, or no rates to correct";
+    const char *text = "no samples, no rates to correct, or a negative count";
     assert_fails(skinslide_velocities(1, NULL, rates, &error), &error, SKINSLIDE_BAD_ARGUMENT, text);
     assert_fails(skinslide_accelerations(1, m.samples, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, text);
+    assert_fails(skinslide_velocities(-1, m.samples, rates, &error), &error, SKINSLIDE_BAD_ARGUMENT, text);
     assert_true(rates[0] == 1 && rates[1] == 2 && rates[2] == 3);
 }
 

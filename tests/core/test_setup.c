@@ -83,7 +83,7 @@ static void patches_that_are_not_there(void **state) {
     assert_fails(skinslide_workspace_embedding(r.workspace, 0, uv, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "the workspace has slid no frame yet");
     assert_fails(skinslide_slider_embedding(NULL, 0, uv, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "no slider, or no place for the answer");
+                 "no slider or workspace, or no place for the answer");
     assert_int_equal(skinslide_slider_patch_info(r.slider, -1, &info, NULL), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_slider_patch_count(NULL), 0);
     free_rig(&r);

@@ -401,7 +401,7 @@ typedef struct skinslide_sample {
  * sample to the second. Vertices whose displacement does not change keep their bits.
  *   samples     in  [2], ascending in time
  *   velocities  in  the cache's, out the corrected [vertex_count][3]
- * Fails with BAD_ARGUMENT (times that do not ascend). */
+ * Fails with BAD_ARGUMENT (NULL, a negative count, times that are not finite or do not ascend). */
 SKINSLIDE_API skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
                                                     skinslide_error *error);
 
