@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- Vertices ---- */
 
@@ -215,10 +216,18 @@ static void hold_loops(ss_patch *patch) {
 /* ---- Creation ---- */
 
 void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size) {
+    enum { MOST = 96 }; /* bytes of a name: what follows it in a message must stay */
+    size_t shown = strlen(setup->name);
+    const char *dots = "";
+    if (shown > MOST) {
+        dots = "...";
+        for (shown = MOST; shown > 0 && ((unsigned char)setup->name[shown] & 0xC0) == 0x80;)
+            shown--; /* not in the middle of a character of UTF-8 */
+    }
     if (piece_count == 1)
-        snprintf(label, size, "patch %s", setup->name);
+        snprintf(label, size, "patch %.*s%s", (int)shown, setup->name, dots);
     else
-        snprintf(label, size, "patch %s (piece %d of %d)", setup->name, piece + 1, piece_count);
+        snprintf(label, size, "patch %.*s%s (piece %d of %d)", (int)shown, setup->name, dots, piece + 1, piece_count);
 }
 
 static void allocate(ss_patch *patch) {
