@@ -1,10 +1,13 @@
 """Small awkward stages for the tests: a mesh that moves, and patches on it."""
 
-from collections.abc import Iterable, Sequence
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 import skinslide  # noqa: F401 (registers the schema, before the first stage is opened)
@@ -163,6 +166,22 @@ def patched_stage(
 def save(stage: Usd.Stage, path: Path) -> Path:
     stage.GetRootLayer().Export(str(path))
     return path
+
+
+@contextmanager
+def as_nobody() -> Iterator[None]:
+    """Root may write everywhere: for a while, its process is that of a user who may not."""
+    if os.geteuid() != 0:
+        yield
+        return
+    try:
+        os.setresuid(65534, 65534, 0)
+    except PermissionError:
+        pytest.skip("this root may not become another user")
+    try:
+        yield
+    finally:
+        os.setresuid(0, 0, 0)
 
 
 def vectors(points: np.ndarray) -> Vt.Vec3fArray:

@@ -1,6 +1,6 @@
 """Every bad input gives an exit code and a message that names prim, patch, frame and element; the output stays."""
 
-import os
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -183,6 +183,14 @@ def applied_without_name(mesh: UsdGeom.Mesh) -> None:
     mesh.GetPrim().AddAppliedSchema("SkinSlideAPI")
 
 
+def applied_with_colon(mesh: UsdGeom.Mesh) -> None:
+    mesh.GetPrim().AddAppliedSchema("SkinSlideAPI:")
+
+
+def missing_payload(mesh: UsdGeom.Mesh) -> None:
+    mesh.GetPrim().GetPayloads().AddPayload("./gone.usdc")
+
+
 def triangle_of(*face: int) -> stages.Shape:
     return stages.from_faces([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2), face])
 
@@ -193,7 +201,7 @@ CASES = [
     Case("type: boundary", authored_as(f"skinSlide:{PATCH}:boundary", Types.Int, 1), "it must be one of auto"),
     Case("type: points", authored_as("points", Types.Int, 1), "points is not an array of points", None),
     Case("type: counts", authored_as("faceVertexCounts", Types.Float, 1.0), "not an array of int", None),
-    Case("type: rest", authored_as("primvars:rest", Types.StringArray, ["x"]), "not an array of points", None),
+    Case("type: rest", put("rest", Types.StringArray, "vertex", ["x"]), "not an array of points", None),
     Case("faces: none chosen", put(FACES, Types.BoolArray, "uniform", [False] * 36), "has no faces"),
     Case("faces: nowhere", no_faces_anywhere, "nor a GeomSubset elbow_L"),
     Case(
@@ -228,6 +236,13 @@ CASES = [
     Case("points: skinned live", bound_to_skeleton, "bake the skinning first", None),
     Case("rest: nan", points_value(12, NAN), "[12] is (", None),
     Case("rest: infinite", points_value(12, INFINITY), "[12] is (", None),
+    Case(
+        "rest: larger than a float",
+        put("rest", Types.Double3Array, "vertex", [(1e300, 0, 0)] * 49),
+        "[0] is (inf",
+        None,
+    ),
+    Case("rest: by corner", put("rest", Types.Point3fArray, "faceVarying", [(0, 0, 0)] * 144), "faceVarying", None),
     Case("rest: length", rest_points(48), "skinSlide:restPoints has 48 values, but points has 49", None),
     Case("rest: nowhere", blocked_rest, "primvars:rest", None),
     Case("density: zero", painted(DENSITY, "vertex", floats(49, 12, 0)), "forceDensity[12] is 0"),
@@ -260,6 +275,8 @@ CASES = [
     Case("interpolation: limit", prop("interpolation", "limit"), "limit needs a mesh that is subdivided"),
     Case("prim: point instancer", in_point_instancer, "prototype of the point instancer /World/crowd", None),
     Case("prim: no patch name", applied_without_name, "applied without a patch's name", None),
+    Case("prim: empty patch name", applied_with_colon, "applied without a patch's name", None),
+    Case("payload: missing", missing_payload, "gone.usdc", None),
 ]
 
 
@@ -282,6 +299,31 @@ def test_bad_stage(case: Case, tmp_path, capfd):
     assert any(line.startswith(place) and case.says in line for line in said), said
     assert output.read_text() == "what was there before"
     assert sorted(each.name for each in tmp_path.iterdir()) == ["out.usda", "shot.usda"]
+
+
+@pytest.mark.parametrize("name", [PATCH, "n" * 300, "\u00e9l\u00e8ve_" * 40])
+def test_a_bad_piece_names_its_patch(name, tmp_path, capfd):
+    stage, mesh = stages.patched_stage()
+    pinched = np.array([1, 2, 6, 8, 12, 13, 14])
+    stages.add_patch(mesh, np.append(pinched, stages.block(6, range(4, 6), range(4, 6))), name)
+    assert main(["check", str(stages.save(stage, tmp_path / "shot.usda")), "--json"]) == 3
+    (problem,) = [each for each in json.loads(capfd.readouterr().out)["problems"] if each["severity"] == "error"]
+    assert problem["patch"] == name and problem["message"].startswith("piece 1 of 2: ")
+
+
+def test_a_value_that_usd_cannot_read(tmp_path, capfd):
+    """The numbers of a sample in a crate file are overwritten."""
+    stage, mesh = stages.patched_stage(stages.grid(16, 16))
+    path = stages.save(stage, tmp_path / "shot.usdc")
+    sample = np.array(mesh.GetPointsAttr().Get(FRAMES[1])).tobytes()
+    damaged = bytearray(path.read_bytes())
+    at = damaged.index(sample)
+    damaged[at - 8 : at] = b"\xff" * 8  # the count of points before them
+    path.write_bytes(damaged)
+    for command in (["check", str(path)], ["bake", str(path), "-o", str(tmp_path / "out.usda")]):
+        assert main(command) == (3 if command[0] == "check" else 1)
+        said = "".join(capfd.readouterr())
+        assert f"error: {MESH}: frame 1002: points cannot be read: " in said and "Traceback" not in said
 
 
 def test_every_bad_patch_is_named(tmp_path, capfd):
@@ -387,11 +429,11 @@ def test_input_is_a_sublayer_of_the_stage(tmp_path, capfd):
     assert cache.read_bytes() == before
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_read_only_folder(tmp_path, capfd):
+def test_read_only_folder(public_folder, capfd):
     stage, _mesh = stages.patched_stage()
-    path = stages.save(stage, tmp_path / "shot.usda")
-    folder = tmp_path / "locked"
+    path = stages.save(stage, public_folder / "shot.usda")
+    folder = public_folder / "locked"
     folder.mkdir(mode=0o555)
-    assert main(["bake", str(path), "-o", str(folder / "out.usda")]) == 2
+    with stages.as_nobody():
+        assert main(["bake", str(path), "-o", str(folder / "out.usda")]) == 2
     assert "not writable" in capfd.readouterr().err

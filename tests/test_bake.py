@@ -15,6 +15,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdValidation, Vt
 
 import skinslide
+import stages
 from skinslide import (
     FrameProblem,
     Lookup,
@@ -162,6 +163,15 @@ def test_only_overs_of_what_was_slid(shot, out):
         "extent": "float3[]",
     }
     assert not any(spec.custom or spec.HasDefaultValue() for spec in attributes.values())
+
+
+@pytest.mark.parametrize(("named", "wanted"), [("Nope", "World"), ("/World/char", "/World/char"), ("", "World")])
+def test_the_default_prim_is_one_that_is_there(shot, out, named, wanted):
+    shot.save()
+    shot.shot.GetRootLayer().defaultPrim = named
+    shot.shot.Save()
+    bake_to_file(shot.path, out)
+    assert Sdf.Layer.FindOrOpen(str(out)).defaultPrim == wanted
 
 
 def test_the_layer_has_the_clock_and_units_of_the_stage(shot, out):
@@ -318,11 +328,42 @@ def test_constant_normals_are_left_alone(shot, out):
     assert not Sdf.Layer.FindOrOpen(str(out)).GetAttributeAtPath(f"{MESH}.normals")
 
 
-def test_normals_of_a_wrong_length_are_left_alone_and_named(shot, out):
+def assert_blocked(path: Path, *names: str) -> None:
+    layer = Sdf.Layer.FindOrOpen(str(path))
+    for name in names:
+        spec = layer.GetAttributeAtPath(f"{MESH}.{name}")
+        assert isinstance(spec.default, Sdf.ValueBlock) and not spec.HasInfo("timeSamples"), name
+
+
+def test_normals_of_a_wrong_length_are_blocked_and_named(shot, out):
     shot.mesh.CreateNormalsAttr(flat_normals(3))
     report = bake_to_file(shot.save().path, out)
-    assert not Sdf.Layer.FindOrOpen(str(out)).GetAttributeAtPath(f"{MESH}.normals")
-    assert any("normals left as they are" in str(problem) for problem in report.problems)
+    assert_blocked(out, "normals")
+    (problem,) = report.problems
+    assert problem.frame == 1001 and "normals cannot be recomputed, so the bake blocks them" in problem.message
+
+
+@pytest.mark.parametrize("indices", [[0, 1, 2] * 5, [7] * 4 * FACES])
+def test_indexed_normals_that_cannot_be_recomputed_are_blocked_with_their_indices(shot, out, indices):
+    primvar = UsdGeom.PrimvarsAPI(shot.mesh).CreatePrimvar("normals", Sdf.ValueTypeNames.Normal3fArray, "faceVarying")
+    primvar.Set(flat_normals(3))
+    primvar.SetIndices(Vt.IntArray(indices))
+    shot.mesh.CreateNormalsAttr(flat_normals(VERTICES))
+    assert len(bake_to_file(shot.save().path, out).problems) == 1
+    # normals would be read once primvars:normals are gone.
+    assert_blocked(out, "primvars:normals", "primvars:normals:indices", "normals")
+
+
+def test_rates_of_a_wrong_length_at_some_frames_are_blocked_at_all(shot, out):
+    shot.mesh.CreateVelocitiesAttr()
+    shot.mesh.CreateAccelerationsAttr()
+    for frame in range(1, 6):
+        shot.mesh.GetVelocitiesAttr().Set(vectors(np.zeros((5 if frame in (3, 4) else VERTICES, 3))), frame)
+        shot.mesh.GetAccelerationsAttr().Set(vectors(np.zeros_like(REST)), frame)
+    shot.mesh.GetAccelerationsAttr().Set(Sdf.ValueBlock(), 2)
+    report = bake_to_file(shot.save().path, out)
+    assert_blocked(out, "velocities", "accelerations")
+    assert [problem.frame for problem in report.problems] == [1002, 1003]
 
 
 def test_velocities_are_the_rate_of_the_slid_points(shot, out):
@@ -353,11 +394,42 @@ def test_rates_that_cannot_be_recomputed_are_blocked(shot, out):
     for frame in (1, 2.5, 5):
         shot.mesh.GetVelocitiesAttr().Set(vectors(np.ones_like(REST)), frame)
     shot.mesh.CreateAccelerationsAttr(vectors(np.ones_like(REST)))
-    bake_to_file(shot.save().path, out)
+    report = bake_to_file(shot.save().path, out)
+    reason = "their samples are at other times than those of points"
+    assert [problem.message for problem in report.problems] == [
+        f"{name} cannot be recomputed, so the bake blocks them: {reason}" for name in ("velocities", "accelerations")
+    ]
+    assert skinslide.check(shot.path).problems == report.problems
     _stage, mesh = composed_mesh(shot, out)
     for attribute in (mesh.GetVelocitiesAttr(), mesh.GetAccelerationsAttr()):
         assert attribute.Get(OFFSET + 2) is None and not attribute.HasAuthoredValue()
         assert not attribute.GetTimeSamples()
+
+
+@pytest.mark.parametrize("clock", [0.0, -24.0, float("nan"), float("inf")])
+def test_rates_on_a_clock_that_does_not_run_are_blocked(shot, out, clock):
+    shot.mesh.CreateVelocitiesAttr()
+    for frame in range(1, 6):
+        shot.mesh.GetVelocitiesAttr().Set(vectors(np.ones_like(REST)), frame)
+    stage = Usd.Stage.Open(shot.cache.Flatten())
+    stage.GetPrimAtPath("/char/geo/body_GEO").AddAppliedSchema("SkinSlideAPI:sheet")
+    primvar = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/char/geo/body_GEO")).CreatePrimvar(
+        "skinSlide:sheet:patch", Sdf.ValueTypeNames.BoolArray, "uniform"
+    )
+    primvar.Set(Vt.BoolArray(FACES, True))
+    stage.GetRootLayer().timeCodesPerSecond = clock
+    (problem,) = bake(stage).problems
+    assert f"the stage has {clock:g} time codes per second" in problem.message
+
+
+def test_frames_between_samples_at_the_end_of_the_cache(shot, out):
+    """A second difference at the last sample takes samples from before a time that lies between."""
+    shot.mesh.CreateAccelerationsAttr()
+    for frame in range(1, 6):
+        shot.mesh.GetAccelerationsAttr().Set(vectors(np.zeros_like(REST)), frame)
+    bake_to_file(shot.save().path, out, frames="1004,1004.5,1005")
+    _stage, mesh = baked_mesh(out)
+    assert mesh.GetAccelerationsAttr().GetTimeSamples() == [1004, 1004.5, 1005]
 
 
 def test_samples_around():
@@ -385,6 +457,10 @@ def test_report(shot, out):
     assert (patch["name"], patch["vertex_count"], patch["folded_faces"]) == ("sheet", VERTICES, 0)
     assert patch["max"]["largest_slide"] >= patch["mean"]["largest_slide"] > 0
     assert patch["worst_frame_stretch_after"] < patch["worst_frame_stretch_before"]
+    assert [each["frame"] for each in patch["frames"]] == mesh["frames"]
+    worst = max(patch["frames"], key=lambda each: each["stretch_before"])
+    assert (worst["frame"], worst["stretch_after"]) == (patch["worst_frame"], patch["worst_frame_stretch_after"])
+    assert worst.keys() >= {"slid_vertices", "largest_slide", "clamped_vertices", "folded_faces"}
     for name in ("density", "embed", "locate", "interpolate"):
         assert patch["mean"][f"{name}_seconds"] >= 0
     text = report.text()
@@ -470,12 +546,12 @@ def test_outputs_that_cannot_be(shot, tmp_path):
     assert digest(shot.path.parent) == before
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root writes everywhere")
-def test_a_read_only_folder(shot, tmp_path):
-    folder = tmp_path / "locked"
+def test_a_read_only_folder(public_folder):
+    shot = Shot(public_folder).save()
+    folder = public_folder / "locked"
     folder.mkdir(mode=0o555)
-    with pytest.raises(UsageError, match="not writable"):
-        bake_to_file(shot.save().path, folder / "out.usda")
+    with stages.as_nobody(), pytest.raises(UsageError, match="not writable"):
+        bake_to_file(shot.path, folder / "out.usda")
 
 
 @pytest.mark.parametrize(
@@ -485,6 +561,12 @@ def test_a_read_only_folder(shot, tmp_path):
         ({"lookup": Lookup("egl", device=-1)}, "no such device: -1"),
         ({"lookup": "magic"}, "'magic' is not one of auto, egl, exact"),
         ({"jobs": 0}, "jobs is 0"),
+        ({"jobs": 1.5}, "whole number"),
+        ({"max_folded": -1}, "at least 0"),
+        ({"max_clamped": "few"}, "whole number"),
+        ({"frames": 1001.0}, "a list of numbers"),
+        ({"frames": ["a"]}, "a list of numbers"),
+        ({"frames": [None]}, "a list of numbers"),
         ({"frames": "one"}, "'one'"),
         ({"frames": ""}, "empty"),
         ({"frames": []}, "must be some"),
@@ -526,10 +608,18 @@ def test_a_bad_frame_leaves_the_output_and_names_itself(shot, out, jobs):
     assert_untouched(out, b"old")
 
 
-def test_limits(shot, out):
+def test_limits(shot, out, monkeypatch):
     out.write_text("old")
-    with pytest.raises(FrameProblem, match=r"patch sheet: frame 1001: 0 folded faces, where at most -1 are allowed"):
-        bake_to_file(shot.save().path, out, max_folded=-1)
+    slide = Slider.slide
+
+    def fold(self, points, controls):
+        frame = slide(self, points, controls)
+        return frame._replace(patches=tuple(patch._replace(folded_faces=2) for patch in frame.patches))
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Slider, "slide", fold)
+        with pytest.raises(FrameProblem, match=r"patch sheet: frame 1001: 2 folded faces, where at most 1 are allowed"):
+            bake_to_file(shot.save().path, out, max_folded=1)
     assert_untouched(out, b"old")
     bake_to_file(shot.path, out, max_folded=0, max_clamped=0)
     assert out.read_bytes() != b"old"
@@ -660,6 +750,27 @@ def test_a_target_that_cannot_be_edited(shot):
     stage.GetRootLayer().SetPermissionToEdit(False)
     with pytest.raises(UsageError, match="not editable"):
         bake(stage)
+    stage = Usd.Stage.Open(str(shot.path))
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    stage.GetSessionLayer().subLayerPaths.append(layer.identifier)
+    stage.SetEditTarget(layer)
+    stage.MuteLayer(layer.identifier)
+    with pytest.raises(UsageError, match="muted"):
+        bake(stage)
+
+
+def test_a_target_that_covers_only_some_of_the_meshes(shot):
+    other = stages.add_mesh(shot.shot, stages.grid(), "/World/other_GEO")
+    stages.add_patch(other, stages.annulus())
+    stage = Usd.Stage.Open(str(shot.save().path))
+    cache = Sdf.Layer.FindOrOpen(str(shot.cache_path))
+    node = stage.GetPrimAtPath("/World/char").GetPrimIndex().rootNode.children[0]
+    stage.SetEditTarget(Usd.EditTarget(cache, node))
+    before = cache.ExportToString()
+    with pytest.raises(UsageError, match="cannot hold opinions on /World/other_GEO"):
+        bake(stage)
+    assert cache.ExportToString() == before
+    assert bake(stage, prims=MESH).frame_count == 5
 
 
 def test_points_that_stay_hidden_are_named(shot):

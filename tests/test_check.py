@@ -91,8 +91,25 @@ def test_rest_pose_without_samples_is_a_warning():
 
 def test_missing_cache_is_told():
     stage, mesh = stages.patched_stage()
+    stages.add_patch(stages.add_mesh(stage, stages.grid(), "/World/prop/rope_GEO"), stages.annulus())
     mesh.GetPrim().GetReferences().AddReference("./gone.usdc")
-    assert any("gone.usdc" in line for line in said(skinslide.check(stage), "warning"))
+    assert any("gone.usdc" in line for line in said(skinslide.check(stage), "error"))
+    # What was not asked for cannot hold what was.
+    report = skinslide.check(stage, ["/World/prop"])
+    assert not report.failed and any("gone.usdc" in line for line in said(report, "warning"))
+
+
+def test_a_missing_material_is_a_warning():
+    stage, _mesh = stages.patched_stage()
+    stage.DefinePrim("/World/looks/skin", "Material").GetReferences().AddReference("./gone.usdc")
+    report = skinslide.check(stage)
+    assert not report.failed and any("gone.usdc" in line for line in said(report, "warning"))
+
+
+def test_a_missing_sublayer_is_an_error():
+    stage, _mesh = stages.patched_stage()
+    stage.GetRootLayer().subLayerPaths.append("./gone.usdc")
+    assert any("gone.usdc" in line for line in said(skinslide.check(stage, [MESH]), "error"))
 
 
 def test_first_bad_sample_and_how_many_more():

@@ -3,13 +3,14 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from pxr import Sdf
 
 import skinslide
 import stages
-from skinslide import cli
+from skinslide import cli, parse_frames
 from stages import FRAMES, MESH, PATCH
 
 
@@ -29,6 +30,7 @@ def test_help_names_every_option_and_exit_code(command, capsys):
     assert cli.main([command, "--help"]) == 0
     said = capsys.readouterr().out
     assert "STAGE" in said and "exit codes: 0 done, 1 failed, 2" in said
+    assert "130 interrupted" in said and "143 terminated" in said
 
 
 @pytest.mark.parametrize("arguments", ["", "slide", "bake", "bake shot.usda", "check shot.usda --fast"])
@@ -67,8 +69,21 @@ def test_what_ends_a_command_early(raised, code, message, shot, tmp_path, monkey
     monkeypatch.setattr("skinslide.meshes.SlidMesh.points_at", end)
     output = tmp_path / "out.usda"
     assert cli.main(["bake", str(shot), "-o", str(output), "--quiet"]) == code
-    assert message in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert message in said and (code == 1 or "nothing was written" in said)
     assert sorted(each.name for each in tmp_path.iterdir()) == ["shot.usda"]
+
+
+@pytest.mark.parametrize("raised", [KeyboardInterrupt(), SystemExit(143)])
+def test_an_interruption_after_the_output_is_in_place(raised, shot, tmp_path, monkeypatch, capsys):
+    def end(_report):
+        raise raised
+
+    monkeypatch.setattr("skinslide.report.BakeReport.text", end)
+    output = tmp_path / "out.usda"
+    for _ in range(2):  # also where there was one before
+        assert cli.main(["bake", str(shot), "-o", str(output)]) in (130, 143)
+        assert f"after {output} was written" in capsys.readouterr().err
 
 
 def test_runs_as_a_module(shot):
@@ -80,3 +95,86 @@ def test_a_closed_pipe_is_no_traceback(shot):
     command = f"'{sys.executable}' -m skinslide check '{shot}' | true"
     run = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
     assert "Traceback" not in run.stderr
+
+
+# ---- Arguments ----
+
+
+@pytest.mark.parametrize("spec", ["-5:5x5", "-5--4", "-.5,3"])
+def test_negative_frames(spec, shot, tmp_path):
+    output = tmp_path / "out.usda"
+    assert cli.main(["bake", str(shot), "-o", str(output), "--quiet", "--frames", spec]) == 0
+    assert Sdf.Layer.FindOrOpen(str(output)).ListTimeSamplesForPath(f"{MESH}.points") == parse_frames(spec)
+
+
+@pytest.mark.parametrize(
+    "words", [["bake", "--json"], ["check", "--json", "a", "b"], ["bake", "a", "-o", "b", "--jobs", "0", "--json"]]
+)
+def test_bad_arguments_are_a_document_too(words, capsys):
+    assert cli.main(words) == 2
+    said = capsys.readouterr()
+    (problem,) = json.loads(said.out)["problems"]
+    assert problem["message"] in said.err and "usage: skinslide" in said.err
+
+
+def test_arguments_that_are_no_text(shot, capsys):
+    assert cli.main(["check", "shot\udcff.usda"]) == 2
+    assert "is not UTF-8" in capsys.readouterr().err
+    options = ["--prim", MESH, "--patch", "more", "--faces", "9" * 5000]
+    assert cli.main(["setup", str(shot), "-o", "out.usda", *options]) == 2
+    assert len(capsys.readouterr().err) < 500
+
+
+def test_nothing_is_no_stage(tmp_path, capsys):
+    assert cli.main(["check", ""]) == 1
+    assert "error: cannot open : the name is empty" in capsys.readouterr().err
+
+
+# ---- Streams ----
+
+
+def shell(command: str, shot: Path) -> subprocess.CompletedProcess:
+    """Runs `skinslide` in a folder with a stage; nothing may end in a traceback."""
+    command = command.replace("skinslide", f"'{sys.executable}' -m skinslide")
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=shot.parent)
+    assert "Traceback" not in done.stderr and "Exception ignored" not in done.stderr
+    return done
+
+
+@pytest.mark.parametrize("end", ["2>&-", "2>/dev/full", "<&-", "--quiet >&-", ">&-", "--quiet >/dev/full"])
+def test_streams_that_a_bake_can_do_without(end, shot):
+    assert shell(f"skinslide bake shot.usda -o out.usda {end}", shot).returncode == 0
+    assert (shot.parent / "out.usda").read_text().startswith("#usda")
+
+
+@pytest.mark.parametrize("command", ["bake shot.usda -o out.usda", "check shot.usda", "check shot.usda --json"])
+def test_a_report_that_cannot_be_printed(command, shot):
+    done = shell(f"skinslide {command} >/dev/full", shot)
+    assert done.returncode == 1 and "error: the report cannot be printed: No space left" in done.stderr
+    assert (shot.parent / "out.usda").exists() == ("bake" in command)
+
+
+def test_names_that_the_terminal_cannot_show(tmp_path):
+    stage, _mesh = stages.patched_stage()
+    stages.add_patch(stages.add_mesh(stage, stages.grid(), "/World/\u00e9paule"), stages.annulus())
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    done = shell("PYTHONIOENCODING=ascii skinslide check shot.usda", shot)
+    assert done.returncode == 0 and "/World/\\xe9paule" in done.stdout
+
+
+def test_a_machine_without_more_threads(shot, tmp_path, monkeypatch, capsys):
+    def refuse(_thread):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", refuse)
+    assert cli.main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--quiet"]) == 1
+    assert "can't start new thread; ask for fewer jobs" in capsys.readouterr().err
+
+
+def test_a_core_without_memory(shot, tmp_path, monkeypatch, capsys):
+    def refuse(*_arguments, **_options):
+        raise skinslide.SliderError("OUT_OF_MEMORY", "out of memory")
+
+    monkeypatch.setattr("skinslide.meshes.SlidMesh.build", refuse)
+    assert cli.main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--quiet"]) == 1
+    assert "error: out of memory" in capsys.readouterr().err

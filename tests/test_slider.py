@@ -249,3 +249,21 @@ def test_velocities_and_accelerations():
 
 def test_version():
     assert skinslide.__version__.count(".") == 2
+
+
+def test_no_edges_are_no_edges(counts, indices, rest, sheet):
+    none = [Controls(edges=[], edge_density=[])]
+    assert sheet.slide(bumped(rest), none).points.tobytes() == sheet.slide(bumped(rest)).points.tobytes()
+    with pytest.raises(SliderError, match="edges: "):
+        sheet.slide(bumped(rest), [Controls(edges=[], edge_density=[1.0])])
+
+
+def test_ragged_points(sheet):
+    with pytest.raises(SliderError, match="points: "):
+        sheet.slide([[0, 0, 0], [1, 1]])
+
+
+@pytest.mark.parametrize("name", [None, 7, "\udcff", "a\0b"])
+def test_what_cannot_name_a_patch(name, counts, indices, rest):
+    with pytest.raises(SliderError, match="cannot name a patch"):
+        Slider(counts, indices, rest, [PatchSetup(name, np.arange(FACES))])

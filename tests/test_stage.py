@@ -5,6 +5,7 @@ import pytest
 from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
+from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh, read_meshes
 from skinslide.names import unapplied_patch_names
 from skinslide.problems import FrameProblem, errors
@@ -173,6 +174,21 @@ def test_constant_weight(type_name, value):
     assert only_mesh(stage).patches[0].controls.weight.tolist() == [0.5] * 49
 
 
+def test_constants_are_inherited():
+    stage, _mesh = stages.patched_stage()
+    for name, value in (("weight", 0.25), ("forceDensity", -1.0)):
+        primvar = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/World/char")).CreatePrimvar(
+            f"skinSlide:{PATCH}:{name}", Types.Float, "constant"
+        )
+        primvar.Set(value)
+    (problem,) = errors(read_meshes(stage)[1])
+    assert "forceDensity[0] is -1" in problem.message
+    primvar.Set(2.0)
+    controls = only_mesh(stage).patches[0].controls
+    assert controls.weight.tolist() == [0.25] * 49
+    assert controls.vertex_density is None and controls.face_density is None  # only ratios matter
+
+
 def test_edges_and_corners():
     stage, mesh = stages.patched_stage()
     stages.set_property(mesh, "edges", [0, 1, 1, 2])
@@ -227,9 +243,27 @@ def test_spline_envelope_adds_its_frames():
         spline.SetKnot(knot)
     mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(spline)
     read = only_mesh(stage)
-    assert read.sample_times() == [999.5, 1000, 1001, 1002, 1002.25, 1003]
+    # Whole frames of the shot only: an artist's knot may lie anywhere.
+    assert read.sample_times() == [999.5, 1001, 1002, 1002.25, 1003]
     (controls,) = read.controls_at(Usd.TimeCode(1000.875))
     assert controls.envelope == pytest.approx(0.5, abs=1e-6)  # half way, in float
+
+
+def test_a_spline_over_half_of_eternity():
+    stage, mesh = stages.patched_stage()
+    spline = Ts.Spline("float")
+    for time in (-3e8, 3e8):
+        knot = Ts.Knot("float")
+        knot.SetTime(time)
+        knot.SetValue(1.0)
+        spline.SetKnot(knot)
+    mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(spline)
+    read = only_mesh(stage)
+    assert read.sample_times() == [-3e8, *FRAMES, 3e8]
+    stage.SetEndTimeCode(1e12)
+    with pytest.raises(UsageError, match=r"envelope is a spline over 299998999 frames"):
+        read.sample_times()
+    assert read.varies
 
 
 def test_times_that_differ_by_noise_are_one():

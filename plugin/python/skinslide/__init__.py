@@ -1,6 +1,6 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `check` says what would be slid, `setup` writes a patch; `Slider` is the same on numpy arrays.
+`bake` corrects a stage, `check` says what would be slid; `setup` writes a patch; `Slider` is the same on numpy arrays.
 """
 
 from pathlib import Path

@@ -15,39 +15,30 @@ import os
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import accumulate
 from pathlib import Path
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.derived import Derived, Solved
-from skinslide.frames import UsageError, checked_frames
+from skinslide.earlier import replacing_earlier_bake
+from skinslide.files import check_not_input, check_output
+from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.output import OverLayer, author_on_stage, check_output, layer_in_place
-from skinslide.problems import FrameProblem, Problem, StageProblems, core_problem, errors
+from skinslide.options import BakeOptions, Frames
+from skinslide.output import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
+from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, core_problem, errors
 from skinslide.progress import Progress
 from skinslide.report import BakeReport, MeshReport
-from skinslide.slider import Lookup, Slider, SliderError, choose_lookup
+from skinslide.slider import Lookup, Slider, SliderError
 from skinslide.stage import open_stage
-
-Frames = Sequence[float] | str | None
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a patch may have at one frame before the bake fails; None is any number."""
-
-    folded_faces: int | None = None
-    clamped_vertices: int | None = None
 
 
 def bake_to_file(
     stage_path: str | os.PathLike,
     output_path: str | os.PathLike,
     *,
-    prims: Sequence[str] | None = None,
+    prims: Sequence[str] | str | None = None,
     frames: Frames = None,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
@@ -57,16 +48,20 @@ def bake_to_file(
 ) -> BakeReport:
     """Bakes a stage into a layer of overs to be sublayered above it. `output_path` is written whole or not at all.
 
-    prims     mesh paths; None: every mesh with a patch
-    frames    stage times, or a spec such as "101:109x2"; None: the authored samples
+    prims     paths of prims, to bake the meshes with patches at and below them; None: every mesh with a patch
+    frames    stage times, or a spec such as "101:109x2"; None: the authored samples; a mesh without samples has one
+              value, written as a default, whatever the frames
     lookup    auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had
     jobs      frames slid at once; the result does not depend on it
     progress  called after each frame with the frames done and in all
     Raises UsageError, StageProblems, FrameProblem (also where max_folded or max_clamped is exceeded), StageError.
     """
-    stage, output = open_stage(stage_path), Path(output_path)
-    check_output(output, stage)
-    plan = _Plan.read(stage, prims, frames, lookup, jobs, Limits(max_folded, max_clamped))
+    output = Path(output_path)
+    options = BakeOptions.checked(prims, frames, lookup, jobs, max_folded, max_clamped)
+    stage = open_stage(stage_path)
+    check_output(output, EXTENSIONS)
+    check_not_input(output, stage, stage_path)
+    plan = _Plan.read(stage, options)
     with layer_in_place(output, stage) as overs:
         return plan.run(overs, progress)
 
@@ -74,7 +69,7 @@ def bake_to_file(
 def bake(
     stage: Usd.Stage,
     *,
-    prims: Sequence[str] | None = None,
+    prims: Sequence[str] | str | None = None,
     frames: Frames = None,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
@@ -82,14 +77,22 @@ def bake(
     max_folded: int | None = None,
     max_clamped: int | None = None,
 ) -> BakeReport:
-    """Bakes a stage into its edit target, once every frame is known; arguments and exceptions as `bake_to_file`'s."""
+    """Bakes a stage into its edit target, once every frame is known; arguments and exceptions as `bake_to_file`'s.
+
+    Takes the place of an earlier bake there, of the same prims. Where the layer holds the cache too, the cache's values
+    move to attributes skinSlide:cached:*, from which the next bake into it starts.
+    """
+    options = BakeOptions.checked(prims, frames, lookup, jobs, max_folded, max_clamped)
     target = stage.GetEditTarget().GetLayer()
-    if not target.permissionToEdit:
-        raise UsageError(f"the edit target {target.identifier} is not editable")
-    plan = _Plan.read(stage, prims, frames, lookup, jobs, Limits(max_folded, max_clamped))
-    overs = OverLayer(Sdf.Layer.CreateAnonymous())
-    report = plan.run(overs, progress)
-    author_on_stage(overs, stage)
+    if not target.permissionToEdit or stage.IsLayerMuted(target.identifier):
+        fault = "not editable" if not target.permissionToEdit else "muted"
+        raise UsageError(f"the edit target {target.identifier} is {fault}")
+    with replacing_earlier_bake(stage, options.prims) as earlier:
+        plan = _Plan.read(stage, options)
+        _check_target(stage.GetEditTarget(), plan)
+        overs = OverLayer(Sdf.Layer.CreateAnonymous())
+        report = plan.run(overs, progress)
+        author_on_stage(overs, stage, earlier)
     report.warnings.extend(_hidden(plan.meshes, target))
     return report
 
@@ -100,39 +103,25 @@ class _Plan:
 
     meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]]
     problems: list[Problem]
-    jobs: int
-    limits: Limits
+    options: BakeOptions
 
     @classmethod
-    def read(
-        cls,
-        stage: Usd.Stage,
-        prims: Sequence[str] | None,
-        frames: Frames,
-        lookup: str | Lookup,
-        jobs: int,
-        limits: Limits,
-    ) -> "_Plan":
-        if jobs < 1:
-            raise UsageError(f"jobs is {jobs}; it must be at least 1")
-        with _as_usage_error():
-            choose_lookup(lookup)
-        asked = None if frames is None else checked_frames(frames)
-        meshes, problems = read_meshes(stage, prims)
-        sliders = _build_sliders(meshes, lookup, problems)
+    def read(cls, stage: Usd.Stage, options: BakeOptions) -> "_Plan":
+        meshes, problems = read_meshes(stage, options.prims)
+        sliders = _build_sliders(meshes, options.lookup, problems)
         if errors(problems):
             raise StageProblems(problems)
-        times = [_times(mesh, asked) for mesh in meshes]
-        return cls(list(zip(meshes, sliders, times, strict=True)), problems, jobs, limits)
+        times = [_times(mesh, options.frames) for mesh in meshes]
+        return cls(list(zip(meshes, sliders, times, strict=True)), problems, options)
 
     def run(self, overs: OverLayer, progress: Progress | None) -> BakeReport:
         """Authors every mesh into overs."""
         total = sum(len(times) for _, _, times in self.meshes)
         report = BakeReport(list(self.problems))
-        pool = ThreadPoolExecutor(self.jobs, "skinslide")
+        pool = ThreadPoolExecutor(min(self.options.jobs, total), "skinslide")
         try:
             for mesh, slider, times in self.meshes:
-                work = _MeshBake(mesh, slider, pool, self.jobs, self.limits)
+                work = _MeshBake(mesh, slider, pool, self.options)
                 report.meshes.append(work.report)
                 for _ in work.run(times, overs):
                     if progress:
@@ -146,25 +135,25 @@ class _Plan:
 class _MeshBake:
     """Bakes one mesh."""
 
-    def __init__(self, mesh: SlidMesh, slider: Slider, pool: ThreadPoolExecutor, jobs: int, limits: Limits):
+    def __init__(self, mesh: SlidMesh, slider: Slider, pool: ThreadPoolExecutor, options: BakeOptions):
         self.derived = Derived(mesh)
         self.report = MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, slider.patches)
-        self._mesh, self._slider, self._pool, self._limits = mesh, slider, pool, limits
-        self._in_flight = jobs + 1  # one is read while the others are slid
+        self._mesh, self._slider, self._pool = mesh, slider, pool
+        self._limits = {"folded_faces": options.max_folded, "clamped_vertices": options.max_clamped}
+        self._in_flight = options.jobs + 1  # one is read while the others are slid
 
     def run(self, times: list[Usd.TimeCode], overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Authors the mesh at `times`, ascending; yields each once it is done."""
         needed = [self.derived.times_needed(time) for time in times]
+        last_use = {time: index for index, wanted in enumerate(needed) for time in wanted}
         solutions = self._solve(sorted(set().union(*needed)))
         solved: dict[Usd.TimeCode, Solved] = {}
-        # A later time may need an earlier one than this time does, where controls have samples between those of points.
-        earliest = list(accumulate(reversed([min(wanted) for wanted in needed]), min))[::-1]
-        for time, wanted, oldest in zip(times, needed, earliest, strict=True):
+        for index, (time, wanted) in enumerate(zip(times, needed, strict=True)):
             while not wanted <= solved.keys():
                 solved.update([next(solutions)])
             self._author(time, solved, overs)
             yield time
-            for old in [other for other in solved if other < oldest]:
+            for old in [other for other in solved if last_use[other] <= index]:
                 del solved[old]
         for attribute in self.derived.blocked:
             overs.block(attribute)
@@ -192,7 +181,10 @@ class _MeshBake:
             frame = self._slider.slide(points, controls)
             return Solved(points, frame.points, frame.patches)
 
-        return self._pool.submit(slide)
+        try:
+            return self._pool.submit(slide)
+        except RuntimeError as error:  # the machine gives no more threads
+            raise StageError(f"{error}; ask for fewer jobs") from error
 
     def _take(self, time: Usd.TimeCode, future: Future[Solved]) -> tuple[Usd.TimeCode, Solved]:
         try:
@@ -212,8 +204,7 @@ class _MeshBake:
         self.report.add(_frame(time), solved[time].patches)
 
     def _check_limits(self, time: Usd.TimeCode, solved: Solved) -> None:
-        for field in ("folded_faces", "clamped_vertices"):
-            most = getattr(self._limits, field)
+        for field, most in self._limits.items():
             for info, result in zip(self._slider.patches, solved.patches, strict=True):
                 count = getattr(result, field)
                 if most is not None and count > most:
@@ -241,21 +232,18 @@ def _hidden(meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]], target: S
             yield Problem("warning", mesh.path, None, None, message)
 
 
+def _check_target(target: Usd.EditTarget, plan: _Plan) -> None:
+    for mesh, _, _ in plan.meshes:
+        if not target.MapToSpecPath(mesh.prim.GetPath()):
+            raise UsageError(f"the edit target {target.GetLayer().identifier} cannot hold opinions on {mesh.path}")
+
+
 def _times(mesh: SlidMesh, asked: list[float] | None) -> list[Usd.TimeCode]:
     """A mesh that never changes has one value, whatever was asked."""
-    authored = mesh.sample_times()
-    if not authored:
+    if not mesh.varies:
         return [Usd.TimeCode.Default()]
-    return [Usd.TimeCode(time) for time in (authored if asked is None else asked)]
+    return [Usd.TimeCode(time) for time in (mesh.sample_times() if asked is None else asked)]
 
 
 def _frame(time: Usd.TimeCode) -> float | None:
     return None if time.IsDefault() else time.GetValue()
-
-
-@contextmanager
-def _as_usage_error() -> Iterator[None]:
-    try:
-        yield
-    except SliderError as error:
-        raise UsageError(str(error)) from error

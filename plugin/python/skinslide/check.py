@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd
 
+from skinslide.derived import Derived
 from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh, is_skinned, read_meshes
 from skinslide.problems import Problem, StageProblems, errors, frame_text
@@ -132,15 +133,8 @@ def check(
     stage = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
     meshes, problems = read_meshes(stage, prims)
     checked = [_check_mesh(mesh, problems) for mesh in meshes]
-    problems += _composition_problems(stage)
     severities = ("error", "warning", "note")
     return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)), chosen)
-
-
-def _composition_problems(stage: Usd.Stage) -> Iterator[Problem]:
-    """What USD could not compose: a cache that does not open is often why something else is missing."""
-    for error in stage.GetCompositionErrors():
-        yield Problem("warning", str(error.rootSite.path), None, None, " ".join(str(error).split()))
 
 
 def _check_mesh(mesh: SlidMesh, problems: list[Problem]) -> CheckedMesh:
@@ -149,6 +143,7 @@ def _check_mesh(mesh: SlidMesh, problems: list[Problem]) -> CheckedMesh:
         problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
     problems += _overlaps(mesh)
     problems += _cache_problems(mesh)
+    problems += Derived(mesh).problems
     times = mesh.sample_times()
     problems += sample_problems(mesh, times)
     return CheckedMesh(mesh.path, mesh.vertex_count, mesh.topology.face_count, mesh.rest_source, times, patches)

@@ -3,71 +3,79 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
+from typing import NoReturn
 
 from skinslide import __version__
 from skinslide.frames import UsageError
-from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
+from skinslide.outcome import DONE, EXIT_CODES, EXPECTED, PROBLEMS, as_json, failed, prepare_streams, say, tell
 from skinslide.slider import Lookup
 
-DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
-INTERRUPTED = 130
-
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
-_EXIT_CODES = "exit codes: 0 done, 1 failed, 2 the arguments cannot be used, 3 the stage has problems"
+
+Result = tuple[str, int]  # what to print on stdout, and the exit code
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; every expected fault is a message on stderr and an exit code."""
+    prepare_streams()
+    words = list(sys.argv[1:] if argv is None else argv)
     try:
-        arguments = _parser().parse_args(argv)
-    except SystemExit as done:
-        return done.code if isinstance(done.code, int) else USAGE
-    try:
-        code = arguments.run(arguments)
-        sys.stdout.flush()
-        return code
-    except BrokenPipeError:
-        # Whoever read us has left; Python would complain once more when it closes stdout.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
-    except StageProblems as bad:
-        return _failed(arguments, PROBLEMS, bad.problems)
-    except FrameProblem as bad:
-        return _failed(arguments, FAILED, [bad.problem])
+        arguments = _parse(words)
     except UsageError as bad:
-        return _failed(arguments, USAGE, [_plain(str(bad))])
-    except StageError as bad:
-        return _failed(arguments, FAILED, [_plain(str(bad))])
-    except MemoryError:
-        return _failed(arguments, FAILED, [_plain("out of memory")])
-    except KeyboardInterrupt:
-        return _failed(arguments, INTERRUPTED, [_plain("interrupted; nothing was written")])
-    except SystemExit as ended:
-        return _failed(arguments, int(ended.code or FAILED), [_plain("ended by a signal; nothing was written")])
+        return failed(bad, json="--json" in words)
+    except SystemExit as done:  # after --help and --version
+        return done.code if isinstance(done.code, int) else DONE
+    before = _state(arguments)
+    try:
+        return say(*arguments.run(arguments))
+    except EXPECTED as error:
+        return failed(error, getattr(arguments, "json", False), _outcome(arguments, before))
 
 
-def _plain(message: str) -> Problem:
-    return Problem("error", "", None, None, message)
+class _Parser(argparse.ArgumentParser):
+    """Raises UsageError where argparse would exit, so that --json has a document then too."""
+
+    def error(self, message: str) -> NoReturn:
+        tell(self.format_usage().rstrip())
+        raise UsageError(message)
 
 
-def _failed(arguments: argparse.Namespace, code: int, problems: Sequence[Problem]) -> int:
-    """Says why nothing came of a command: on stderr, and with --json as the document too."""
-    for problem in problems:
-        print(problem, file=sys.stderr)
-    if getattr(arguments, "json", False):
-        _print_json({"problems": [problem.as_dict() for problem in problems]})
-    return code
+def _parse(words: list[str]) -> argparse.Namespace:
+    for word in words:
+        try:
+            word.encode()
+        except UnicodeEncodeError as error:
+            raise UsageError(f"argument {word!r}: is not UTF-8") from error
+    joined: list[str] = []
+    for word in words:
+        # argparse takes -5:5 for an option, but not in --frames=-5:5.
+        if joined and joined[-1] == "--frames" and re.match("-[0-9.]", word):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return _parser().parse_args(joined)
 
 
-def _print_json(document: dict) -> None:
-    print(json.dumps(document, indent=2))
+def _state(arguments: argparse.Namespace) -> tuple | None:
+    """Tells whether there is another file at the output than before."""
+    try:
+        found = os.stat(arguments.output)
+    except (AttributeError, OSError, ValueError):  # the command has no output, or there is nothing yet
+        return None
+    return found.st_dev, found.st_ino, found.st_mtime_ns, found.st_size
 
 
-def _bake(arguments: argparse.Namespace) -> int:
+def _outcome(arguments: argparse.Namespace, before: tuple | None) -> str:
+    if not hasattr(arguments, "output"):
+        return ""
+    return "; nothing was written" if _state(arguments) == before else f" after {arguments.output} was written"
+
+
+def _bake(arguments: argparse.Namespace) -> Result:
     from skinslide.bake import bake_to_file
     from skinslide.progress import reporter
 
@@ -84,25 +92,18 @@ def _bake(arguments: argparse.Namespace) -> int:
             max_clamped=arguments.max_clamped,
         )
     if arguments.json:
-        _print_json({"stage": arguments.stage, "output": arguments.output, **report.as_dict()})
-    elif not arguments.quiet:
-        print(report.text())
-        print(f"{arguments.output}: written; sublayer it above the cache")
-    return DONE
+        return as_json({"stage": arguments.stage, "output": arguments.output, **report.as_dict()}), DONE
+    return "" if arguments.quiet else _written(report.text(), arguments), DONE
 
 
-def _check(arguments: argparse.Namespace) -> int:
+def _check(arguments: argparse.Namespace) -> Result:
     from skinslide.check import check
 
     report = check(arguments.stage, arguments.prim, lookup=_lookup(arguments))
-    if arguments.json:
-        _print_json(report.as_dict())
-    else:
-        print(report.text())
-    return PROBLEMS if report.failed else DONE
+    return as_json(report.as_dict()) if arguments.json else report.text(), PROBLEMS if report.failed else DONE
 
 
-def _setup(arguments: argparse.Namespace) -> int:
+def _setup(arguments: argparse.Namespace) -> Result:
     from skinslide.setup import setup
 
     report = setup(
@@ -115,16 +116,18 @@ def _setup(arguments: argparse.Namespace) -> int:
         primvar=arguments.primvar,
         force=arguments.force,
     )
-    print(report.text())
-    print(f"{arguments.output}: written")
-    return DONE
+    return f"{report.text()}\n{arguments.output}: written", DONE
+
+
+def _written(report: str, arguments: argparse.Namespace) -> str:
+    return f"{report}\n{arguments.output}: written; sublayer it above the cache"
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="skinslide",
         description="Lets the skin of a cached character slide over its deformed shape instead of sticking to it.",
-        epilog=_EXIT_CODES,
+        epilog=EXIT_CODES,
     )
     parser.add_argument("--version", action="version", version=f"skinslide {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -134,17 +137,19 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-Run = Callable[[argparse.Namespace], int]
+Run = Callable[[argparse.Namespace], Result]
 
 
 def _add_command(commands, name: str, run: Run, summary: str) -> argparse.ArgumentParser:
-    """A command with what all have: the stage."""
     description = summary[0].upper() + summary[1:] + "."
-    command = commands.add_parser(name, help=summary, description=description, epilog=_EXIT_CODES)
-    stage_help = "the stage: .usd, .usda, .usdc, .usdz or .skinslide; never written"
-    command.add_argument("stage", metavar="STAGE", help=stage_help)
+    command = commands.add_parser(name, help=summary, description=description, epilog=EXIT_CODES)
     command.set_defaults(run=run)
     return command
+
+
+def _add_stage(command: argparse.ArgumentParser) -> None:
+    stage_help = "the stage: .usd, .usda, .usdc, .usdz or .skinslide; never written"
+    command.add_argument("stage", metavar="STAGE", help=stage_help)
 
 
 def _add_prims(command: argparse.ArgumentParser) -> None:
@@ -152,7 +157,8 @@ def _add_prims(command: argparse.ArgumentParser) -> None:
         "--prim",
         action="append",
         metavar="PATH",
-        help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch)",
+        help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch). What "
+        "USD cannot compose elsewhere, such as a missing payload, is then a warning and no error",
     )
 
 
@@ -191,20 +197,22 @@ def _lookup(arguments: argparse.Namespace) -> Lookup:
 
 
 def _add_bake(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
     command.add_argument(
         "-o",
         "--output",
         required=True,
         metavar="OUT",
         help="layer of overs to write, to be sublayered above the cache: .usda, .usdc or .usd. "
-        "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was",
+        "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was; one killed outright "
+        "leaves a partial file beside it, which the next bake of OUT removes when it is a day old",
     )
     _add_prims(command)
     command.add_argument(
         "--frames",
         metavar="SPEC",
         help="frames to write, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
-        "(default: the authored samples of points and of animated controls)",
+        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
     )
     _add_lookup(command)
     command.add_argument(
@@ -227,12 +235,14 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
     _add_prims(command)
     _add_lookup(command)
     command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
 
 
 def _add_setup(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
     command.add_argument(
         "-o",
         "--output",

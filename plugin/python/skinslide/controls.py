@@ -12,7 +12,17 @@ from skinslide import names
 from skinslide.problems import Fault
 from skinslide.slider import Controls
 from skinslide.topology import Topology
-from skinslide.values import FIRST, Reading, check_length, flattened, floats, integers, primvar_sources, unchanging
+from skinslide.values import (
+    FIRST,
+    Reading,
+    Span,
+    check_length,
+    flattened,
+    floats,
+    integers,
+    primvar_sources,
+    unchanging,
+)
 
 
 def envelope(prim: Usd.Prim, patch: str) -> Reading[float]:
@@ -31,7 +41,7 @@ def envelope(prim: Usd.Prim, patch: str) -> Reading[float]:
 
 def weight(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[np.ndarray | None]:
     """Slide weight by mesh vertex (V,), or None where it is not painted."""
-    primvar, inside = names.primvar(prim, patch, "weight"), topology.vertices_of(faces)
+    primvar, inside = names.inherited_primvar(prim, patch, "weight"), topology.vertices_of(faces)
     sizes = {UsdGeom.Tokens.vertex: (topology.vertex_count, "points"), UsdGeom.Tokens.constant: None}
 
     def read(time: Usd.TimeCode) -> np.ndarray | None:
@@ -49,7 +59,8 @@ def weight(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) ->
 
 def density(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[dict[str, np.ndarray]]:
     """Painted force density as arguments of Controls: by vertex, by face, or none: a constant changes no ratio."""
-    primvar, chosen = names.primvar(prim, patch, "forceDensity"), np.zeros(topology.face_count, dtype=bool)
+    primvar = names.inherited_primvar(prim, patch, "forceDensity")
+    chosen = np.zeros(topology.face_count, dtype=bool)
     chosen[faces] = True
     kinds = {
         UsdGeom.Tokens.vertex: ("vertex_density", topology.vertices_of(faces)),
@@ -124,8 +135,8 @@ class PatchControls:
     def vary(self) -> bool:
         return any(reading.varies for reading in self._readings)
 
-    def times(self) -> list[float]:
-        return [time for reading in self._readings for time in reading.times()]
+    def times(self, span: Span | None) -> list[float]:
+        return [time for reading in self._readings for time in reading.times(span)]
 
     def at(self, time: Usd.TimeCode = FIRST) -> Controls:
         """Raises Fault where a value is not valid."""

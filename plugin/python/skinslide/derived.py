@@ -1,5 +1,6 @@
 """What else a cache holds that follows from its points: normals, velocities, accelerations."""
 
+import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -10,8 +11,8 @@ from pxr import Usd, UsdGeom, Vt
 
 from skinslide import slider
 from skinslide.meshes import SlidMesh
-from skinslide.problems import Problem
-from skinslide.values import SAME_TIME
+from skinslide.problems import Fault, Problem
+from skinslide.values import SAME_TIME, flattened
 
 
 class Solved(NamedTuple):
@@ -40,7 +41,11 @@ class Derived:
         self.problems: list[Problem] = []
         self._path = mesh.path
         normals = _find_normals(mesh)
-        rates, self.blocked = _find_rates(mesh)
+        rates, blocked = _find_rates(mesh)
+        self.blocked = list(blocked)
+        for attribute, reason in blocked.items():
+            message = f"{attribute.GetName()} cannot be recomputed, so the bake blocks them: {reason}"
+            self.problems.append(Problem("warning", mesh.path, None, None, message))
         self._recomputed = [*([normals] if normals else []), *rates]
         if normals and normals.primvar and normals.primvar.IsIndexed():
             self.blocked.append(normals.primvar.GetIndicesAttr())
@@ -51,13 +56,19 @@ class Derived:
 
     def values(self, time: Usd.TimeCode, solved: Solutions) -> Iterator[Value]:
         """Everything recomputed at a time; `solved` holds the times it needs."""
-        for derived in self._recomputed:
+        for derived in list(self._recomputed):
             try:
                 yield from derived.values(time, solved)
-            except slider.SliderError as error:
-                frame = None if time.IsDefault() else time.GetValue()
-                message = f"{derived.attribute.GetName()} left as they are: {error}"
-                self.problems.append(Problem("warning", self._path, None, frame, message))
+            except (slider.SliderError, Fault) as error:
+                self._block(derived, time, str(error))
+
+    def _block(self, derived: "_Normals | _Rates", time: Usd.TimeCode, reason: str) -> None:
+        """Gives an attribute up at all times: where a sample is missing, its neighbours would be taken instead."""
+        self._recomputed = [other for other in self._recomputed if other is not derived]
+        self.blocked += [derived.attribute, *derived.hidden()]
+        frame = None if time.IsDefault() else time.GetValue()
+        message = f"{derived.attribute.GetName()} cannot be recomputed, so the bake blocks them at all frames: {reason}"
+        self.problems.append(Problem("warning", self._path, None, frame, message))
 
 
 @dataclass(frozen=True)
@@ -67,6 +78,11 @@ class _Normals:
     primvar: UsdGeom.Primvar | None  # where they are one
     interpolation: str
 
+    def hidden(self) -> list[Usd.Attribute]:
+        """What would be read in place of these were they blocked alone."""
+        normals = UsdGeom.PointBased(self.mesh.prim).GetNormalsAttr()
+        return [normals] if self.primvar and normals.HasAuthoredValue() else []
+
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return {time}
 
@@ -74,9 +90,9 @@ class _Normals:
         mesh, points = self.mesh, solved[time]
         # Normals may move over points that do not.
         for sample in (self.attribute.GetTimeSamples() if time.IsDefault() else []) or [time]:
-            cached = self.primvar.ComputeFlattened(sample) if self.primvar else self.attribute.Get(sample)
+            cached = flattened(self.primvar, sample) if self.primvar else self.attribute.Get(sample)
             if cached is None:
-                continue
+                raise Fault("there is no value")
             recomputed = slider.normals(
                 mesh.face_counts,
                 mesh.face_indices,
@@ -96,6 +112,9 @@ class _Rates:
     sample_count: int
     times: list[float]  # of the cache's points, ascending
 
+    def hidden(self) -> list[Usd.Attribute]:
+        return []
+
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return {Usd.TimeCode(sample) for sample in samples_around(self.times, time.GetValue(), self.sample_count)}
 
@@ -105,7 +124,10 @@ class _Rates:
         for sample in samples_around(self.times, time.GetValue(), self.sample_count):
             points = solved[Usd.TimeCode(sample)]
             samples.append(slider.Sample(sample / per_second, points.cached, points.slid))
-        corrected = self.function(samples, np.asarray(self.attribute.Get(time)))
+        cached = self.attribute.Get(time)
+        if cached is None:
+            raise Fault("there is no value")
+        corrected = self.function(samples, np.asarray(cached))
         yield Value(self.attribute, time, Vt.Vec3fArray.FromNumpy(corrected))
 
 
@@ -134,19 +156,32 @@ def _find_normals(mesh: SlidMesh) -> _Normals | None:
     return None if found.interpolation == UsdGeom.Tokens.constant else found
 
 
-def _find_rates(mesh: SlidMesh) -> tuple[list[_Rates], list[Usd.Attribute]]:
-    """Velocities and accelerations to recompute, and those to block: stale ones would give wrong motion blur."""
+def _find_rates(mesh: SlidMesh) -> tuple[list[_Rates], dict[Usd.Attribute, str]]:
+    """Velocities and accelerations to recompute, and those to block, each with why: stale ones would blur wrongly."""
     geometry, times = UsdGeom.PointBased(mesh.prim), mesh.points_times()
     kinds = [
         (geometry.GetVelocitiesAttr(), slider.velocities, 2),
         (geometry.GetAccelerationsAttr(), slider.accelerations, 3),
     ]
-    rates, blocked = [], []
+    rates, blocked = [], {}
     for attribute, function, count in kinds:
         if not attribute.HasAuthoredValue():
             continue
-        if len(times) >= count and attribute.GetTimeSamples() == geometry.GetPointsAttr().GetTimeSamples():
-            rates.append(_Rates(attribute, function, count, times))
+        reason = _why_not(mesh, attribute, count)
+        if reason:
+            blocked[attribute] = reason
         else:
-            blocked.append(attribute)
+            rates.append(_Rates(attribute, function, count, times))
     return rates, blocked
+
+
+def _why_not(mesh: SlidMesh, attribute: Usd.Attribute, count: int) -> str | None:
+    """Why rates of change that take `count` samples of points cannot be recomputed."""
+    times, per_second = mesh.points_times(), mesh.stage.GetTimeCodesPerSecond()
+    if not (math.isfinite(per_second) and per_second > 0):
+        return f"the stage has {per_second:g} time codes per second"
+    if len(times) < count:
+        return f"that takes {count} samples of points, and there are {len(times)}"
+    if attribute.GetTimeSamples() != UsdGeom.PointBased(mesh.prim).GetPointsAttr().GetTimeSamples():
+        return "their samples are at other times than those of points"
+    return None

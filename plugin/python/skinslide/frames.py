@@ -35,7 +35,10 @@ def checked_frames(frames: Sequence[float] | str) -> list[float]:
     """Frames as a spec or one by one, ascending, each once."""
     if isinstance(frames, str):
         return parse_frames(frames)
-    times = sorted({float(frame) for frame in frames})
+    try:
+        times = sorted({float(frame) for frame in frames})
+    except (TypeError, ValueError, OverflowError) as error:
+        raise FrameSpecError(f"frames {frames!r}: must be a spec such as 101:109x2, or a list of numbers") from error
     if not times or not all(map(math.isfinite, times)):
         raise FrameSpecError(f"frames {times}: there must be some, each a finite number")
     return times

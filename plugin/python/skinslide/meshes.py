@@ -7,18 +7,19 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from pxr import Usd, UsdGeom, UsdSkel
+from pxr import Tf, Usd, UsdGeom, UsdSkel
 
 from skinslide import controls, names
 from skinslide.controls import PatchControls
+from skinslide.earlier import baked_layer
 from skinslide.faces import read_faces
-from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, core_problem
+from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, core_problem, usd_message
 from skinslide.rest import read_rest
 from skinslide.slider import Controls, Lookup, PatchSetup, Slider, SliderError, Subdivision
 from skinslide.stage import find_meshes
 from skinslide.subdivision import read_subdivision
 from skinslide.topology import Topology, read_topology
-from skinslide.values import FIRST, merged_times, positions
+from skinslide.values import FIRST, Span, merged_times, positions
 
 T = TypeVar("T")
 
@@ -60,11 +61,23 @@ class SlidMesh:
         """The authored samples of points."""
         return merged_times(UsdGeom.Mesh(self.prim).GetPointsAttr().GetTimeSamples())
 
+    @property
+    def varies(self) -> bool:
+        """Whether points or controls have samples."""
+        return bool(self.points_times()) or any(patch.vary for patch in self.animation)
+
     def sample_times(self) -> list[float]:
         """The authored samples of points and of animated controls; none where there are only defaults."""
-        animated = (time for patch in self.animation for time in patch.times())
+        animated = (time for patch in self.animation for time in patch.times(self._span()))
         # Points first: where times differ by noise, theirs gives a sample as it was authored.
         return merged_times([*self.points_times(), *animated])
+
+    def _span(self) -> Span | None:
+        """From the first to the last moment that the stage or the samples of points know of."""
+        ends = self.points_times()
+        if self.stage.HasAuthoredTimeCodeRange():
+            ends = [*ends, self.stage.GetStartTimeCode(), self.stage.GetEndTimeCode()]
+        return (min(ends), max(ends)) if ends else None
 
     def points_at(self, time: Usd.TimeCode) -> np.ndarray:
         """Cached points, float32 (V, 3)."""
@@ -96,6 +109,8 @@ class SlidMesh:
         try:
             return self.build(self.patches, lookup)
         except SliderError as error:
+            if error.status == "OUT_OF_MEMORY":
+                raise MemoryError(str(error)) from error
             raise StageProblems(self._patch_problems(lookup) or [self._core_problem(error)]) from error
 
     def build(self, patches: Sequence[PatchSetup], lookup: str | Lookup = "auto") -> Slider:
@@ -166,6 +181,12 @@ def _attempt(problems: list[Problem], prim: str, patch: str | None, read: Callab
 
 def _first_points(prim: Usd.Prim) -> np.ndarray:
     attr = UsdGeom.Mesh(prim).GetPointsAttr()
+    layer = baked_layer(prim)
+    if layer:
+        raise Fault(
+            f"points are slid already, by the bake in {layer.identifier}; slide the cache instead: open the stage "
+            "without that layer, or remove the baked attributes from it"
+        )
     if not attr.GetNumTimeSamples() and is_skinned(prim):
         raise Fault("points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)")
     return read_points(prim, FIRST)
@@ -180,7 +201,10 @@ def is_skinned(prim: Usd.Prim) -> bool:
 
 def read_points(prim: Usd.Prim, time: Usd.TimeCode, vertex_count: int | None = None) -> np.ndarray:
     """Points of a mesh, float32 (V, 3), and just so many where vertex_count is given."""
-    value = UsdGeom.Mesh(prim).GetPointsAttr().Get(time)
+    try:
+        value = UsdGeom.Mesh(prim).GetPointsAttr().Get(time)
+    except Tf.ErrorException as error:
+        raise Fault(f"points cannot be read: {usd_message(error)}") from error
     points = positions([] if value is None else value, "points")
     if not len(points):
         raise Fault("points has no value")

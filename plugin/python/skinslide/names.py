@@ -12,7 +12,9 @@ SCHEMA = "SkinSlideAPI"
 NAMESPACE = "skinSlide"
 REST_POINTS = f"{NAMESPACE}:restPoints"
 # Names directly under the namespace that are not patches.
-NOT_PATCHES = ("restPoints", "live")
+NOT_PATCHES = ("restPoints", "live", "cached")
+# Values of the cache that a bake into the same layer has taken the place of.
+CACHED = f"{NAMESPACE}:cached"
 
 
 def applied_schemas(prim: Usd.Prim) -> list[str]:
@@ -27,13 +29,14 @@ def applied_schemas(prim: Usd.Prim) -> list[str]:
 def patch_names(prim: Usd.Prim) -> list[str]:
     """The patches applied to a prim, in order."""
     prefix = f"{SCHEMA}:"
-    return [name.removeprefix(prefix) for name in applied_schemas(prim) if name.startswith(prefix)]
+    found = [name.removeprefix(prefix) for name in applied_schemas(prim) if name.startswith(prefix)]
+    return [name for name in found if name]
 
 
 def unapplied_patch_names(prim: Usd.Prim) -> list[str]:
     """The patches that have properties on a prim but are not applied to it."""
     names = {name for prefix in (NAMESPACE, f"primvars:{NAMESPACE}") for name in _names_under(prim, prefix)}
-    return sorted(names.difference(patch_names(prim), NOT_PATCHES))
+    return sorted(name for name in names.difference(patch_names(prim)) if name.split(":")[0] not in NOT_PATCHES)
 
 
 def _names_under(prim: Usd.Prim, prefix: str) -> set[str]:
@@ -48,6 +51,11 @@ def property_name(patch: str, name: str) -> str:
 def primvar(prim: Usd.Prim, patch: str, name: str) -> UsdGeom.Primvar:
     """The primvar of a patch; invalid where there is none."""
     return UsdGeom.PrimvarsAPI(prim).GetPrimvar(property_name(patch, name))
+
+
+def inherited_primvar(prim: Usd.Prim, patch: str, name: str) -> UsdGeom.Primvar:
+    """The primvar of a patch, or a constant one of that name that the prim inherits; invalid where there is neither."""
+    return UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(property_name(patch, name))
 
 
 def attribute(prim: Usd.Prim, patch: str, name: str) -> Usd.Attribute:

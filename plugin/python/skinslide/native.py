@@ -162,7 +162,7 @@ class Arguments:
 
     def fill_setup(self, target: Any, patch: PatchSetup, sizes: Sizes) -> None:
         where = f"patch {patch.name}: "
-        name = ffi.new("char[]", patch.name.encode())
+        name = ffi.new("char[]", encoded_name(patch.name))
         self._alive.append(name)
         target.name = name
         target.faces = self.pointer(patch.faces, np.int32, (-1,), f"{where}faces")
@@ -178,6 +178,8 @@ class Arguments:
             values = getattr(controls, name)
             setattr(target, name, self.optional(values, np.float32, (count,), where + name.replace("_", " ")))
         edges, density = controls.edges, controls.edge_density
+        if edges is not None and density is not None and not np.size(edges) and not np.size(density):
+            edges = density = None
         if (edges is None) != (density is None):
             raise SliderError("BAD_ARGUMENT", f"{where}edges and edge density must be given together")
         target.edge_count = 0 if edges is None else len(edges)
@@ -211,9 +213,22 @@ def _length(values: Any) -> int:
     return 0 if values is None else len(values)
 
 
+def encoded_name(name: str) -> bytes:
+    try:
+        encoded = name.encode()
+    except (AttributeError, UnicodeEncodeError) as error:
+        raise SliderError("BAD_ARGUMENT", f"{name!r} cannot name a patch") from error
+    if b"\0" in encoded:
+        raise SliderError("BAD_ARGUMENT", f"{name!r} cannot name a patch")
+    return encoded
+
+
 def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.ndarray:
     """values as a contiguous array, or SliderError with both shapes."""
-    source = np.asarray(values)
+    try:
+        source = np.asarray(values)
+    except (TypeError, ValueError) as error:  # rows of different lengths
+        raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error
     if source.ndim != len(shape) or any(size not in (-1, got) for size, got in zip(shape, source.shape, strict=True)):
         wanted = " x ".join("n" if size == -1 else str(size) for size in shape)
         got = " x ".join(map(str, source.shape)) or "a single value"

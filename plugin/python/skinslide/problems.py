@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+
+from pxr import Tf
 
 
 @dataclass(frozen=True)
@@ -57,15 +60,25 @@ def errors(problems: Sequence[Problem]) -> list[Problem]:
 
 
 def core_problem(prim: str, patches: Sequence[str], message: str, frame: float | None = None) -> Problem:
-    """A message of the core as an error; the patch it starts with becomes the problem's own."""
+    """A message of the core as an error; the patch it starts with becomes the problem's own.
+
+    The core cuts long names, to NAME...
+    """
     for patch in sorted(patches, key=len, reverse=True):
-        label = f"patch {patch}: "
-        if message.startswith(label):
-            return Problem("error", prim, patch, frame, message.removeprefix(label))
+        label = re.match(rf"patch (?:{re.escape(patch)}|(.+)\.\.\.)(?: \((piece \d+ of \d+)\))?: ", message)
+        if label and (label[1] is None or patch.startswith(label[1])):
+            piece = f"{label[2]}: " if label[2] else ""
+            return Problem("error", prim, patch, frame, piece + message[label.end() :])
     return Problem("error", prim, None, frame, message)
 
 
+def usd_message(error: Tf.ErrorException) -> str:
+    """What USD says, in one line. Of several errors the first is the cause."""
+    said = error.args[0].commentary if error.args else str(error)
+    return " ".join(said.split()) or "USD failed and does not say why"
+
+
 def frame_text(frame: float) -> str:
-    """1012 for 1012.0 and 1012.25 for 1012.25, without the noise that layer offsets leave."""
+    """1012 for 1012.0 and 1012.25 for 1012.25, without the noise that layer offsets leave; 1e+300 as it stands."""
     frame = round(frame, 6)
-    return str(int(frame)) if frame == int(frame) else str(frame)
+    return str(int(frame)) if frame == int(frame) and abs(frame) < 1e15 else str(frame)

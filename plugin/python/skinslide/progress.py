@@ -4,9 +4,11 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from tqdm import tqdm
+
+from skinslide.outcome import tell
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
@@ -28,7 +30,8 @@ def reporter(*, quiet: bool = False) -> Iterator[Progress | None]:
 
 def _move(bar: tqdm, done: int, total: int) -> None:
     bar.total = total
-    bar.update(done - bar.n)
+    with suppress(OSError):  # a terminal that has gone
+        bar.update(done - bar.n)
 
 
 def _lines() -> Progress:
@@ -40,6 +43,6 @@ def _lines() -> Progress:
         if done != total and (done % math.ceil(total / _LINES) or now - last < _SECONDS):
             return
         last, rate = now, done / max(now - start, 1e-9)
-        print(f"{done} of {total} frames, {rate:.1f} frames/s, {(total - done) / rate:.0f} s left", file=sys.stderr)
+        tell(f"{done} of {total} frames, {rate:.1f} frames/s, {(total - done) / rate:.0f} s left")
 
     return report

@@ -24,7 +24,6 @@ _AT_FRAMES = {
     "folded_faces": "faces turned over in the embedding",
     "zero_length_edges": "edges of no length, taken as 1e-6 of the mean rest edge",
     "lost_textures": "textures lost by a failing device, each vertex walked for instead",
-    "searched_vertices": "vertices the walk could not reach, found by search",
 }
 
 
@@ -60,6 +59,7 @@ class PatchReport:
             **self.info._asdict(),
             "max": {name: values.max().item() for name, values in fields.items()},
             "mean": {name: values.mean().item() for name, values in fields.items()},
+            "frames": [_frame_dict(*each) for each in zip(self.frames, self.results, strict=True)],
             "worst_frame": self.frames[self.worst],
             "worst_frame_stretch_before": worst.stretch_before,
             "worst_frame_stretch_after": worst.stretch_after,
@@ -90,6 +90,13 @@ class PatchReport:
         counts = self.column(name)
         where = f" ({np.count_nonzero(counts)} of {len(counts)} frames have such; this one most)"
         return self.frames[counts.argmax()], counts.max().item(), text + (where if len(counts) > 1 else "")
+
+
+_OF_A_FRAME = ("stretch_before", "stretch_after", "slid_vertices", "largest_slide", "clamped_vertices", "folded_faces")
+
+
+def _frame_dict(frame: float | None, result: PatchResult) -> dict[str, Any]:
+    return {"frame": frame, **{name: getattr(result, name) for name in _OF_A_FRAME}}
 
 
 @dataclass

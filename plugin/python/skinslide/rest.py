@@ -36,5 +36,8 @@ def _find(prim: Usd.Prim):
     for name in PRIMVARS:
         primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
         if primvar and primvar.HasAuthoredValue():
+            interpolation = primvar.GetInterpolation()
+            if interpolation not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
+                raise Fault(f"rest points: {primvar.GetName()} has interpolation {interpolation}; it must be vertex")
             return flattened(primvar, FIRST), primvar.GetName()
     return UsdGeom.Mesh(prim).GetPointsAttr().Get(Usd.TimeCode.Default()), "points (default)"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from pxr import Sdf, Tf, Usd, UsdGeom, Vt
 from skinslide import names
 from skinslide.check import CheckReport, check
 from skinslide.faces import primvar_faces, subset_faces
+from skinslide.files import check_not_input, check_not_read, check_output, replacing, writing
 from skinslide.frames import UsageError
 from skinslide.meshes import read_points
 from skinslide.problems import Fault, Problem, StageError, StageProblems, errors
@@ -24,7 +24,7 @@ from skinslide.values import FIRST
 EXTENSIONS = (EXTENSION, ".usda", ".usdc", ".usd")
 # Fields of a root layer that say what is in that layer, not how the stage is to be read.
 OWN_FIELDS = {"subLayers", "subLayerOffsets", "primChildren", "comment", "documentation", "customLayerData"}
-_RANGE = re.compile(r"(\d+)(?:[-:](\d+))?", re.ASCII)
+_RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
 
 def setup(
@@ -57,10 +57,12 @@ def setup(
     except Fault as fault:
         raise StageProblems([Problem("error", prim, patch, None, str(fault))]) from fault
     _author(layer, prim, patch, chosen, topology.face_count)
-    report = check(_composed(layer, output), [prim])
+    stage = _composed(layer, output)
+    report = check(stage, [prim])
     bad = [problem for problem in errors(report.problems) if problem.patch in (patch, None)]
     if bad:
         raise StageProblems(bad)
+    check_not_read(output, stage)
     _write(layer, output)
     return replace(report, stage=str(output))
 
@@ -71,7 +73,7 @@ def parse_faces(spec: str) -> list[tuple[int, int]]:
     for part in spec.split(","):
         match = _RANGE.fullmatch(part.strip())
         if not match:
-            raise UsageError(f"faces {spec!r}: {part!r} is neither a face nor a range such as 0-120")
+            raise UsageError(f"faces {spec[:40]!r}: {part[:40]!r} is neither a face nor a range such as 0-120")
         first, last = int(match[1]), int(match[2] or match[1])
         if last < first:
             raise UsageError(f"faces {spec!r}: {part!r} runs backwards")
@@ -82,16 +84,9 @@ def parse_faces(spec: str) -> list[tuple[int, int]]:
 def _check_arguments(stage: Path, output: Path, prim: str, patch: str, sources: list[str | None]) -> None:
     if sum(source is not None for source in sources) != 1:
         raise UsageError("one of faces, subset and primvar is needed")
-    if output.suffix not in EXTENSIONS:
-        raise UsageError(f"output {output}: the name must end in {', '.join(EXTENSIONS)}")
     if stage.suffix == EXTENSION:
         raise UsageError(f"{stage} is a set-up itself; give the stage that it sits on, and it as output to add to it")
-    if output.is_dir() or not output.absolute().parent.is_dir():
-        raise UsageError(f"output {output}: {'is a folder' if output.is_dir() else 'the folder does not exist'}")
-    if not os.access(output.absolute().parent, os.W_OK | os.X_OK):
-        raise UsageError(f"output {output}: the folder is not writable")
-    if output.exists() and stage.exists() and output.samefile(stage):
-        raise UsageError(f"output {output}: is the input")
+    check_output(output, EXTENSIONS)
     if not Sdf.Path.IsValidNamespacedIdentifier(patch) or patch.split(":")[0] in names.NOT_PATCHES:
         raise UsageError(f"{patch!r} cannot name a patch; use letters, digits and _, such as elbow_L")
     if not (Sdf.Path.IsValidPathString(prim) and Sdf.Path(prim).IsAbsolutePath() and Sdf.Path(prim).IsPrimPath()):
@@ -101,26 +96,22 @@ def _check_arguments(stage: Path, output: Path, prim: str, patch: str, sources: 
 def _starting_layer(stage_path: Path, output: Path, force: bool) -> Sdf.Layer:
     """The layer at `output`, where it sits on the stage, else a new one; anonymous, with asset paths as in the file."""
     stage = open_stage(stage_path)
+    check_not_input(output, stage, stage_path)
     if output.exists() and not force:
         layer = _existing_layer(output)
         sublayers = [Path(output.absolute().parent, path) for path in layer.subLayerPaths]
         if not any(path.exists() and path.samefile(stage_path) for path in sublayers):
             raise UsageError(f"output {output}: exists and does not sublayer {stage_path}; --force replaces it")
         return layer
-    for used in stage.GetUsedLayers():
-        if output.exists() and used.realPath and output.samefile(used.realPath):
-            raise UsageError(f"output {output}: the stage reads this layer")
     return _new_layer(stage, stage_path, output)
 
 
 def _existing_layer(output: Path) -> Sdf.Layer:
-    if output.suffix == EXTENSION:
-        return read_text_layer(output)
     try:
-        source = Sdf.Layer.OpenAsAnonymous(str(output))
-    except Tf.ErrorException as error:
+        layer = read_text_layer(output) if output.suffix == EXTENSION else Sdf.Layer.OpenAsAnonymous(str(output))
+    except (Tf.ErrorException, OSError, UnicodeDecodeError, StageError) as error:
         raise UsageError(f"output {output}: exists and is not a layer; --force replaces it") from error
-    return source
+    return layer
 
 
 def _new_layer(stage: Usd.Stage, stage_path: Path, output: Path) -> Sdf.Layer:
@@ -167,7 +158,7 @@ def _choose(
     if faces is not None:
         return _expand(parse_faces(faces), topology.face_count)
     if subset is not None:
-        child = prim.GetChild(subset)
+        child = prim.GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None
         if not child:
             raise Fault(f"there is no GeomSubset {subset} under the mesh")
         found = subset_faces(child, topology)
@@ -211,15 +202,8 @@ def _author(layer: Sdf.Layer, prim: str, patch: str, faces: np.ndarray | None, f
 
 def _write(layer: Sdf.Layer, output: Path) -> None:
     """Puts the layer in place in one step."""
-    output = output.resolve()
-    partial = output.with_name(f".{output.stem}.{secrets.token_hex(4)}{output.suffix}")
-    try:
-        if output.suffix == EXTENSION:
+    with replacing(output) as partial, writing(output):
+        if partial.suffix == EXTENSION:
             partial.write_text(layer.ExportToString(), encoding="utf-8")
-        else:
-            layer.Export(str(partial))
-        os.replace(partial, output)
-    except (OSError, Tf.ErrorException) as error:
-        raise StageError(f"cannot write {output}: {' '.join(str(error).split())}") from error
-    finally:
-        partial.unlink(missing_ok=True)
+        elif not layer.Export(str(partial)):
+            raise OSError("USD could not save it")

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import posixpath
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 
 from skinslide import fileformat, names
-from skinslide.problems import Problem, StageError
+from skinslide.problems import Problem, StageError, usd_message
 
 EXTENSION = ".skinslide"
 
@@ -19,9 +19,11 @@ def open_stage(path: str | Path) -> Usd.Stage:
     """Opens a stage with its payloads. A `.skinslide` file opens as its text, with the points of the cache."""
     path = str(path)
     try:
+        if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+            raise StageError(f"cannot open {path}: it is not a regular file")
         return Usd.Stage.Open(_text_of(Path(path)) if path.endswith(EXTENSION) else path)
-    except (Tf.ErrorException, OSError, UnicodeDecodeError) as error:
-        raise StageError(f"cannot open {path}: {_reason(path, error)}") from error
+    except (Tf.ErrorException, OSError, ValueError) as error:
+        raise StageError(f"cannot open {path}: {why_not_opened(path, error)}") from error
 
 
 def _text_of(path: Path) -> Sdf.Layer:
@@ -33,17 +35,24 @@ def _text_of(path: Path) -> Sdf.Layer:
     return text
 
 
-def _reason(path: str, error: Exception) -> str:
+def why_not_opened(path: str, error: Exception) -> str:
+    """The cause of an exception that opening a file raised."""
+    if not path:
+        return "the name is empty"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     if isinstance(error, Tf.ErrorException):
-        if Path(path).is_dir():
+        if os.path.isdir(path):
             return "it is a folder"
+        try:
+            os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK))
+        except PermissionError as denied:
+            return denied.strerror
+        except OSError:
+            pass  # a resolver may know it under this name
         if not Ar.GetResolver().Resolve(path):
             return "there is no such file"
-        # The first of USD's errors is the cause, in quotes after where in USD it was raised.
-        cause = re.search(r" : '(.*?)'\s*(?:\n\s*Error in|$)", str(error), re.DOTALL)
-        return " ".join(cause[1].split()).lstrip(":") if cause else "USD cannot read it"
+        return usd_message(error)
     return "it is not text"
 
 
@@ -87,7 +96,7 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
 
     prim_paths  None: the whole stage; else prims that are looked at with everything below them
     """
-    meshes, problems, seen = [], [], set()
+    meshes, problems, seen = [], list(composition_problems(stage, prim_paths)), set()
     prototypes = _instancer_prototypes(stage)
     for root in _roots(stage, prim_paths, problems):
         for prim in _prims_below(root):
@@ -109,6 +118,25 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
     if not meshes and not any(problem.severity == "error" for problem in problems):
         problems.append(Problem("error", "", None, None, _nothing(prim_paths)))
     return meshes, problems
+
+
+def composition_problems(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> Iterator[Problem]:
+    """What USD could not compose: errors, for what is missing may be a mesh that should slide, or part of one.
+
+    Warnings where it cannot be: away from the prims asked for, or where a prim is of a type that holds no meshes, such
+    as a Material.
+    """
+    asked = [Sdf.Path(str(path)) for path in prim_paths or ["/"] if Sdf.Path.IsValidPathString(str(path))]
+    for error in stage.GetCompositionErrors():
+        path = error.rootSite.path
+        near = any(path.HasPrefix(root) or root.HasPrefix(path) for root in asked)
+        message = "USD could not compose this: " + " ".join(str(error).split())
+        severity = "error" if near and _may_hold_meshes(stage.GetPrimAtPath(path)) else "warning"
+        yield Problem(severity, "" if path.IsAbsoluteRootPath() else str(path), None, None, message)
+
+
+def _may_hold_meshes(prim: Usd.Prim | None) -> bool:
+    return not prim or not prim.GetTypeName() or prim.IsA(UsdGeom.Imageable)
 
 
 def _roots(stage: Usd.Stage, prim_paths: Sequence[str] | None, problems: list[Problem]) -> Iterator[Usd.Prim]:
@@ -142,7 +170,7 @@ def _instancer_prototypes(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
 
 def _unapplied(prim: Usd.Prim) -> Iterator[Problem]:
     path = str(prim.GetPath())
-    if names.SCHEMA in names.applied_schemas(prim):
+    if {names.SCHEMA, f"{names.SCHEMA}:"} & set(names.applied_schemas(prim)):
         message = f"{names.SCHEMA} is applied without a patch's name; apply {names.SCHEMA}:NAME"
         yield Problem("error", path, None, None, message)
     if prim.IsA(UsdGeom.Mesh):

@@ -9,9 +9,11 @@ from typing import Generic, TypeVar
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from skinslide.frames import MOST_FRAMES, UsageError
 from skinslide.problems import Fault, frame_text
 
 T = TypeVar("T")
+Span = tuple[float, float]  # first and last moment
 FIRST = Usd.TimeCode.EarliestTime()
 # Layer offsets leave noise of this size on the times of samples that were authored at one time.
 SAME_TIME = 1e-6
@@ -35,8 +37,8 @@ class Reading(Generic[T]):
     def at(self, time: Usd.TimeCode) -> T:
         return self._read(time) if self._varying else self.first
 
-    def times(self) -> list[float]:
-        return [time for source in self._varying for time in sample_times(source)]
+    def times(self, span: Span | None) -> list[float]:
+        return [time for source in self._varying for time in sample_times(source, span)]
 
 
 def primvar_sources(primvar: UsdGeom.Primvar) -> list[Usd.Attribute]:
@@ -44,12 +46,20 @@ def primvar_sources(primvar: UsdGeom.Primvar) -> list[Usd.Attribute]:
     return [primvar.GetAttr(), primvar.GetIndicesAttr()] if primvar else []
 
 
-def sample_times(attr: Usd.Attribute) -> list[float]:
-    """When a value was authored, in stage time; for a spline its knots and each whole frame between first and last."""
+def sample_times(attr: Usd.Attribute, span: Span | None = None) -> list[float]:
+    """When a value was authored, in stage time; for a spline its knots and each whole frame between them in a span."""
     if not attr.HasSpline():
         return list(attr.GetTimeSamples())
     knots = sorted(attr.GetSpline().GetKnotsWithInnerLoopsBaked().keys())
-    return [*knots, *map(float, range(math.ceil(knots[0]), math.floor(knots[-1]) + 1))] if knots else []
+    if not knots:
+        return []
+    first, last = (
+        math.ceil(max(knots[0], span[0] if span else -math.inf)),
+        math.floor(min(knots[-1], span[1] if span else math.inf)),
+    )
+    if last - first >= MOST_FRAMES:
+        raise UsageError(f"{attr.GetPath()} is a spline over {last - first} frames; name the frames that are wanted")
+    return [*knots, *map(float, range(first, last + 1))]
 
 
 def merged_times(times: Iterable[float]) -> list[float]:
@@ -109,7 +119,8 @@ def floats(value, what: str) -> np.ndarray:
     array = np.asarray(value)
     if array.ndim != 1 or (array.size and array.dtype.kind != "f"):
         raise Fault(f"{what} is not an array of float")
-    return array.astype(np.float32)
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32)
 
 
 def positions(value, what: str) -> np.ndarray:
@@ -119,4 +130,5 @@ def positions(value, what: str) -> np.ndarray:
         return np.empty((0, 3), np.float32)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind != "f":
         raise Fault(f"{what} is not an array of points")
-    return np.array(array, np.float32)
+    with np.errstate(over="ignore"):  # whoever needs finite values says which is not
+        return np.array(array, np.float32)

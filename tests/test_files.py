@@ -1,0 +1,242 @@
+"""Outputs: where one may not be, above all not on what the stage reads, and how it is put in place."""
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+from pxr import Sdf, Usd, UsdGeom
+
+import stages
+from skinslide import StageError, UsageError, bake_to_file, setup
+from skinslide.cli import main
+from stages import FRAMES, MESH
+
+
+@pytest.fixture
+def shot(tmp_path):
+    stage, _mesh = stages.patched_stage()
+    return stages.save(stage, tmp_path / "shot.usda")
+
+
+def refused(shot: Path, output: Path, message: str = "the stage reads this layer") -> None:
+    """Neither a bake nor a set-up replaces the output."""
+    before = output.read_bytes() if os.path.isfile(output) else None
+    with pytest.raises(UsageError, match=message):
+        bake_to_file(shot, output)
+    with pytest.raises(UsageError, match=message):
+        setup(shot, output, MESH, "another", faces="0-3", force=True)
+    assert before == (output.read_bytes() if os.path.isfile(output) else None)
+
+
+# ---- What the stage reads ----
+
+
+@pytest.fixture
+def clips(tmp_path):
+    """Value clips with a manifest, so that USD opens none before it is needed."""
+    shape = stages.grid()
+    stage, mesh = stages.patched_stage(shape, rest="Pref")
+    for frame in FRAMES:
+        mesh.GetPointsAttr().ClearAtTime(frame)
+        clip = Usd.Stage.CreateInMemory()
+        attr = clip.OverridePrim(MESH).CreateAttribute("points", Sdf.ValueTypeNames.Point3fArray, False)
+        attr.Set(stages.vectors(shape.moved(frame)), frame)
+        stages.save(clip, tmp_path / f"clip.{frame:.0f}.usda")
+    manifest = Usd.Stage.CreateInMemory()
+    manifest.OverridePrim(MESH).CreateAttribute("points", Sdf.ValueTypeNames.Point3fArray, False)
+    stages.save(manifest, tmp_path / "manifest.usda")
+    api = Usd.ClipsAPI(stage.GetPrimAtPath("/World"))
+    api.SetClipManifestAssetPath(Sdf.AssetPath("./manifest.usda"))
+    api.SetClipPrimPath("/World")
+    return stage, api
+
+
+@pytest.mark.parametrize("template", [False, True])
+@pytest.mark.parametrize("name", ["shot.usda", "shot.skinslide"])
+def test_value_clips(clips, template, name, tmp_path):
+    stage, api = clips
+    if template:
+        api.SetClipTemplateAssetPath("./clip.####.usda")
+        api.SetClipTemplateStartTime(FRAMES[0])
+        api.SetClipTemplateEndTime(FRAMES[-1])
+        api.SetClipTemplateStride(1)
+    else:
+        api.SetClipAssetPaths([Sdf.AssetPath(f"./clip.{frame:.0f}.usda") for frame in FRAMES])
+        api.SetClipActive([(frame, index) for index, frame in enumerate(FRAMES)])
+        api.SetClipTimes([(frame, frame) for frame in FRAMES])
+    (tmp_path / name).write_text(stage.GetRootLayer().ExportToString())
+    for read in ("clip.1001.usda", "clip.1003.usda", "manifest.usda"):
+        before = (tmp_path / read).read_bytes()
+        with pytest.raises(UsageError, match="the stage reads this layer"):
+            bake_to_file(tmp_path / name, tmp_path / read)
+        assert (tmp_path / read).read_bytes() == before
+    # Not of the template, for all that it looks like it: twice, since the second time it is there.
+    for _ in range(2):
+        bake_to_file(tmp_path / name, tmp_path / "clip.slid.usda")
+
+
+def test_variants_that_are_not_selected(tmp_path):
+    stage, _mesh = stages.patched_stage()
+    cache = stages.save(stage, tmp_path / "a.usda")
+    stages.save(stage, tmp_path / "b.usda")
+    below = stages.save(stage, tmp_path / "c#1.usda")
+    text = cache.read_text().replace("#usda 1.0\n(", f"#usda 1.0\n(\n    subLayers = [@{below.name}@]", 1)
+    (tmp_path / "b.usda").write_text(text)
+    (tmp_path / "shot.usda").write_text(
+        '#usda 1.0\n(\n    timeCodesPerSecond = 24\n)\ndef "World" (\n    variants = { string take = "a" }\n'
+        '    variantSets = "take"\n)\n{\n    variantSet "take" = {\n'
+        '        "a" ( payload = @./a.usda@ ) { }\n        "b" ( payload = @./b.usda@ ) { }\n    }\n}\n'
+    )
+    for read in ("a", "b", "c#1"):
+        refused(tmp_path / "shot.usda", tmp_path / f"{read}.usda")
+
+
+def test_an_input_that_appears_while_it_is_read(shot, tmp_path, monkeypatch):
+    """What is not there when the bake starts can still be a clip that the stage reads in the end."""
+    output = tmp_path / "late.usda"
+
+    def read_late(_done: int, _total: int) -> None:
+        if not output.exists():
+            stages.save(Usd.Stage.CreateInMemory(), output)
+            read.append(Sdf.Layer.FindOrOpen(str(output)))
+
+    read: list[Sdf.Layer] = []
+    used = Usd.Stage.GetUsedLayers
+    monkeypatch.setattr(Usd.Stage, "GetUsedLayers", lambda stage: [*used(stage), *read])
+    with pytest.raises(UsageError, match="the stage reads this layer"):
+        bake_to_file(shot, output, progress=read_late)
+    assert output.read_text().startswith("#usda")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["late.usda", "shot.usda"]
+
+
+def test_a_set_up_that_is_in_the_way(shot, tmp_path):
+    setup(shot, tmp_path / "patches.usda", MESH, "more", faces="0-3")
+    (tmp_path / "top.usda").write_text("#usda 1.0\n(\n    subLayers = [@./patches.usda@]\n)\n")
+    refused(tmp_path / "top.usda", tmp_path / "patches.usda")
+    setup(shot, tmp_path / "patches.usda", MESH, "again", faces="0-3")  # which the stage it sits on does not read
+
+
+# ---- What is no place for a file ----
+
+
+def test_names(shot, tmp_path):
+    refused(shot, tmp_path / ("n" * 300 + ".usda"), "name too long|too long")
+    refused(shot, tmp_path / ("n" * 245 + ".usda"), "the name is too long")
+    refused(shot, tmp_path / "a\0b.usda", "null")
+    refused(shot, Path(""), "must end in")
+    bake_to_file(shot, tmp_path / "OUT.USDA")
+    assert (tmp_path / "OUT.USDA").read_text().startswith("#usda")
+    bake_to_file(shot, tmp_path / "OUT.UsdC")
+    assert Sdf.Layer.FindOrOpen(str(tmp_path / "OUT.UsdC")).GetFileFormat().formatId == "usdc"
+
+
+def test_links(shot, tmp_path):
+    (tmp_path / "circle.usda").symlink_to("circle.usda")
+    refused(shot, tmp_path / "circle.usda", "loop|links")
+    (tmp_path / "format.usda").symlink_to("real.usdc")
+    refused(shot, tmp_path / "format.usda", "another format")
+    (tmp_path / "way.usda").symlink_to("gone/real.usda")
+    refused(shot, tmp_path / "way.usda", "does not exist")
+
+
+def test_pipes(shot, tmp_path):
+    os.mkfifo(tmp_path / "pipe.usda")
+    refused(shot, tmp_path / "pipe.usda", "not a regular file")
+    with pytest.raises(StageError, match="not a regular file"):
+        bake_to_file(tmp_path / "pipe.usda", tmp_path / "out.usda")
+
+
+def test_a_folder_that_may_not_be_looked_into(public_folder):
+    stage, _mesh = stages.patched_stage()
+    shot = stages.save(stage, public_folder / "shot.usda")
+    closed, mine = public_folder / "closed", public_folder / "mine.usda"
+    closed.mkdir()
+    (closed / "in.usda").touch()
+    mine.touch()
+    mine.chmod(0o444)
+    closed.chmod(0)
+    with stages.as_nobody():
+        refused(shot, closed / "out.usda", "denied")
+        refused(shot, mine, "not writable")
+        with pytest.raises(StageError, match="cannot open"):
+            bake_to_file(closed / "in.usda", public_folder / "out.usda")
+    closed.chmod(0o700)
+
+
+def test_a_working_folder_that_is_gone(shot, tmp_path, monkeypatch, capfd):
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    assert main(["bake", str(shot), "-o", "out.usda"]) == 2
+    assert main(["check", "shot.skinslide"]) == 1
+    assert all(line.startswith("error: ") for line in capfd.readouterr().err.splitlines())
+
+
+# ---- Putting it in place ----
+
+
+def test_bytes_are_on_the_disk_before_the_name_is(shot, tmp_path, monkeypatch):
+    calls = []
+    fsync, replace = os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda number: (calls.append("fsync"), fsync(number)))
+    monkeypatch.setattr(os, "replace", lambda *names: (calls.append("replace"), replace(*names)))
+    bake_to_file(shot, tmp_path / "out.usda")
+    setup(shot, tmp_path / "patches.skinslide", MESH, "more", faces="0-3")
+    assert calls == ["fsync", "replace"] * 2
+
+
+@pytest.mark.parametrize("extension", ["skinslide", "usda", "usdc"])
+def test_a_set_up_keeps_the_mode(shot, tmp_path, extension):
+    output = tmp_path / f"patches.{extension}"
+    output.touch()
+    output.chmod(0o640)
+    setup(shot, output, MESH, "more", faces="0-3", force=True)
+    assert output.stat().st_mode & 0o777 == 0o640
+
+
+def test_what_killed_bakes_left_is_removed_after_a_day(shot, tmp_path):
+    names = [
+        ".out.0123abcd.usdc",
+        ".out.0123abcd.usdc.tmpXY",
+        ".out.89abcdef.usdc",
+        ".out.words.usdc",
+        ".other.0123abcd.usdc",
+    ]
+    for name in names:
+        (tmp_path / name).touch()
+    for name in [*names[:2], *names[3:]]:
+        os.utime(tmp_path / name, (0, time.time() - 2 * 24 * 3600))
+    bake_to_file(shot, tmp_path / "out.usdc")
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith(".")) == sorted(names[2:])
+
+
+def test_a_fault_of_the_stage_is_not_blamed_on_the_output(shot, tmp_path, monkeypatch):
+    """USD's errors are of one kind, whichever file they are about."""
+
+    def fail(*_arguments):
+        Sdf.Layer.CreateAnonymous(".usda").ImportFromString("words")
+
+    monkeypatch.setattr(UsdGeom.PointBased, "ComputeExtent", fail)
+    with pytest.raises(Exception) as raised:
+        bake_to_file(shot, tmp_path / "out.usda")
+    assert "out.usda" not in str(raised.value)
+
+
+def test_usd_errors_are_messages(shot, tmp_path, monkeypatch, capfd):
+    def fail(*_arguments):
+        Sdf.Layer.CreateAnonymous(".usda").ImportFromString("words")
+
+    monkeypatch.setattr(UsdGeom.PointBased, "ComputeExtent", fail)
+    assert main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--quiet"]) == 1
+    (line,) = capfd.readouterr().err.splitlines()
+    assert line.startswith("error: USD: ") and "out.usda" not in line
+
+
+@pytest.mark.parametrize("output", ["words.usda", "words.skinslide", "bytes.skinslide", "empty.usda", "image.usdc"])
+def test_a_set_up_over_what_is_no_layer(shot, tmp_path, output):
+    content = {"words": b"words", "bytes": b"\xff\xfe\x00", "empty": b"", "image": b"PXR-USDC\x00\x00\x00"}
+    (tmp_path / output).write_bytes(content[output.split(".")[0]])
+    with pytest.raises(UsageError, match="--force replaces it"):
+        setup(shot, tmp_path / output, MESH, "more", faces="0-3")
+    setup(shot, tmp_path / output, MESH, "more", faces="0-3", force=True)
