@@ -25,11 +25,11 @@ def test_version(capsys):
     assert capsys.readouterr().out == f"skinslide {skinslide.__version__}\n"
 
 
-@pytest.mark.parametrize("command", ["bake", "check", "setup"])
+@pytest.mark.parametrize("command", ["bake", "check", "setup", "stitch"])
 def test_help_names_every_option_and_exit_code(command, capsys):
     assert cli.main([command, "--help"]) == 0
     said = capsys.readouterr().out
-    assert "STAGE" in said and "exit codes: 0 done, 1 failed, 2" in said
+    assert ("CHUNK" if command == "stitch" else "STAGE") in said and "exit codes: 0 done, 1 failed, 2" in said
     assert "130 interrupted" in said and "143 terminated" in said
 
 

@@ -39,7 +39,7 @@ def python_snippets():
 
 def shell_commands():
     """The lines of indented blocks, and inline code, that call the tool."""
-    return re.findall(r"(?:^    |`)(skinslide (?:setup|check|bake) [^`\n]*)", README, re.MULTILINE)
+    return re.findall(r"(?:^    |`)(skinslide (?:setup|check|bake|stitch) [^`\n]*)", README, re.MULTILINE)
 
 
 def test_readme_is_short():
@@ -58,7 +58,7 @@ def test_python_snippet(snippet, folder):
 
 def test_shell_commands_in_order(folder):
     commands = shell_commands()
-    assert len(commands) >= 4
+    assert len(commands) >= 6
     for command in commands:
         words = shlex.split(command.replace("STAGE", "stage.usda"))
         subprocess.run([SCRIPTS / words[0], *words[1:]], cwd=folder, check=True, capture_output=True, text=True)

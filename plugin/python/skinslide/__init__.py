@@ -1,6 +1,7 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `check` says what would be slid; `setup` writes a patch; `Slider` is the same on numpy arrays.
+`bake` corrects a stage, `check` says what would be slid, `setup` writes a patch,
+`stitch` puts chunks of a bake together; `Slider` is the same on numpy arrays.
 """
 
 from pathlib import Path
@@ -26,6 +27,7 @@ from skinslide.slider import (
     choose_lookup,
     version,
 )
+from skinslide.stitch import StitchReport, stitch
 
 __version__ = version()
 
@@ -57,6 +59,7 @@ __all__ = [
     "SliderError",
     "StageError",
     "StageProblems",
+    "StitchReport",
     "Subdivision",
     "UsageError",
     "bake",
@@ -67,4 +70,5 @@ __all__ = [
     "parse_frames",
     "plugin_dir",
     "setup",
+    "stitch",
 ]

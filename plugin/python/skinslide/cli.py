@@ -119,6 +119,12 @@ def _setup(arguments: argparse.Namespace) -> Result:
     return f"{report.text()}\n{arguments.output}: written", DONE
 
 
+def _stitch(arguments: argparse.Namespace) -> Result:
+    from skinslide.stitch import stitch
+
+    return _written(stitch(arguments.chunks, arguments.output).text(), arguments), DONE
+
+
 def _written(report: str, arguments: argparse.Namespace) -> str:
     return f"{report}\n{arguments.output}: written; sublayer it above the cache"
 
@@ -134,6 +140,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_bake(_add_command(commands, "bake", _bake, "slide every frame and write a layer of corrected points"))
     _add_check(_add_command(commands, "check", _check, "say what would be slid, and every problem"))
     _add_setup(_add_command(commands, "setup", _setup, "write a layer that makes a patch of some faces of a mesh"))
+    _add_stitch(_add_command(commands, "stitch", _stitch, "put chunks of frames, baked apart, into one layer"))
     return parser
 
 
@@ -263,6 +270,17 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
         help="the faces where the primvar NAME is above 0, by face (uniform) or on all points (vertex)",
     )
     command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
+
+
+def _add_stitch(command: argparse.ArgumentParser) -> None:
+    command.add_argument("chunks", nargs="+", metavar="CHUNK", help="layers that bake wrote, each with other --frames")
+    command.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="OUT",
+        help="layer of overs to write, the same as one bake of all the frames; replaced in one step at the end",
+    )
 
 
 def _processors() -> int:
