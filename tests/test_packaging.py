@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,19 @@ def test_the_command_is_installed(command):
     program = Path(sys.executable).parent / command[0]
     done = subprocess.run([program, *command[1:], "--version"], capture_output=True, text=True, check=True)
     assert skinslide.__version__ in done.stdout
+
+
+def test_an_interruption_while_the_command_is_loaded(tmp_path):
+    code = """
+        import os, signal, sys
+        from skinslide_command import main
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        os.kill(os.getpid(), signal.SIGINT)  # comes as soon as it is let through
+        sys.exit(main())
+    """
+    command = [sys.executable, "-c", textwrap.dedent(code), "check", tmp_path / "shot.usda"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
 
 
 def test_the_header_is_the_manual():
