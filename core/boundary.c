@@ -181,7 +181,7 @@ skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, sk
     skinslide_status status = given ? find_corners(patch, corners, error) : SKINSLIDE_OK;
     if (status)
         return status;
-    if (boundary == SKINSLIDE_BOUNDARY_CIRCLE) {
+    if (boundary == SKINSLIDE_BOUNDARY_CIRCLE || patch->setup->rule == SKINSLIDE_RULE_RELAXED) {
         place_on_circle(patch);
         return SKINSLIDE_OK;
     }

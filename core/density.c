@@ -39,6 +39,10 @@ skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name,
     for (int32_t v = 0; controls->weight && v < mesh->vertex_count; v++)
         if (isnan(controls->weight[v]))
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: weight of vertex %d is not a number", name, v);
+    for (int32_t v = 0; controls->max_distance && v < mesh->vertex_count; v++)
+        if (!(controls->max_distance[v] >= 0))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: largest distance of vertex %d is %g; it must be >= 0", name,
+                           v, controls->max_distance[v]);
     if (isnan(controls->envelope))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: envelope is not a number", name);
     return SKINSLIDE_OK;
@@ -129,4 +133,13 @@ int32_t ss_slide_weights(const ss_patch *patch, const skinslide_controls *contro
         weights[i] = envelope * clamped_share(weight, &clamped);
     }
     return clamped;
+}
+
+bool ss_slide_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits) {
+    bool any = false;
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        limits[i] = controls->max_distance ? controls->max_distance[patch->mesh_vertex[patch->free_vertex[i]]] : INFINITY;
+        any = any || !isinf(limits[i]);
+    }
+    return any;
 }

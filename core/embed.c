@@ -11,27 +11,13 @@
  * keeps that form, so with the slack carried along (Grassmann, Taksar, Heyman 1985) nothing is ever subtracted, no digit is lost
  * however much densities differ, and u and v are the convex combinations that they should be. It also takes the sums in one
  * order on every machine, which a library built elsewhere need not. */
-#include "internal.h"
+#include "system.h"
 
 #include <amd.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct ss_system {
-    ss_memory memory;
-    char label[160];
-    int32_t vertex_count, edge_count, n; /* n unknowns */
-    int32_t (*edge_vertex)[2];
-    int32_t *unknown; /* [vertex_count] place in the ordered system, -1 where fixed */
-    int32_t *entry;   /* [edge_count] place of the edge in Lx, -1 where an end is fixed */
-    int *Ap, *Ai;     /* upper triangle of the ordered matrix, by columns, without the diagonal */
-    int *Lp, *Li;     /* L by columns, rows ascending, without its diagonal of ones */
-    int *parent;      /* [n] elimination tree */
-    int *block;       /* [block_count + 1] first columns of runs whose rows below the run are the same */
-    int block_count;
-};
 
 struct ss_factor {
     ss_memory memory;

@@ -137,6 +137,8 @@ void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double 
 void ss_force_density(const ss_patch *patch, const double *lengths, const double *paint, double *density);
 /* weight times envelope of every free vertex, in their order: [free_count]. Returns how many values were outside 0..1. */
 int32_t ss_slide_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
+/* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */
+bool ss_slide_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits);
 
 /* ---- embed.c: the only file that knows the solver ---- */
 

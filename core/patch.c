@@ -259,7 +259,8 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
     hold_loops(patch);
     if ((status = ss_place_boundary(patch, rest_points, error)))
         return status;
-    if (patch->loop_count > 1 && patch->setup->holes == SKINSLIDE_HOLES_PINNED)
+    if (patch->loop_count > 1 &&
+        (patch->setup->holes == SKINSLIDE_HOLES_PINNED || patch->setup->rule == SKINSLIDE_RULE_RELAXED))
         if ((status = ss_place_holes(patch, rest_points, error)))
             return status;
     order_free(patch, scratch[0]);

@@ -13,7 +13,7 @@ static int ascending(const void *a, const void *b) {
 
 static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, skinslide_error *error) {
     if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE ||
-        (unsigned)setup->rule > SKINSLIDE_RULE_FAST || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
+        (unsigned)setup->rule > SKINSLIDE_RULE_RELAXED || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no such boundary, holes, rule or interpolation", setup->name);
     if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT && !ss_is_subdivided(mesh))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: interpolation limit needs a mesh that is subdivided",
@@ -97,16 +97,39 @@ static void copy_fixed(const ss_patch *patch, double (*uv)[2]) {
     memcpy(uv, patch->fixed_uv, (size_t)patch->vertex_count * sizeof *uv);
 }
 
-/* Rest embedding of a part with its paint: needs scratch for the forces [edge_count]. */
-static skinslide_status embed_rest(ss_part *part, double *density, skinslide_error *error) {
+/* Rest embedding of a part with paint: needs scratch for the forces [edge_count]. */
+static skinslide_status embed_rest(ss_part *part, const ss_system *system, const double *paint, double *density,
+                                   skinslide_error *error) {
     ss_factor *factor = NULL;
-    skinslide_status status = ss_factor_create(part->system, &factor, error);
+    skinslide_status status = ss_factor_create(system, &factor, error);
     if (!status) {
-        ss_force_density(part->patch, part->patch->rest_length, part->paint, density);
+        ss_force_density(part->patch, part->patch->rest_length, paint, density);
         copy_fixed(part->patch, part->rest_uv);
-        status = ss_embed(part->system, factor, density, part->rest_uv, error);
+        status = ss_embed(system, factor, density, part->rest_uv, error);
     }
     ss_factor_destroy(factor);
+    return status;
+}
+
+/* The plane of the relaxed rule, which serves rest and every frame: every loop held and no paint, so that it does not fold.
+ * Needs scratch for the forces and for no paint, [edge_count] each. */
+static skinslide_status embed_plane(ss_part *part, double *density, double *no_paint, skinslide_error *error) {
+    const ss_patch *patch = part->patch;
+    ss_memory scratch = {0};
+    ss_system *system = NULL;
+    uint8_t *fixed = SS_NEW(&scratch, uint8_t, patch->vertex_count);
+    skinslide_status status = fixed ? SKINSLIDE_OK : ss_out_of_memory(error);
+    for (int32_t v = 0; v < patch->vertex_count && !status; v++)
+        fixed[v] = patch->vertex_loop[v] >= 0;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        no_paint[e] = 1;
+    ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, fixed};
+    if (!status)
+        status = ss_system_create(&net, patch->label, &system, error);
+    if (!status)
+        status = embed_rest(part, system, no_paint, density, error);
+    ss_system_destroy(system);
+    ss_free(&scratch);
     return status;
 }
 
@@ -116,8 +139,10 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
     ss_memory scratch = {0};
     part->paint = SS_NEW(memory, double, patch->faces.edge_count);
     part->weights = SS_NEW(memory, double, patch->free_count);
+    part->limits = SS_NEW(memory, double, patch->free_count);
     part->rest_uv = ss_new(memory, patch->vertex_count, sizeof *part->rest_uv);
     double *density = SS_NEW(&scratch, double, patch->faces.edge_count);
+    double *no_paint = SS_NEW(&scratch, double, patch->faces.edge_count);
     skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, patch->fixed};
     if (!status)
@@ -125,8 +150,12 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
     if (!status) {
         ss_paint(patch, controls, part->paint);
         part->clamped_weights = ss_slide_weights(patch, controls, part->weights);
-        status = embed_rest(part, density, error);
+        part->limited = ss_slide_limits(patch, controls, part->limits);
+        status = patch->setup->rule == SKINSLIDE_RULE_RELAXED ? embed_plane(part, density, no_paint, error)
+                                                              : embed_rest(part, part->system, part->paint, density, error);
     }
+    if (!status)
+        status = ss_surface_create(patch, &part->surface, error);
     if (!status)
         part->rest_layout = ss_lay_out(patch, (const double(*)[2])part->rest_uv);
     ss_free(&scratch);
@@ -307,6 +336,7 @@ void skinslide_slider_destroy(skinslide_slider *slider) {
         return;
     for (int32_t p = 0; p < slider->part_count; p++) {
         ss_cage_destroy(slider->parts[p].cage);
+        ss_surface_destroy(slider->parts[p].surface);
         ss_system_destroy(slider->parts[p].system);
         ss_patch_destroy(slider->parts[p].patch);
     }
@@ -321,6 +351,7 @@ static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_be
     int32_t edges = patch->faces.edge_count, vertices = patch->vertex_count, free_count = patch->free_count;
     bench->own_paint = SS_NEW(memory, double, edges);
     bench->own_weights = SS_NEW(memory, double, free_count);
+    bench->own_limits = SS_NEW(memory, double, free_count);
     bench->own_rest_uv = ss_new(memory, vertices, sizeof *bench->own_rest_uv);
     bench->lengths = SS_NEW(memory, double, edges);
     bench->density = SS_NEW(memory, double, edges);
@@ -336,7 +367,13 @@ static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_be
     skinslide_status status = ss_factor_create(part->system, &bench->factor, error);
     if (!status && part->cage)
         status = ss_cage_work_create(part->cage, &bench->cage, error);
-    return status ? status : ss_locator_create(patch, &bench->locator, error);
+    if (!status)
+        status = ss_locator_create(patch, &bench->locator, error);
+    if (!status)
+        status = ss_traveller_create(part->surface, &bench->traveller, error);
+    if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
+        status = ss_relaxer_create(part->surface, part->system, &bench->relaxer, error);
+    return status;
 }
 
 skinslide_status ss_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,
@@ -375,6 +412,8 @@ void skinslide_workspace_destroy(skinslide_workspace *workspace) {
         ss_factor_destroy(workspace->benches[p].factor);
         ss_locator_destroy(workspace->benches[p].locator);
         ss_cage_work_destroy(workspace->benches[p].cage);
+        ss_relaxer_destroy(workspace->benches[p].relaxer);
+        ss_traveller_destroy(workspace->benches[p].traveller);
     }
     ss_free(&workspace->memory);
     free(workspace);

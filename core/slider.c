@@ -26,15 +26,20 @@ static void lap(double *since, double *sum) {
 static skinslide_status apply_controls(const ss_part *part, ss_bench *bench, const skinslide_controls *controls,
                                        skinslide_patch_result *result, skinslide_error *error) {
     bench->paint = part->paint, bench->weights = part->weights, bench->rest_uv = (const double(*)[2])part->rest_uv;
+    bench->limits = part->limits, bench->limited = part->limited;
     result->clamped_weights = part->clamped_weights;
     if (!controls)
         return SKINSLIDE_OK;
     bench->weights = bench->own_weights;
     result->clamped_weights = ss_slide_weights(part->patch, controls, bench->own_weights);
     ss_paint(part->patch, controls, bench->own_paint);
+    bench->limits = bench->own_limits, bench->limited = ss_slide_limits(part->patch, controls, bench->own_limits);
     if (memcmp(bench->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) == 0)
         return SKINSLIDE_OK;
-    bench->paint = bench->own_paint, bench->rest_uv = (const double(*)[2])bench->own_rest_uv;
+    bench->paint = bench->own_paint;
+    if (bench->relaxer) /* its plane knows no paint */
+        return SKINSLIDE_OK;
+    bench->rest_uv = (const double(*)[2])bench->own_rest_uv;
     ss_force_density(part->patch, part->patch->rest_length, bench->paint, bench->density);
     return ss_embed(part->system, bench->factor, bench->density, bench->own_rest_uv, error);
 }
@@ -64,6 +69,10 @@ static skinslide_status embed_patch(skinslide_workspace *workspace, int32_t p, c
     ss_force_density(patch, bench->lengths, bench->paint, bench->density);
     lap(&time, &result->density_seconds);
 
+    if (bench->relaxer) {
+        memcpy(bench->uv, part->rest_uv, (size_t)patch->vertex_count * sizeof *bench->uv);
+        return SKINSLIDE_OK;
+    }
     if ((status = ss_embed(part->system, bench->factor, bench->density, bench->uv, error)))
         return status;
     lap(&time, &result->embed_seconds);
@@ -78,13 +87,12 @@ static skinslide_status embed_patch(skinslide_workspace *workspace, int32_t p, c
     return SKINSLIDE_OK;
 }
 
-/* Where each vertex is in it, and so on the deformed mesh. */
-static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
+/* Where each vertex is in it, no farther than the artist lets it. */
+static void locate_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
     const ss_patch *patch = workspace->slider->parts[p].patch;
     ss_bench *bench = &workspace->benches[p];
     skinslide_patch_result *result = &workspace->results[p];
     const double(*uv)[2] = (const double(*)[2])bench->uv;
-    double time = now();
     bool asked = workspace->idbuffer && bench->regular && patch->free_count > 0;
     bool proposed = asked && ss_idbuffer_candidates(workspace->idbuffer, p, bench->candidates);
     ss_located located = ss_locate(bench->locator, uv, bench->regular, (const double(*)[2])bench->queries,
@@ -96,7 +104,49 @@ static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *
     result->searched_vertices = located.searched;
     result->clamped_vertices = located.clamped;
     result->walk_steps = located.steps;
-    lap(&time, &result->locate_seconds);
+    if (bench->limited)
+        result->clamped_vertices +=
+            ss_travel(bench->traveller, points, uv, (ss_allowance){NULL, bench->limits}, bench->locations);
+}
+
+static bool slides_fully(const ss_patch *patch, const double *weights) {
+    for (int32_t i = 0; i < patch->free_count; i++)
+        if (weights[i] != 1)
+            return false;
+    return true;
+}
+
+/* The same by the relaxed rule. */
+static void relax_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
+    ss_bench *bench = &workspace->benches[p];
+    skinslide_patch_result *result = &workspace->results[p];
+    const double(*uv)[2] = (const double(*)[2])bench->uv;
+    result->relax_steps = ss_relax(bench->relaxer, points, uv, bench->paint, bench->locations);
+    if (bench->limited || !slides_fully(workspace->slider->parts[p].patch, bench->weights))
+        result->clamped_vertices =
+            ss_travel(bench->traveller, points, uv, (ss_allowance){bench->weights, bench->limits}, bench->locations);
+    result->folded_faces = ss_count_turned(bench->relaxer, bench->locations);
+}
+
+/* Queries are where vertices went, which is elsewhere than asked where they were relaxed or held back. */
+static void follow_locations(const ss_patch *patch, ss_bench *bench) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        bool stays = bench->locations[i].face == SS_STAYS;
+        memcpy(bench->queries[i], stays ? bench->uv[patch->free_vertex[i]] : bench->locations[i].uv, sizeof *bench->queries);
+    }
+}
+
+/* Where each vertex belongs, and so on the deformed mesh. */
+static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
+    const ss_patch *patch = workspace->slider->parts[p].patch;
+    ss_bench *bench = &workspace->benches[p];
+    skinslide_patch_result *result = &workspace->results[p];
+    const double(*uv)[2] = (const double(*)[2])bench->uv;
+    double time = now();
+    (bench->relaxer ? relax_patch : locate_patch)(workspace, p, points);
+    if (bench->relaxer || bench->limited)
+        follow_locations(patch, bench);
+    lap(&time, bench->relaxer ? &result->relax_seconds : &result->locate_seconds);
 
     ss_interpolate(patch, uv, bench->locations, points, bench->corner_weights, bench->displacement);
     if (bench->cage) {

@@ -2,7 +2,8 @@
 #ifndef SKINSLIDE_SLIDER_H
 #define SKINSLIDE_SLIDER_H
 
-#include "internal.h"
+#include "relax.h"
+#include "travel.h"
 
 /* One patch, ready to slide: immutable. */
 typedef struct ss_part {
@@ -11,9 +12,12 @@ typedef struct ss_part {
     double *paint;        /* [edge_count] of the set-up's controls */
     double (*rest_uv)[2]; /* [vertex_count] U0 with that paint */
     double *weights;      /* [free_count] weight times envelope of the set-up's controls */
+    double *limits;       /* [free_count] largest distances of the set-up's controls */
+    bool limited;         /* whether any is finite */
     int32_t clamped_weights;
     ss_layout rest_layout;
     ss_cage *cage; /* NULL unless its interpolation is LIMIT */
+    ss_surface *surface;
 } ss_part;
 
 struct skinslide_slider {
@@ -29,9 +33,13 @@ struct skinslide_slider {
 typedef struct ss_bench {
     ss_factor *factor;
     ss_locator *locator;
-    const double *paint, *weights; /* the part's, or own_paint [edge_count] and own_weights [free_count] */
-    const double (*rest_uv)[2];    /* the part's, or own_rest_uv */
-    double *own_paint, *own_weights, (*own_rest_uv)[2];
+    ss_relaxer *relaxer; /* NULL unless the rule is RELAXED */
+    ss_traveller *traveller;
+    const double *paint;            /* the part's, or own_paint [edge_count] */
+    const double *weights, *limits; /* the part's, or own_weights and own_limits [free_count] */
+    bool limited;
+    const double (*rest_uv)[2]; /* the part's, or own_rest_uv */
+    double *own_paint, *own_weights, *own_limits, (*own_rest_uv)[2];
     double *lengths, *density; /* [edge_count] */
     double (*uv)[2];           /* [vertex_count] Ud, fixed vertices in place */
     double (*queries)[2];      /* [free_count] */

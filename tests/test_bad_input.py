@@ -270,7 +270,7 @@ CASES = [
     Case("corners: no such point", prop("corners", [0, 6, 48, 49]), "corners[3] is 49"),
     Case("token: boundary", prop("boundary", "oval"), "'oval'; it must be one of auto, square, circle"),
     Case("token: holes", prop("holes", "open"), "'open'; it must be one of pinned, free"),
-    Case("token: rule", prop("forceDensityRule", "slow"), "'slow'; it must be one of unit, fast"),
+    Case("token: rule", prop("forceDensityRule", "slow"), "'slow'; it must be one of unit, fast, relaxed"),
     Case("token: interpolation", prop("interpolation", "cubic"), "'cubic'; it must be one of auto, linear"),
     Case("interpolation: limit", prop("interpolation", "limit"), "limit needs a mesh that is subdivided"),
     Case("prim: point instancer", in_point_instancer, "prototype of the point instancer /World/crowd", None),

@@ -94,7 +94,7 @@ def test_fields_are_those_of_the_header(sheet, rest):
 def test_tokens_are_those_of_the_stage():
     assert slider.tokens("boundary") == ("auto", "square", "circle")
     assert slider.tokens("holes") == ("pinned", "free")
-    assert slider.tokens("rule") == ("unit", "fast")
+    assert slider.tokens("rule") == ("unit", "fast", "relaxed")
     assert slider.tokens("interpolation") == ("auto", "linear", "meanValue", "limit")
     assert slider.tokens("lookup") == ("auto", "egl", "exact")
 
@@ -137,7 +137,7 @@ def test_arrays_of_other_types_and_orders(sheet, rest, convert):
         ({"faces": np.array([0.5])}, r"patch elbow: faces: float64 values do not fit int32"),
         ({"faces": np.array([2**40])}, r"patch elbow: faces: int64 values do not fit int32"),
         ({"corners": np.array([1, 2, 3])}, r"patch elbow: corners: the shape is 3; it must be 4"),
-        ({"rule": "stiff"}, r"patch elbow: rule 'stiff' is not one of unit, fast"),
+        ({"rule": "stiff"}, r"patch elbow: rule 'stiff' is not one of unit, fast, relaxed"),
         ({"boundary": "SQUARE"}, r"patch elbow: boundary 'SQUARE' is not one of auto, square, circle"),
         ({"controls": Controls(weight=np.ones(3))}, rf"patch elbow: weight: the shape is 3; it must be {VERTICES}"),
         ({"controls": Controls(vertex_density=np.ones(1))}, rf"vertex density: the shape is 1; it must be {VERTICES}"),

@@ -184,8 +184,8 @@ bool choose_way(const fixture *f, int32_t way, skinslide_patch_setup *choices) {
     *choices = setup_of(NULL, 0);
     choices->boundary = way & 1 ? SKINSLIDE_BOUNDARY_SQUARE : SKINSLIDE_BOUNDARY_CIRCLE;
     choices->holes = way & 2 ? SKINSLIDE_HOLES_FREE : SKINSLIDE_HOLES_PINNED;
-    choices->rule = way & 4 ? SKINSLIDE_RULE_FAST : SKINSLIDE_RULE_UNIT;
-    choices->interpolation = way & 8 ? SKINSLIDE_INTERPOLATION_MEAN_VALUE : SKINSLIDE_INTERPOLATION_LINEAR;
+    choices->interpolation = way & 4 ? SKINSLIDE_INTERPOLATION_MEAN_VALUE : SKINSLIDE_INTERPOLATION_LINEAR;
+    choices->rule = (skinslide_rule)(way / 8);
     return (f->square || !(way & 1)) && (f->holes || !(way & 2));
 }
 

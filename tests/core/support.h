@@ -57,7 +57,7 @@ void embed_densely(const ss_net *net, const double *density, double (*uv)[2]);
 ss_location search_all(const ss_faces *faces, const double (*uv)[2], const double p[2], bool *inside);
 
 /* Every way to set up a fixture: boundaries x holes x rules x interpolations. Some are no way for the fixture: false. */
-enum { WAY_COUNT = 16 };
+enum { WAY_COUNT = 24 };
 bool choose_way(const fixture *f, int32_t way, skinslide_patch_setup *choices);
 
 /* Random controls for a whole mesh, which own their arrays. */

@@ -188,7 +188,10 @@ static void turn_quarter(float *points, int32_t vertex_count) {
     }
 }
 
+/* The relaxed rule's axes in the tangent planes do not turn with the mesh, so that it rounds differently. */
 static void check_quarter_turn(const fixture *f, skinslide_patch_setup choices) {
+    if (choices.rule == SKINSLIDE_RULE_RELAXED)
+        return;
     float *points = random_pose(&f->mesh, 7), *slid = slide_all(&f->mesh, points, choices);
     turn_quarter(points, f->mesh.vertex_count), turn_quarter(slid, f->mesh.vertex_count);
     float *turned = slide_all(&f->mesh, points, choices);
@@ -300,7 +303,7 @@ static void check_embedding(const rig *r, const skinslide_patch_setup *choices) 
 
 /* A disk never folds, by Tutte's theorem; uv stays inside, to the rounding of a weighted mean. With pinned holes there is no
  * such theorem: unpainted, no fold was met in these poses, which are a sample; painted at random, a thin ring of skin does fold
- * now and then. Free holes may fold. Folds there are counted, not asserted. */
+ * now and then. Free holes may fold. So may relaxed slides where weights differ. Folds there are counted, not asserted. */
 static void check_poses(const fixture *f, skinslide_patch_setup choices) {
     if (choices.interpolation != SKINSLIDE_INTERPOLATION_LINEAR)
         return; /* nothing to do with the embedding */
@@ -310,7 +313,8 @@ static void check_poses(const fixture *f, skinslide_patch_setup choices) {
         painted paint = paint_at_random(&f->mesh, seed);
         skinslide_patch_result result;
         float *slid = slide_with(&r, &f->mesh, points, seed % 2 ? &paint.controls : NULL, &result);
-        if (f->holes == 0 || (choices.holes == SKINSLIDE_HOLES_PINNED && seed % 2 == 0))
+        bool weighted = choices.rule == SKINSLIDE_RULE_RELAXED && seed % 2;
+        if ((f->holes == 0 && !weighted) || (choices.holes == SKINSLIDE_HOLES_PINNED && seed % 2 == 0))
             assert_int_equal(result.folded_faces, 0);
         check_embedding(&r, &choices);
         free(points), free(slid);

@@ -130,10 +130,14 @@ typedef enum skinslide_holes {
     SKINSLIDE_HOLES_FREE    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
 } skinslide_holes;
 
-/* Force density of an edge of length l (paper, section 3.1). */
+/* Where skin slides to. The first two are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
+ * plane. The third goes farther, and knows no plane. */
 typedef enum skinslide_rule {
-    SKINSLIDE_RULE_UNIT, /* 1/l */
-    SKINSLIDE_RULE_FAST  /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
+    SKINSLIDE_RULE_UNIT,   /* 1/l */
+    SKINSLIDE_RULE_FAST,   /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
+    SKINSLIDE_RULE_RELAXED /* to where every edge is as near its rest length as the deformed surface allows: a minimum of the
+                              sum of k log^2(l / rest l), k the painted force density; no face turns over. The patch is always
+                              laid out in the circle, holes pinned, and that at rest: corners and boundary count for nothing */
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
@@ -157,12 +161,14 @@ typedef struct skinslide_controls {
     const int32_t *edges;        /* [edge_count][2] mesh vertices of edges of the patch, each edge at most once; or NULL */
     const float *edge_density;   /* [edge_count] */
     int32_t edge_count;
-    const float *weight; /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted) */
-    float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
+    const float *weight;       /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted) */
+    float envelope;            /* scales every weight, 0..1 (clamped, and counted once) */
+    const float *max_distance; /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
+                                  object units; measured on the triangles that `linear` interpolates in */
 } skinslide_controls;
 
 #define SKINSLIDE_CONTROLS_DEFAULT                                                                                             \
-    { 0, 0, 0, 0, 0, 0, 1.0f }
+    { 0, 0, 0, 0, 0, 0, 1.0f, 0 }
 
 /* One patch as an artist sets it up. Faces that fall into several pieces, connected through edges, become several patches with
  * the same settings; corners then count for the piece that has them. Start from SKINSLIDE_PATCH_SETUP_DEFAULT: an envelope of 0,
@@ -195,7 +201,7 @@ typedef struct skinslide_slider skinslide_slider;
  * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of repeated
  * vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an edge with three faces,
  * faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not > 0, a weight not
- * finite, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED,
+ * finite, a largest distance not >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED,
  * OUT_OF_MEMORY. With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that
  * is not an edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a
  * hole of the surface), BAD_CONTROL (the mesh is not subdivided). */
@@ -305,19 +311,23 @@ typedef struct skinslide_patch_result {
     int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
     int32_t damped_vertices;   /* LIMIT only: brought back towards their place under LINEAR */
-    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes */
+    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes. Of the
+                                  relaxed rule: in the slid patch; none but by weights or largest distances that differ */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t found_in_centre;   /* vertices in the face of their own texel of the texture */
     int32_t found_in_3x3;      /* in another face of the texels around it */
     int32_t walked_vertices;   /* found by walking */
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
     int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was walked for */
+    int32_t relax_steps;       /* of the relaxed rule: each solves for all vertices at once. Done when one more would lower the
+                                  sum by less than a thousandth of what it is in the cache */
     int64_t walk_steps;        /* faces entered by walking, in all */
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
     double stretch_after;      /* and in the result, overlapping patches included */
     double density_seconds;
     double embed_seconds;
+    double relax_seconds; /* of the relaxed rule, in place of embedding and locating */
     double locate_seconds;
     double interpolate_seconds;
 } skinslide_patch_result;

@@ -5,6 +5,8 @@ Values off the patch do not count, since paint is often 0 there: they are replac
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from pxr import Usd, UsdGeom
 
@@ -41,7 +43,23 @@ def envelope(prim: Usd.Prim, patch: str) -> Reading[float]:
 
 def weight(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[np.ndarray | None]:
     """Slide weight by mesh vertex (V,), or None where it is not painted."""
-    primvar, inside = names.inherited_primvar(prim, patch, "weight"), topology.vertices_of(faces)
+    return _by_vertex(names.inherited_primvar(prim, patch, "weight"), topology, faces, np.isfinite, "a number")
+
+
+def max_distance(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[np.ndarray | None]:
+    """How far each mesh vertex may slide (V,), or None where it is not painted: no limit."""
+    return _by_vertex(names.inherited_primvar(prim, patch, "maxDistance"), topology, faces, _is_distance, "0 or more")
+
+
+def _by_vertex(
+    primvar: UsdGeom.Primvar,
+    topology: Topology,
+    faces: np.ndarray,
+    is_good: Callable[[np.ndarray], np.ndarray],
+    wanted: str,
+) -> Reading[np.ndarray | None]:
+    """A painted value by mesh vertex (V,), 0 off the patch, or None where it is not painted."""
+    inside = topology.vertices_of(faces)
     sizes = {UsdGeom.Tokens.vertex: (topology.vertex_count, "points"), UsdGeom.Tokens.constant: None}
 
     def read(time: Usd.TimeCode) -> np.ndarray | None:
@@ -49,9 +67,9 @@ def weight(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) ->
         if values is None:
             return None
         if primvar.GetInterpolation() == UsdGeom.Tokens.constant:
-            _check(np.isfinite(values), values, primvar.GetName(), "a number")
+            _check(is_good(values), values, primvar.GetName(), wanted)
             return np.full(topology.vertex_count, values[0], np.float32)
-        _check(np.isfinite(values) | ~inside, values, primvar.GetName(), "a number")
+        _check(is_good(values) | ~inside, values, primvar.GetName(), wanted)
         return np.where(inside, values, 0)
 
     return Reading(read, primvar_sources(primvar))
@@ -127,9 +145,12 @@ def corners(prim: Usd.Prim, patch: str, vertex_count: int) -> np.ndarray | None:
 class PatchControls:
     """The controls of one patch over time."""
 
-    def __init__(self, envelope: Reading, weight: Reading, density: Reading, edge_density: Reading):
-        self._envelope, self._weight, self._density, self._edges = envelope, weight, density, edge_density
-        self._readings = (envelope, weight, density, edge_density)
+    def __init__(
+        self, envelope: Reading, weight: Reading, max_distance: Reading, density: Reading, edge_density: Reading
+    ):
+        self._envelope, self._weight, self._max_distance = envelope, weight, max_distance
+        self._density, self._edges = density, edge_density
+        self._readings = (envelope, weight, max_distance, density, edge_density)
 
     @property
     def vary(self) -> bool:
@@ -145,6 +166,7 @@ class PatchControls:
             **self._edges.at(time),
             weight=self._weight.at(time),
             envelope=self._envelope.at(time),
+            max_distance=self._max_distance.at(time),
         )
 
 
@@ -172,6 +194,10 @@ def _painted(primvar: UsdGeom.Primvar, time: Usd.TimeCode, sizes: Sizes) -> np.n
     elif len(values) != 1:
         raise Fault(f"{name} has interpolation constant but {len(values)} values; is vertex missing?")
     return values
+
+
+def _is_distance(values: np.ndarray) -> np.ndarray:
+    return values >= 0
 
 
 def _is_density(values: np.ndarray) -> np.ndarray:

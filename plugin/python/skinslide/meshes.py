@@ -229,6 +229,7 @@ def _read_patch(
     readings = (
         attempt(controls.envelope),
         attempt(controls.weight, topology, painted),
+        attempt(controls.max_distance, topology, painted),
         attempt(controls.density, topology, painted),
         attempt(controls.edge_density),
     )

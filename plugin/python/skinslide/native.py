@@ -24,7 +24,10 @@ class SliderError(RuntimeError):
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """What an artist paints and animates on a patch, for a mesh of V vertices and F faces. None is 1 everywhere."""
+    """What an artist paints and animates on a patch, for a mesh of V vertices and F faces.
+
+    None is 1 everywhere, and of max_distance no limit.
+    """
 
     vertex_density: np.ndarray | None = None  # (V,)
     face_density: np.ndarray | None = None  # (F,)
@@ -32,6 +35,7 @@ class Controls:
     edge_density: np.ndarray | None = None  # (k,)
     weight: np.ndarray | None = None  # (V,), 0..1
     envelope: float = 1.0
+    max_distance: np.ndarray | None = None  # (V,), along the surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +177,12 @@ class Arguments:
         self.fill_controls(target.controls, patch.controls, sizes, where)
 
     def fill_controls(self, target: Any, controls: Controls, sizes: Sizes, where: str) -> None:
-        counts = {"vertex_density": sizes.vertices, "face_density": sizes.faces, "weight": sizes.vertices}
+        counts = {
+            "vertex_density": sizes.vertices,
+            "face_density": sizes.faces,
+            "weight": sizes.vertices,
+            "max_distance": sizes.vertices,
+        }
         for name, count in counts.items():
             values = getattr(controls, name)
             setattr(target, name, self.optional(values, np.float32, (count,), where + name.replace("_", " ")))

@@ -9,7 +9,7 @@ import numpy as np
 from skinslide.problems import Problem, frame_text
 from skinslide.slider import PatchInfo, PatchResult
 
-STAGES = ("density", "embed", "locate", "interpolate")
+STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
 # Counts that say a result is less than it should be.
 _AT_REST = {

@@ -1,0 +1,184 @@
+/* L D L' with blocks of two by two, on the pattern that embed.c found: column by column, each taking what the columns before it
+ * leave there. Columns whose rows are the same go together, as in embed.c. Sums are in one order on every machine. */
+#include "blocks.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "system.h"
+
+skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skinslide_error *error) {
+    ss_blocks *blocks = calloc(1, sizeof *blocks);
+    if (!blocks)
+        return ss_out_of_memory(error);
+    ss_memory *memory = &blocks->memory;
+    int32_t n = system->n;
+    blocks->system = system;
+    blocks->Lx = ss_new(memory, system->Lp[n], sizeof *blocks->Lx);
+    blocks->own = ss_new(memory, n, sizeof *blocks->own);
+    blocks->right = ss_new(memory, n, sizeof *blocks->right);
+    blocks->pivot = ss_new(memory, n, sizeof *blocks->pivot);
+    blocks->inverse = ss_new(memory, n, sizeof *blocks->inverse);
+    blocks->work = ss_new(memory, n, sizeof *blocks->work);
+    blocks->first = SS_NEW(memory, int, n);
+    blocks->next = SS_NEW(memory, int, n);
+    blocks->reached = SS_NEW(memory, int, n);
+    if (memory->failed) {
+        ss_blocks_destroy(blocks);
+        return ss_out_of_memory(error);
+    }
+    *out = blocks;
+    return SKINSLIDE_OK;
+}
+
+void ss_blocks_destroy(ss_blocks *blocks) {
+    if (!blocks)
+        return;
+    ss_free(&blocks->memory);
+    free(blocks);
+}
+
+void ss_blocks_clear(ss_blocks *blocks) {
+    size_t n = (size_t)blocks->system->n;
+    memset(blocks->Lx, 0, (size_t)blocks->system->Lp[n] * sizeof *blocks->Lx);
+    memset(blocks->own, 0, n * sizeof *blocks->own);
+    memset(blocks->right, 0, n * sizeof *blocks->right);
+}
+
+int32_t ss_blocks_unknown(const ss_blocks *blocks, int32_t vertex) {
+    return blocks->system->unknown[vertex];
+}
+
+double *ss_blocks_own(ss_blocks *blocks, int32_t unknown) {
+    return blocks->own[unknown];
+}
+
+double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *first_is_row) {
+    const ss_system *system = blocks->system;
+    *first_is_row = system->unknown[system->edge_vertex[edge][0]] > system->unknown[system->edge_vertex[edge][1]];
+    return blocks->Lx[system->entry[edge]];
+}
+
+/* ---- Blocks ---- */
+
+/* c -= a b */
+static void subtract_product(const double *restrict a, const double *restrict b, double *restrict c) {
+    c[0] -= a[0] * b[0] + a[1] * b[2];
+    c[1] -= a[0] * b[1] + a[1] * b[3];
+    c[2] -= a[2] * b[0] + a[3] * b[2];
+    c[3] -= a[2] * b[1] + a[3] * b[3];
+}
+
+/* c = a b */
+static void multiply(const double a[4], const double b[4], double c[4]) {
+    c[0] = a[0] * b[0] + a[1] * b[2];
+    c[1] = a[0] * b[1] + a[1] * b[3];
+    c[2] = a[2] * b[0] + a[3] * b[2];
+    c[3] = a[2] * b[1] + a[3] * b[3];
+}
+
+static bool invert(const double a[4], double out[4]) {
+    double determinant = a[0] * a[3] - a[1] * a[2];
+    out[0] = a[3] / determinant, out[1] = -a[1] / determinant, out[2] = -a[2] / determinant, out[3] = a[0] / determinant;
+    return a[0] > 0 && a[3] > 0 && determinant > 0 && isfinite(out[0]) && isfinite(out[3]);
+}
+
+/* ---- The factor ---- */
+
+/* What column j, at its entry in row k, has to leave in column k: D times that entry, transposed. Takes it out of k's own. */
+static void find_force(ss_blocks *blocks, int j, int entry, int k, double force[4]) {
+    const double *at = blocks->Lx[entry], turned[4] = {at[0], at[2], at[1], at[3]};
+    multiply(blocks->pivot[j], turned, force);
+    subtract_product(at, force, blocks->own[k]);
+}
+
+/* Lists a run of columns under the next of the rows below it that they have an entry in. */
+static void list_run(ss_blocks *blocks, int run, int reached) {
+    const ss_system *system = blocks->system;
+    int last = system->block[run + 1] - 1, row = system->Lp[last] + reached;
+    blocks->reached[run] = reached;
+    if (row == system->Lp[last + 1])
+        return;
+    blocks->next[run] = blocks->first[system->Li[row]];
+    blocks->first[system->Li[row]] = run;
+}
+
+/* From the columns of k's own run before it: rows match one to one. */
+static void gather_own(ss_blocks *blocks, int begin, int k) {
+    const int *Lp = blocks->system->Lp;
+    double force[4];
+    for (int j = begin; j < k; j++) {
+        int entry = Lp[j] + k - j - 1;
+        find_force(blocks, j, entry, k, force);
+        for (int p = Lp[k], q = entry + 1; p < Lp[k + 1]; p++, q++)
+            subtract_product(blocks->Lx[q], force, blocks->Lx[p]);
+    }
+}
+
+/* From the runs that have an entry in row k, by rows into work. */
+static void gather_others(ss_blocks *blocks, int k) {
+    const ss_system *system = blocks->system;
+    double force[4];
+    for (int run = blocks->first[k], next; run >= 0; run = next) {
+        int begin = system->block[run], end = system->block[run + 1], reached = blocks->reached[run];
+        next = blocks->next[run];
+        for (int j = begin; j < end; j++) {
+            int entry = system->Lp[j] + (end - 1 - j) + reached;
+            find_force(blocks, j, entry, k, force);
+            for (int p = entry + 1; p < system->Lp[j + 1]; p++)
+                subtract_product(blocks->Lx[p], force, blocks->work[system->Li[p]]);
+        }
+        list_run(blocks, run, reached + 1);
+    }
+}
+
+static bool finish_column(ss_blocks *blocks, int k) {
+    const ss_system *system = blocks->system;
+    memcpy(blocks->pivot[k], blocks->own[k], sizeof *blocks->own);
+    bool good = invert(blocks->pivot[k], blocks->inverse[k]);
+    for (int p = system->Lp[k]; p < system->Lp[k + 1]; p++) {
+        double *work = blocks->work[system->Li[p]], sum[4];
+        for (int i = 0; i < 4; i++)
+            sum[i] = blocks->Lx[p][i] + work[i], work[i] = 0;
+        multiply(sum, blocks->inverse[k], blocks->Lx[p]);
+    }
+    return good;
+}
+
+bool ss_blocks_factor(ss_blocks *blocks) {
+    const ss_system *system = blocks->system;
+    bool good = true;
+    for (int k = 0; k < system->n; k++)
+        blocks->first[k] = -1;
+    for (int run = 0; run < system->block_count; run++) {
+        for (int k = system->block[run]; k < system->block[run + 1]; k++) {
+            gather_own(blocks, system->block[run], k);
+            gather_others(blocks, k);
+            good = finish_column(blocks, k) && good;
+        }
+        list_run(blocks, run, 0);
+    }
+    return good;
+}
+
+void ss_blocks_solve(ss_blocks *blocks) {
+    const int *Lp = blocks->system->Lp, *Li = blocks->system->Li, n = blocks->system->n;
+    double(*x)[2] = blocks->right;
+    for (int j = 0; j < n; j++)
+        for (int p = Lp[j]; p < Lp[j + 1]; p++) {
+            const double *l = blocks->Lx[p];
+            x[Li[p]][0] -= l[0] * x[j][0] + l[1] * x[j][1];
+            x[Li[p]][1] -= l[2] * x[j][0] + l[3] * x[j][1];
+        }
+    for (int j = n - 1; j >= 0; j--) {
+        const double *inverse = blocks->inverse[j];
+        double a = inverse[0] * x[j][0] + inverse[1] * x[j][1], b = inverse[2] * x[j][0] + inverse[3] * x[j][1];
+        for (int p = Lp[j]; p < Lp[j + 1]; p++) {
+            const double *l = blocks->Lx[p];
+            a -= l[0] * x[Li[p]][0] + l[2] * x[Li[p]][1];
+            b -= l[1] * x[Li[p]][0] + l[3] * x[Li[p]][1];
+        }
+        x[j][0] = a, x[j][1] = b;
+    }
+}
