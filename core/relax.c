@@ -14,7 +14,7 @@
 #define TOLERANCE         1e-3 /* of E in the cache */
 #define EASE              10   /* times the tolerance, where steps begin to be taken in part */
 #define LEAST_PART        0.01
-#define HOLD              0.005
+#define HOLD              0.003
 #define LEAST_DAMPING     0.01
 #define MOST_HALVINGS     6
 #define MOST_STEPS        30

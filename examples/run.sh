@@ -24,3 +24,6 @@ say "Lookup by colour-ID rendering"
 
 say "How far the limit surface of the result is from that of the cache, as a share of the patch's size"
 "$python" "$root/examples/limit_distance.py" "$out"/*/stage.usda
+
+say "Share of the removable stretch that each rule removes"
+"$python" "$root/examples/share.py" "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/share.txt"

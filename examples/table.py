@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 ORDER = ("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump")
-STAGES = ("density", "embed", "locate", "interpolate")
+STAGES = ("density", "embed", "relax", "locate", "interpolate")
 HEADINGS = ("example", "vertices", "edges", *(f"{stage} ms" for stage in STAGES), "frame ms")
 RESULTS = ("cache", "slid", "change", "at frame", "folded", "clamped")
 

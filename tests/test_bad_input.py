@@ -13,7 +13,9 @@ from skinslide.cli import main
 from stages import FRAMES, MESH, PATCH
 
 NAN, INFINITY = float("nan"), float("inf")
-FACES, DENSITY, WEIGHT = (f"skinSlide:{PATCH}:{name}" for name in ("patch", "forceDensity", "weight"))
+FACES, DENSITY, WEIGHT, FARTHEST = (
+    f"skinSlide:{PATCH}:{name}" for name in ("patch", "forceDensity", "weight", "maxDistance")
+)
 Types = Sdf.ValueTypeNames
 
 
@@ -254,6 +256,8 @@ CASES = [
     Case("density: interpolation", painted(DENSITY, "faceVarying", floats(144)), "interpolation faceVarying"),
     Case("density: type", put(DENSITY, Types.IntArray, "vertex", [1] * 49), "is int[]"),
     Case("density: zero at a frame", painted_at_one_frame(DENSITY, 0.0), "forceDensity[12] is 0", frame="1002"),
+    Case("max distance: nan", painted(FARTHEST, "vertex", floats(49, 12, NAN)), "maxDistance[12] is nan"),
+    Case("max distance: below 0", painted(FARTHEST, "vertex", floats(49, 12, -1.0)), "is -1; it must be 0 or more"),
     Case("weight: nan", painted(WEIGHT, "vertex", floats(49, 12, NAN)), "weight[12] is nan"),
     Case("weight: length", painted(WEIGHT, "vertex", floats(50)), "50 values, but the mesh has 49 points"),
     Case("weight: interpolation", painted(WEIGHT, "uniform", floats(36)), "interpolation uniform"),

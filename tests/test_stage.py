@@ -168,10 +168,11 @@ def test_paint_off_the_patch_does_not_count():
 
 
 @pytest.mark.parametrize(("type_name", "value"), [(Types.Float, 0.5), (Types.FloatArray, [0.5])])
-def test_constant_weight(type_name, value):
+@pytest.mark.parametrize(("primvar", "argument"), [("weight", "weight"), ("maxDistance", "max_distance")])
+def test_constants(primvar, argument, type_name, value):
     stage, mesh = stages.patched_stage()
-    stages.set_primvar(mesh, f"skinSlide:{PATCH}:weight", type_name, "constant", value)
-    assert only_mesh(stage).patches[0].controls.weight.tolist() == [0.5] * 49
+    stages.set_primvar(mesh, f"skinSlide:{PATCH}:{primvar}", type_name, "constant", value)
+    assert getattr(only_mesh(stage).patches[0].controls, argument).tolist() == [0.5] * 49
 
 
 def test_constants_are_inherited():

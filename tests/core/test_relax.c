@@ -97,7 +97,7 @@ static void blocks_are_solved(void **state) {
 /* Four quads whose right column is three wide. The middle vertex slides along its row, to x, between 0 and 4; all four of its
  * edges are 1 at rest: the lowest E is that of a search over x. A thousandth of E leaves x open to about its root, 0.03. */
 static double energy_of_row(double x) {
-    double up = sqrt(1 + (x - 1) * (x - 1)), hold = 4 * 0.005 * (x - 1) * (x - 1);
+    double up = sqrt(1 + (x - 1) * (x - 1)), hold = 4 * 0.003 * (x - 1) * (x - 1);
     return log(x) * log(x) + log(4 - x) * log(4 - x) + 2 * log(up) * log(up) + hold;
 }
 

@@ -1,0 +1,140 @@
+"""Prints how much of the stretch that sliding can remove each rule removes: one line an example and a frame.
+
+usage: share.py STAGE...        (needs libigl)
+Stretch is the RMS over the patch's edges of log(length / rest length). `best` is the least that a search finds which
+may put every free vertex anywhere on the deformed patch, from the cache and from the relaxed result; faces may turn
+over in it. A share is (cache - slid) / (cache - best): 1 leaves nothing to gain, below 0 sliding adds stretch. What is
+measured is the rule itself: interpolation linear, slide weights and largest distances left out. `off` is how far the
+relaxed result is from the deformed patch, as a share of the patch's size, beyond what points in float allow.
+"""
+
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import igl
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+from pxr import Usd
+
+from skinslide.meshes import SlidMesh, read_meshes
+
+RULES = ("unit", "fast", "relaxed")
+HEADINGS = ("example", "frame", "cache", "best", *RULES, "steps", "off", "folded")
+MOST_STEPS = 400
+LEAST_GAIN = 1e-9  # of the energy, by one step of the search
+FLOAT_EPSILON = float(np.finfo(np.float32).eps)
+
+
+@dataclass
+class Skin:
+    """One patch as the search sees it, in patch vertices."""
+
+    rest: np.ndarray  # (V, 3)
+    vertices: np.ndarray  # (V,) mesh vertices
+    edges: np.ndarray  # (E, 2)
+    triangles: np.ndarray  # (T, 3) fans of the faces
+    free: np.ndarray  # vertices that may slide
+
+    @classmethod
+    def of(cls, mesh: SlidMesh, faces: np.ndarray) -> "Skin":
+        starts = np.concatenate([[0], np.cumsum(mesh.face_counts)])
+        polygons = [mesh.face_indices[starts[face] : starts[face + 1]] for face in faces]
+        vertices = np.unique(np.concatenate(polygons))
+        polygons = [np.searchsorted(vertices, polygon) for polygon in polygons]
+        sides = np.sort(np.concatenate([np.stack([p, np.roll(p, -1)], axis=1) for p in polygons]), axis=1)
+        edges, uses = np.unique(sides, axis=0, return_counts=True)
+        fans = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]
+        free = np.setdiff1d(np.arange(len(vertices)), edges[uses == 1])
+        return cls(mesh.rest_points[vertices].astype(float), vertices, edges, np.array(fans, np.int64), free)
+
+    def lengths(self, points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points[self.edges[:, 0]] - points[self.edges[:, 1]], axis=1)
+
+    def stretch(self, points: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(np.log(self.lengths(points) / self.lengths(self.rest)) ** 2)))
+
+    def off(self, points: np.ndarray, deformed: np.ndarray) -> float:
+        """Largest distance to the deformed patch beyond the rounding of points, as a share of the patch's size."""
+        distance = np.sqrt(igl.point_mesh_squared_distance(points, deformed, self.triangles)[0].max())
+        rounding = FLOAT_EPSILON * np.abs(deformed).max()
+        return max(0.0, distance - rounding) / np.linalg.norm(np.ptp(self.rest, axis=0))
+
+
+class Search:
+    """Walks downhill from a start, only where that lowers the stretch.
+
+    Along the gradient as springs of the rest lengths would take it, projected to the patch.
+    """
+
+    def __init__(self, skin: Skin):
+        self.skin, count = skin, len(skin.edges)
+        ends = np.concatenate([skin.edges[:, 0], skin.edges[:, 1]])
+        signs, rows = np.repeat([1.0, -1.0], count), np.tile(np.arange(count), 2)
+        self.differences = sp.csr_matrix((signs, (rows, ends)), (count, len(skin.rest)))[:, skin.free]
+        self.rest_lengths = skin.lengths(skin.rest)
+        springs = self.differences.T @ sp.diags(self.rest_lengths**-2) @ self.differences
+        self.solve = sla.factorized(springs.tocsc())
+
+    def direction(self, points: np.ndarray) -> np.ndarray:
+        vectors = points[self.skin.edges[:, 0]] - points[self.skin.edges[:, 1]]
+        lengths = np.linalg.norm(vectors, axis=1)
+        pull = self.differences.T @ ((np.log(lengths / self.rest_lengths) / lengths**2)[:, None] * vectors)
+        return np.stack([self.solve(pull[:, k]) for k in range(3)], axis=1)
+
+    def moved(self, points: np.ndarray, step: np.ndarray, deformed: np.ndarray) -> np.ndarray:
+        result = points.copy()
+        target = points[self.skin.free] - step
+        result[self.skin.free] = igl.point_mesh_squared_distance(target, deformed, self.skin.triangles)[2]
+        return result
+
+    def lowest(self, start: np.ndarray, deformed: np.ndarray) -> float:
+        """The stretch where the walk ends."""
+        points, stretch, size = start.copy(), self.skin.stretch(start), 1.0
+        for _ in range(MOST_STEPS):
+            direction, before = self.direction(points), stretch
+            while stretch >= before and size > 1e-7:
+                trial = self.moved(points, size * direction, deformed)
+                stretch, size = self.skin.stretch(trial), size / 2
+            if stretch >= before:
+                return before
+            points, size = trial, min(1.0, 4 * size)
+            if before**2 - stretch**2 < LEAST_GAIN * before**2:
+                break
+        return stretch
+
+
+def rows(path: Path) -> list[list[str]]:
+    """The cells of one example, a row a frame."""
+    stage = Usd.Stage.Open(str(path))
+    mesh = read_meshes(stage)[0][0]
+    patch = mesh.patches[0]
+    skin = Skin.of(mesh, patch.faces)
+    search, found = Search(skin), []
+    plain = replace(patch, interpolation="linear", controls=replace(patch.controls, weight=None, max_distance=None))
+    sliders = [mesh.build([replace(plain, rule=rule)]) for rule in RULES]
+    for time in mesh.sample_times():
+        cached = mesh.points_at(Usd.TimeCode(time))
+        frames = [slider.slide(cached) for slider in sliders]
+        deformed = cached[skin.vertices].astype(float)
+        slid = [frame.points[skin.vertices].astype(float) for frame in frames]
+        cache, result = skin.stretch(deformed), frames[-1].patches[0]
+        best = min(search.lowest(start, deformed) for start in (deformed, slid[-1])) if cache else 0.0
+        shares = [f"{(cache - skin.stretch(points)) / (cache - best):.3f}" if best < cache else "-" for points in slid]
+        where = [path.parent.name, f"{time:g}", f"{cache:.4f}", f"{best:.4f}"]
+        quality = [str(result.relax_steps), f"{skin.off(slid[-1], deformed):.0e}", str(result.folded_faces)]
+        found.append([*where, *shares, *quality])
+    return found
+
+
+def main() -> None:
+    table = [list(HEADINGS), *(row for path in sys.argv[1:] for row in rows(Path(path)))]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for cells in table:
+        print("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+
+
+if __name__ == "__main__":
+    with np.errstate(divide="ignore"):  # an edge of no length has endless stretch, and is never taken
+        main()
