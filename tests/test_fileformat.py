@@ -127,8 +127,18 @@ def animate(mesh: UsdGeom.Mesh) -> None:
         set_primvar(mesh, f"skinSlide:{PATCH}:forceDensity", Sdf.ValueTypeNames.FloatArray, "uniform", value, frame)
 
 
-def test_a_flatten_holds_what_a_bake_does(tmp_path):
-    path = make(tmp_path, animate)
+def relax(mesh: UsdGeom.Mesh) -> None:
+    animate(mesh)
+    set_property(mesh, "forceDensityRule", "relaxed")
+    for frame, limit in ((1001, 0.05), (1003, 0.2)):
+        set_primvar(
+            mesh, f"skinSlide:{PATCH}:maxDistance", Sdf.ValueTypeNames.FloatArray, "vertex", [limit] * 49, frame
+        )
+
+
+@pytest.mark.parametrize("author", [animate, relax])
+def test_a_flatten_holds_what_a_bake_does(tmp_path, author):
+    path = make(tmp_path, author)
     bake, flat = baked(path, tmp_path), open_mesh(path)[0].Flatten()
     for name in ("points", "extent", "primvars:normals", "velocities", "accelerations"):
         assert samples(bake, name).keys() == {1001.0, 1002.0, 1002.5, 1003.0}

@@ -135,6 +135,7 @@ def no_rest(mesh):
         (paint("weight", "FloatArray", "vertex", [0.5]), "weight has 1 values, but the mesh has 49 points"),
         (paint("weight", "FloatArray", "vertex", [float("inf")] * 49), "it must be a number"),
         (paint("weight", "FloatArray", "uniform", [0.5] * 36), "it must be vertex or constant"),
+        (paint("maxDistance", "FloatArray", "vertex", [-1.0] * 49), "is -1; it must be 0 or more"),
         (paint("forceDensity", "FloatArray", "vertex", [0.0] * 49), "is 0; it must be finite and above 0"),
         (paint("forceDensity", "IntArray", "vertex", [1] * 49), "it must be float[]"),
     ],

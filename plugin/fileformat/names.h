@@ -56,7 +56,7 @@ inline const Names &names() {
 // Tokens in the order of the core's enums.
 inline const std::vector<std::string> boundaryTokens{"auto", "square", "circle"};
 inline const std::vector<std::string> holesTokens{"pinned", "free"};
-inline const std::vector<std::string> ruleTokens{"unit", "fast"};
+inline const std::vector<std::string> ruleTokens{"unit", "fast", "relaxed"};
 inline const std::vector<std::string> interpolationTokens{"auto", "linear", "meanValue", "limit"};
 inline const std::vector<std::string> schemeTokens{"none", "catmullClark", "loop", "bilinear"};
 inline const std::vector<std::string> boundaryRuleTokens{"edgeAndCorner", "edgeOnly", "none"};

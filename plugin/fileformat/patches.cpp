@@ -41,6 +41,14 @@ bool isDensity(float value) {
     return std::isfinite(value) && value > 0;
 }
 
+bool isDistance(float value) {
+    return value >= 0;
+}
+
+bool isNumber(float value) {
+    return std::isfinite(value);
+}
+
 } // namespace
 
 skinslide_controls Controls::native() const {
@@ -52,6 +60,7 @@ skinslide_controls Controls::native() const {
     controls.edge_count = static_cast<int32_t>(edgeDensity.size());
     controls.weight = pointerTo(weight);
     controls.envelope = envelope;
+    controls.max_distance = pointerTo(maxDistance);
     return controls;
 }
 
@@ -137,7 +146,8 @@ void Patch::readFaces(Composition &composition, const Prim &mesh, const Topology
 Patch::Patch(Composition &composition, const Prim &mesh, const std::string &name, const Topology &topology,
              const Params &params)
     : _name(name), _liveEnvelope(params.envelope), _weight(mesh, names().primvar(name, "weight")),
-      _density(mesh, names().primvar(name, "forceDensity")), _envelope(mesh.attribute(names().property(name, "envelope"))),
+      _maxDistance(mesh, names().primvar(name, "maxDistance")), _density(mesh, names().primvar(name, "forceDensity")),
+      _envelope(mesh.attribute(names().property(name, "envelope"))),
       _edgeDensity(mesh.attribute(names().property(name, "edgeForceDensities"))) {
     readFaces(composition, mesh, topology);
     _insideVertex = topology.verticesOf(_faces);
@@ -154,8 +164,8 @@ Patch::Patch(Composition &composition, const Prim &mesh, const std::string &name
     }
     readCorners(mesh, topology);
     readEdges(mesh);
-    for (const Attribute *control :
-         std::initializer_list<const Attribute *>{&_envelope, &_edgeDensity, &_weight.attribute(), &_density.attribute()}) {
+    for (const Attribute *control : std::initializer_list<const Attribute *>{
+             &_envelope, &_edgeDensity, &_weight.attribute(), &_maxDistance.attribute(), &_density.attribute()}) {
         if (control->source() == Attribute::Source::Spline)
             throw fault("%s is a spline, which a .skinslide file cannot read; bake the stage instead, or sample it",
                         control->name().c_str());
@@ -218,7 +228,7 @@ skinslide_patch_setup Patch::native(const Controls &controls) const {
 // ---- Controls over time ----
 
 bool Patch::varies() const {
-    return _envelope.varies() || _weight.varies() || _density.varies() || _edgeDensity.varies();
+    return _envelope.varies() || _weight.varies() || _maxDistance.varies() || _density.varies() || _edgeDensity.varies();
 }
 
 std::vector<double> Patch::times() const {
@@ -227,6 +237,7 @@ std::vector<double> Patch::times() const {
     if (_envelope.varies())
         append(_envelope.times());
     append(_weight.times());
+    append(_maxDistance.times());
     append(_density.times());
     if (_edgeDensity.varies())
         append(_edgeDensity.times());
@@ -236,7 +247,8 @@ std::vector<double> Patch::times() const {
 Controls Patch::controlsAt(double time, const Topology &topology) const {
     Controls controls;
     takeEnvelope(time, &controls);
-    takeWeight(time, topology, &controls);
+    controls.weight = paintedByVertex(_weight, time, topology, isNumber, "a number");
+    controls.maxDistance = paintedByVertex(_maxDistance, time, topology, isDistance, "0 or more");
     takeDensity(time, topology, &controls);
     takeEdges(time, &controls);
     return controls;
@@ -280,16 +292,17 @@ std::vector<float> Patch::painted(const Primvar &primvar, double time, const Top
 }
 
 // Values off the patch do not count, since paint is often 0 there: they are replaced by ones that the core accepts.
-void Patch::takeWeight(double time, const Topology &topology, Controls *controls) const {
-    std::vector<float> values = painted(_weight, time, topology, false);
-    bool constant = values.size() == 1 && _weight.interpolation() == names().constant;
+std::vector<float> Patch::paintedByVertex(const Primvar &primvar, double time, const Topology &topology, bool (*isGood)(float),
+                                          const char *wanted) const {
+    std::vector<float> values = painted(primvar, time, topology, false);
+    bool constant = values.size() == 1 && primvar.interpolation() == names().constant;
     for (size_t i = 0; i < values.size(); i++) {
         bool counts = constant || _insideVertex[i];
-        if (counts && !std::isfinite(values[i]))
-            throw fault("%s[%zu] is %g; it must be a number", _weight.name().c_str(), i, values[i]);
+        if (counts && !isGood(values[i]))
+            throw fault("%s[%zu] is %g; it must be %s", primvar.name().c_str(), i, values[i], wanted);
         values[i] = counts ? values[i] : 0;
     }
-    controls->weight = constant ? std::vector<float>(topology.vertexCount, values[0]) : std::move(values);
+    return constant ? std::vector<float>(topology.vertexCount, values[0]) : values;
 }
 
 void Patch::takeDensity(double time, const Topology &topology, Controls *controls) const {

@@ -26,7 +26,7 @@ struct Topology {
 
 // The controls of one patch at one time; empty arrays are those that are not painted.
 struct Controls {
-    std::vector<float> vertexDensity, faceDensity, edgeDensity, weight;
+    std::vector<float> vertexDensity, faceDensity, edgeDensity, weight, maxDistance;
     std::vector<int32_t> edges; // pairs
     float envelope = 1;
 
@@ -58,7 +58,8 @@ class Patch {
     void readEdges(const Prim &mesh);
     int readToken(const Prim &mesh, const char *setting, const std::vector<std::string> &tokens) const;
     std::vector<float> painted(const Primvar &primvar, double time, const Topology &topology, bool byFace) const;
-    void takeWeight(double time, const Topology &topology, Controls *controls) const;
+    std::vector<float> paintedByVertex(const Primvar &primvar, double time, const Topology &topology, bool (*isGood)(float),
+                                       const char *wanted) const;
     void takeDensity(double time, const Topology &topology, Controls *controls) const;
     void takeEdges(double time, Controls *controls) const;
     void takeEnvelope(double time, Controls *controls) const;
@@ -68,7 +69,7 @@ class Patch {
     std::vector<bool> _insideVertex, _insideFace;
     int _boundary, _holes, _rule, _interpolation;
     double _liveEnvelope;
-    Primvar _weight, _density;
+    Primvar _weight, _maxDistance, _density;
     Attribute _envelope, _edgeDensity;
 };
 
