@@ -19,7 +19,7 @@ as_root() {
 install_system_packages() {
     local package missing=()
     for package in build-essential cmake ninja-build python3-dev python3-venv libsuitesparse-dev libosd-dev libglm-dev \
-        libegl-dev libgles-dev libegl1 libgl1-mesa-dri "${EXTRA_PACKAGES[@]}"; do
+        libopenexr-dev libegl-dev libgles-dev libegl1 libgl1-mesa-dri "${EXTRA_PACKAGES[@]}"; do
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
     done
     [ ${#missing[@]} = 0 ] && return

@@ -149,6 +149,48 @@ static void each_allocation_fails_in_turn(void **state) {
     free_scene(&s);
 }
 
+static skinslide_status run_images(const float *pixels, skinslide_error *error) {
+    enum { SIDE = 40 };
+    const skinslide_channel channels[2] = {{"R", pixels}, {"G", pixels}};
+    const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
+    const skinslide_mesh mesh = {3, 1, 3, counts, indices, NULL};
+    const float st[6] = {0, 0, 1, 0, 1, 1};
+    skinslide_bytes *made = NULL;
+    skinslide_image *image = NULL;
+    int32_t tiles[3];
+    float values[3];
+    skinslide_status status = skinslide_exr_encode(channels, 2, SIDE, SIDE, SKINSLIDE_WRAP_CLAMP, &made, error);
+    if (!status)
+        status = skinslide_exr_decode(made->data, made->size, "G", &image, error);
+    if (!status)
+        status = skinslide_map_tiles(&mesh, faces, 1, st, tiles, error);
+    const skinslide_map_tile tile = {image, 0};
+    if (!status)
+        status = skinslide_map_sample(&mesh, faces, 1, st, &tile, 1, values, error);
+    skinslide_image_destroy(image);
+    skinslide_bytes_destroy(made);
+    return status;
+}
+
+static void each_allocation_for_images_fails_in_turn(void **state) {
+    (void)state;
+    float pixels[1600];
+    for (int i = 0; i < 1600; i++)
+        pixels[i] = (float)(i % 37);
+    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
+    int32_t n = 0;
+    for (; status != SKINSLIDE_OK && n < 10000; n++) {
+        skinslide_error error;
+        left_to_give = n, live = 0, watching = true;
+        status = run_images(pixels, &error);
+        watching = false;
+        assert_int_equal(live, 0);
+        if (status != SKINSLIDE_OK)
+            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+    }
+    assert_in_range(n, 30, 9999);
+}
+
 /* A frame allocates nothing but what checks the edges that its controls name, so it cannot fail for memory otherwise. */
 static void a_frame_allocates_nothing(void **state) {
     (void)state;
@@ -172,9 +214,8 @@ int main(void) {
     SuiteSparse_config.calloc_func = __wrap_calloc;
     SuiteSparse_config.free_func = __wrap_free;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_that_are_too_large_fail),
-        cmocka_unit_test(memory_is_zero_and_aligned),
-        cmocka_unit_test(each_allocation_fails_in_turn),
+        cmocka_unit_test(counts_that_are_too_large_fail), cmocka_unit_test(memory_is_zero_and_aligned),
+        cmocka_unit_test(each_allocation_fails_in_turn),  cmocka_unit_test(each_allocation_for_images_fails_in_turn),
         cmocka_unit_test(a_frame_allocates_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

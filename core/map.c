@@ -1,0 +1,199 @@
+/* Maps painted in a mesh's texture coordinates: bilinear samples at the corners of faces, as one value a vertex. */
+#include "internal.h"
+
+#include <math.h>
+
+#define FIRST_TILE   1001
+#define TILE_COLUMNS 10
+#define TILE_ROWS    900 /* the numbers of UDIM tiles have four digits */
+
+/* Faces of a mesh, and where their corners begin. */
+typedef struct corners {
+    const skinslide_mesh *mesh;
+    const float *st;
+    int32_t *start; /* [face_count + 1] */
+} corners;
+
+static skinslide_status check(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count, const float *st,
+                              skinslide_error *error) {
+    skinslide_status status = ss_check_mesh(mesh, error);
+    if (status)
+        return status;
+    if (!st || face_count < 0 || (face_count && !faces))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no texture coordinates, or no faces");
+    for (int32_t i = 0; i < face_count; i++)
+        if (faces[i] < 0 || faces[i] >= mesh->face_count)
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", faces[i], mesh->face_count);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status list_corners(const skinslide_mesh *mesh, const float *st, ss_memory *memory, corners *out,
+                                     skinslide_error *error) {
+    *out = (corners){mesh, st, SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1)};
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    for (int32_t f = 0; f < mesh->face_count; f++)
+        out->start[f + 1] = out->start[f] + mesh->face_counts[f];
+    return SKINSLIDE_OK;
+}
+
+/* ---- Tiles ---- */
+
+/* The whole number of a coordinate; on a border, the one on the side of the middle. */
+static double tile_of(double coordinate, double middle) {
+    double whole = floor(coordinate);
+    return whole == coordinate && middle < whole ? whole - 1 : whole;
+}
+
+/* The tile of every corner of a face, in tiles [index_count]. */
+static skinslide_status face_tiles(const corners *c, int32_t face, int32_t *tiles, skinslide_error *error) {
+    double middle[2] = {0, 0};
+    int32_t begin = c->start[face], end = c->start[face + 1];
+    for (int32_t i = begin; i < end; i++) {
+        const float *st = c->st + 2 * (int64_t)i;
+        if (!isfinite(st[0]) || !isfinite(st[1]))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
+        middle[0] += (double)st[0] / (end - begin), middle[1] += (double)st[1] / (end - begin);
+    }
+    for (int32_t i = begin; i < end; i++) {
+        const float *st = c->st + 2 * (int64_t)i;
+        double column = tile_of(st[0], middle[0]), row = tile_of(st[1], middle[1]);
+        if (column < 0 || column >= TILE_COLUMNS || row < 0 || row >= TILE_ROWS)
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g), which is in no UDIM tile", face, st[0],
+                           st[1]);
+        tiles[i] = FIRST_TILE + (int32_t)column + TILE_COLUMNS * (int32_t)row;
+    }
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_map_tiles(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count, const float *st,
+                                     int32_t *tiles, skinslide_error *error) {
+    skinslide_status status = check(mesh, faces, face_count, st, error);
+    if (status || !tiles)
+        return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the tiles");
+    ss_memory memory = {0};
+    corners c;
+    int32_t *found = SS_NEW(&memory, int32_t, mesh->index_count);
+    status = list_corners(mesh, st, &memory, &c, error);
+    for (int32_t i = 0; !status && i < face_count; i++)
+        status = face_tiles(&c, faces[i], found, error);
+    for (int32_t i = 0; !status && i < mesh->index_count; i++)
+        tiles[i] = found[i];
+    ss_free(&memory);
+    return status;
+}
+
+/* ---- Samples ---- */
+
+/* The texel that a wrap puts at a place along a side of count texels; -1: black. */
+static double wrapped(double place, int32_t count, skinslide_wrap wrap) {
+    if (place >= 0 && place < count)
+        return place;
+    if (wrap == SKINSLIDE_WRAP_BLACK)
+        return -1;
+    if (wrap == SKINSLIDE_WRAP_CLAMP)
+        return place < 0 ? 0 : count - 1;
+    double period = wrap == SKINSLIDE_WRAP_MIRROR ? 2.0 * count : count;
+    double within = fmod(place, period);
+    within += within < 0 ? period : 0;
+    return within < count ? within : period - 1 - within;
+}
+
+/* The two texels about a coordinate, in texels from the first one's centre, and the share of the second. */
+static double texels_about(double coordinate, int32_t count, skinslide_wrap wrap, double texels[2]) {
+    double place = coordinate * count - 0.5, first = floor(place);
+    texels[0] = wrapped(first, count, wrap);
+    texels[1] = wrapped(first + 1, count, wrap);
+    return place - first;
+}
+
+/* A texel with no share does not count, even where it is not a number. */
+static double sample(const skinslide_image *image, double s, double t) {
+    double columns[2], rows[2], sum = 0;
+    double share_s = texels_about(s, image->width, image->wrap_s, columns);
+    double share_t = texels_about(1 - t, image->height, image->wrap_t, rows);
+    for (int k = 0; k < 4; k++) {
+        double column = columns[k & 1], row = rows[k >> 1];
+        double share = (k & 1 ? share_s : 1 - share_s) * (k >> 1 ? share_t : 1 - share_t);
+        if (share > 0 && column >= 0 && row >= 0)
+            sum += share * image->pixels[(int64_t)row * image->width + (int64_t)column];
+    }
+    return sum;
+}
+
+static const skinslide_map_tile *find_tile(const skinslide_map_tile *tiles, int32_t tile_count, int32_t number) {
+    for (int32_t k = 0; k < tile_count; k++)
+        if (tiles[k].number == number || tiles[k].number == 0)
+            return &tiles[k];
+    return NULL;
+}
+
+/* The texture beyond the border of a numbered tile is another tile's, so its image is clamped whatever the file says. */
+static double sample_tile(const skinslide_map_tile *tile, const float st[2]) {
+    if (tile->number == 0)
+        return sample(tile->image, st[0], st[1]);
+    skinslide_image image = *tile->image;
+    image.wrap_s = image.wrap_t = SKINSLIDE_WRAP_CLAMP;
+    int32_t place = tile->number - FIRST_TILE;
+    return sample(&image, st[0] - (double)(place % TILE_COLUMNS), st[1] - (double)(place / TILE_COLUMNS));
+}
+
+/* Adds the samples of a face's corners to their vertices: sum and count. */
+static skinslide_status sample_face(const corners *c, int32_t face, const int32_t *numbers, const skinslide_map_tile *tiles,
+                                    int32_t tile_count, double (*sums)[2], skinslide_error *error) {
+    for (int32_t i = c->start[face]; i < c->start[face + 1]; i++) {
+        const float *st = c->st + 2 * (int64_t)i;
+        if (!isfinite(st[0]) || !isfinite(st[1]))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
+        const skinslide_map_tile *tile = find_tile(tiles, tile_count, numbers[i]);
+        if (!tile)
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g), but there is no tile %d", face, st[0], st[1],
+                           numbers[i]);
+        double value = sample_tile(tile, st);
+        if (!isfinite((float)value))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "the map is %g at st (%g, %g), on face %d",
+                           isnan(value) ? (double)NAN : value, st[0], st[1], face);
+        int32_t vertex = c->mesh->face_indices[i];
+        sums[vertex][0] += value, sums[vertex][1] += 1;
+    }
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status check_tiles(const skinslide_map_tile *tiles, int32_t tile_count, skinslide_error *error) {
+    if (!tiles || tile_count < 1)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tiles");
+    for (int32_t k = 0; k < tile_count; k++) {
+        const skinslide_image *image = tiles[k].image;
+        bool numbered = tiles[k].number >= FIRST_TILE && tiles[k].number < FIRST_TILE + TILE_COLUMNS * TILE_ROWS;
+        if (!numbered && (tiles[k].number != 0 || tile_count != 1))
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has the number %d", k, tiles[k].number);
+        if (!image || image->width < 1 || image->height < 1 || !image->pixels ||
+            (unsigned)image->wrap_s > SKINSLIDE_WRAP_BLACK || (unsigned)image->wrap_t > SKINSLIDE_WRAP_BLACK)
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has no image", k);
+    }
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_map_sample(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count, const float *st,
+                                      const skinslide_map_tile *tiles, int32_t tile_count, float *values,
+                                      skinslide_error *error) {
+    skinslide_status status = check(mesh, faces, face_count, st, error);
+    if (!status)
+        status =
+            values ? check_tiles(tiles, tile_count, error) : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the values");
+    if (status)
+        return status;
+    ss_memory memory = {0};
+    corners c;
+    int32_t *numbers = SS_NEW(&memory, int32_t, mesh->index_count);
+    double(*sums)[2] = ss_new(&memory, mesh->vertex_count, sizeof *sums);
+    status = list_corners(mesh, st, &memory, &c, error);
+    for (int32_t i = 0; !status && tiles[0].number && i < face_count; i++)
+        status = face_tiles(&c, faces[i], numbers, error);
+    for (int32_t i = 0; !status && i < face_count; i++)
+        status = sample_face(&c, faces[i], numbers, tiles, tile_count, sums, error);
+    for (int32_t v = 0; !status && v < mesh->vertex_count; v++)
+        values[v] = sums[v][1] > 0 ? (float)(sums[v][0] / sums[v][1]) : 1;
+    ss_free(&memory);
+    return status;
+}
