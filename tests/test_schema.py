@@ -22,6 +22,11 @@ FALLBACKS = {
     "corners": None,
     "edges": None,
     "edgeForceDensities": None,
+    "forceDensityMap": None,
+    "forceDensityMapChannel": None,
+    "weightMap": None,
+    "weightMapChannel": None,
+    "mapSt": "st",
 }
 
 

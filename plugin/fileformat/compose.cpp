@@ -284,7 +284,8 @@ ArResolverContext contextFor(const std::string &resolvedPath) {
 
 } // namespace
 
-Composition::Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath) : _root(root) {
+Composition::Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath)
+    : _root(root), _resolvedPath(resolvedPath) {
     PcpLayerStackIdentifier identifier(root, SdfLayerHandle(), contextFor(resolvedPath));
     _cache = std::make_unique<PcpCache>(identifier, std::string(), /* usd = */ true);
 }

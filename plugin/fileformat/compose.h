@@ -123,6 +123,9 @@ class Composition {
     const SdfLayerRefPtr &root() const {
         return _root;
     }
+    const std::string &resolvedPath() const {
+        return _resolvedPath;
+    }
     // What could not be composed, each once.
     std::vector<std::string> errors() const;
     SdfLayerHandleSet usedLayers() const {
@@ -133,6 +136,7 @@ class Composition {
     void traverseBelow(const Prim &prim, const std::function<bool(const Prim &)> &visit);
 
     SdfLayerRefPtr _root;
+    std::string _resolvedPath;
     std::unique_ptr<PcpCache> _cache;
     PcpErrorVector _errors;
 };

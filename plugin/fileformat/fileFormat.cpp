@@ -61,8 +61,11 @@ void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath,
     if (!metadataOnly && params.live) {
         Composition composition(anchored, resolvedPath);
         std::string name = TfGetBaseName(resolvedPath);
-        for (const std::shared_ptr<const Source> &source : readSources(composition, params, &problems))
+        for (const std::shared_ptr<const Source> &source : readSources(composition, params, &problems)) {
             meshes.push_back(std::make_shared<SlidMesh>(source, params, name));
+            for (const Patch &patch : source->patches)
+                sources.paths.merge(patch.files());
+        }
         std::vector<std::string> errors = composition.errors();
         problems.insert(problems.end(), errors.begin(), errors.end());
     }

@@ -31,14 +31,6 @@ bool isSkinslide(const std::string &path) {
     return SdfFileFormat::GetFileExtension(path) == "skinslide";
 }
 
-// An asset path, evaluated where it is an expression; empty where that fails.
-std::string evaluate(const std::string &asset, const VtDictionary &variables) {
-    if (!SdfVariableExpression::IsExpression(asset))
-        return asset;
-    VtValue value = SdfVariableExpression(asset).Evaluate(variables).value;
-    return value.IsHolding<std::string>() ? value.UncheckedGet<std::string>() : "";
-}
-
 // Opens or reads a source; null where it cannot be, which composition reports.
 SdfLayerRefPtr openSource(const std::string &identifier, const std::string &resolvedPath) {
     TfErrorMark mark;
@@ -56,6 +48,13 @@ SdfLayerRefPtr openSource(const std::string &identifier, const std::string &reso
 }
 
 } // namespace
+
+std::string evaluate(const std::string &asset, const VtDictionary &variables) {
+    if (!SdfVariableExpression::IsExpression(asset))
+        return asset;
+    VtValue value = SdfVariableExpression(asset).Evaluate(variables).value;
+    return value.IsHolding<std::string>() ? value.UncheckedGet<std::string>() : "";
+}
 
 SdfLayerRefPtr readText(const std::string &resolvedPath) {
     std::string text = readFile(resolvedPath);

@@ -4,6 +4,7 @@
 
 #include "pxr/pxr.h"
 
+#include "pxr/base/vt/dictionary.h"
 #include "pxr/usd/sdf/layer.h"
 
 #include <set>
@@ -15,6 +16,9 @@ using namespace PXR_NS;
 
 // The USDA text of a file as an anonymous layer, as it stands. Throws Fault where it is not USDA text.
 SdfLayerRefPtr readText(const std::string &resolvedPath);
+
+// An asset path, evaluated where it is an expression; empty where that fails.
+std::string evaluate(const std::string &asset, const VtDictionary &variables);
 
 // A copy in which relative asset paths mean what they mean in the file: in an anonymous layer they mean nothing.
 SdfLayerRefPtr anchoredCopy(const SdfLayerRefPtr &text, const std::string &resolvedPath);

@@ -49,6 +49,22 @@ bool isNumber(float value) {
     return std::isfinite(value);
 }
 
+void checkDensities(const std::vector<float> &values, const std::string &what) {
+    for (size_t point = 0; point < values.size(); point++) {
+        if (!isDensity(values[point]))
+            throw fault("%s at point %zu is %g; it must be finite and above 0", what.c_str(), point, values[point]);
+    }
+}
+
+// Paint times map, where there are both.
+void multiply(const std::vector<float> &mapped, std::vector<float> *values) {
+    if (values->empty())
+        *values = mapped;
+    else
+        for (size_t point = 0; point < mapped.size(); point++)
+            (*values)[point] *= mapped[point];
+}
+
 } // namespace
 
 skinslide_controls Controls::native() const {
@@ -147,6 +163,7 @@ Patch::Patch(Composition &composition, const Prim &mesh, const std::string &name
              const Params &params)
     : _name(name), _liveEnvelope(params.envelope), _weight(mesh, names().primvar(name, "weight")),
       _maxDistance(mesh, names().primvar(name, "maxDistance")), _density(mesh, names().primvar(name, "forceDensity")),
+      _weightMap(composition, mesh, name, "weight"), _densityMap(composition, mesh, name, "forceDensity"),
       _envelope(mesh.attribute(names().property(name, "envelope"))),
       _edgeDensity(mesh.attribute(names().property(name, "edgeForceDensities"))) {
     readFaces(composition, mesh, topology);
@@ -170,7 +187,15 @@ Patch::Patch(Composition &composition, const Prim &mesh, const std::string &name
             throw fault("%s is a spline, which a .skinslide file cannot read; bake the stage instead, or sample it",
                         control->name().c_str());
     }
+    _weightMap.settle(topology, _faces);
+    _densityMap.settle(topology, _faces);
     controlsAt(Attribute::first, topology);
+}
+
+std::set<std::string> Patch::files() const {
+    std::set<std::string> files = _weightMap.files();
+    files.insert(_densityMap.files().begin(), _densityMap.files().end());
+    return files;
 }
 
 int Patch::readToken(const Prim &mesh, const char *setting, const std::vector<std::string> &tokens) const {
@@ -228,7 +253,8 @@ skinslide_patch_setup Patch::native(const Controls &controls) const {
 // ---- Controls over time ----
 
 bool Patch::varies() const {
-    return _envelope.varies() || _weight.varies() || _maxDistance.varies() || _density.varies() || _edgeDensity.varies();
+    return _envelope.varies() || _weight.varies() || _maxDistance.varies() || _density.varies() || _edgeDensity.varies() ||
+           _weightMap.varies() || _densityMap.varies();
 }
 
 std::vector<double> Patch::times() const {
@@ -239,6 +265,8 @@ std::vector<double> Patch::times() const {
     append(_weight.times());
     append(_maxDistance.times());
     append(_density.times());
+    append(_weightMap.times());
+    append(_densityMap.times());
     if (_edgeDensity.varies())
         append(_edgeDensity.times());
     return times;
@@ -248,6 +276,7 @@ Controls Patch::controlsAt(double time, const Topology &topology) const {
     Controls controls;
     takeEnvelope(time, &controls);
     controls.weight = paintedByVertex(_weight, time, topology, isNumber, "a number");
+    multiply(_weightMap.at(time, topology, _faces), &controls.weight);
     controls.maxDistance = paintedByVertex(_maxDistance, time, topology, isDistance, "0 or more");
     takeDensity(time, topology, &controls);
     takeEdges(time, &controls);
@@ -319,6 +348,10 @@ void Patch::takeDensity(double time, const Topology &topology, Controls *control
         controls->vertexDensity = std::move(values);
     else if (interpolation == names().uniform) // a constant changes no ratio
         controls->faceDensity = std::move(values);
+    std::vector<float> mapped = _densityMap.at(time, topology, _faces);
+    checkDensities(mapped, _densityMap.name());
+    multiply(mapped, &controls->vertexDensity);
+    checkDensities(controls->vertexDensity, _density.name() + " times " + _densityMap.name());
 }
 
 void Patch::takeEdges(double time, Controls *controls) const {

@@ -2,6 +2,7 @@
 #ifndef SKINSLIDE_FORMAT_PATCHES_H
 #define SKINSLIDE_FORMAT_PATCHES_H
 
+#include "maps.h"
 #include "params.h"
 #include "values.h"
 
@@ -49,6 +50,8 @@ class Patch {
     bool needsSubdivision() const {
         return _interpolation == SKINSLIDE_INTERPOLATION_AUTO || _interpolation == SKINSLIDE_INTERPOLATION_LIMIT;
     }
+    // Resolved paths of the files of its maps.
+    std::set<std::string> files() const;
     // Points into this patch and into controls.
     skinslide_patch_setup native(const Controls &controls) const;
 
@@ -70,6 +73,7 @@ class Patch {
     int _boundary, _holes, _rule, _interpolation;
     double _liveEnvelope;
     Primvar _weight, _maxDistance, _density;
+    Map _weightMap, _densityMap;
     Attribute _envelope, _edgeDensity;
 };
 

@@ -4,6 +4,9 @@
 #include "names.h"
 
 #include "pxr/base/gf/half.h"
+#include "pxr/base/gf/vec2d.h"
+#include "pxr/base/gf/vec2f.h"
+#include "pxr/base/gf/vec2h.h"
 #include "pxr/base/gf/vec3d.h"
 #include "pxr/base/gf/vec3h.h"
 
@@ -21,6 +24,16 @@ template <class T, class Out> bool copyArray(const VtValue &value, Out *out) {
     out->reserve(array.size());
     for (const T &element : array)
         out->push_back(static_cast<typename Out::value_type>(element));
+    return true;
+}
+
+template <class T> bool copyPairs(const VtValue &value, std::vector<float> *out) {
+    if (!value.IsHolding<VtArray<T>>())
+        return false;
+    for (const T &pair : value.UncheckedGet<VtArray<T>>()) {
+        out->push_back(static_cast<float>(pair[0]));
+        out->push_back(static_cast<float>(pair[1]));
+    }
     return true;
 }
 
@@ -84,6 +97,14 @@ VtVec3fArray positions(const VtValue &value, const std::string &what) {
         convert(value.UncheckedGet<VtArray<GfVec3h>>());
     else if (!value.IsEmpty())
         throw fault("%s is not an array of points", what.c_str());
+    return out;
+}
+
+std::vector<float> pairs(const VtValue &value, const std::string &what, const TfToken &type) {
+    std::vector<float> out;
+    if (!value.IsEmpty() && !copyPairs<GfVec2f>(value, &out) && !copyPairs<GfVec2d>(value, &out) &&
+        !copyPairs<GfVec2h>(value, &out))
+        throw fault("%s is %s; a map needs pairs of floats", what.c_str(), type.GetText());
     return out;
 }
 
@@ -163,7 +184,9 @@ VtValue Primvar::flattened(double time) const {
     std::vector<int32_t> indices = integers(_indices.at(time), name() + ":indices");
     if (!gather<float>(indices, name(), &value) && !gather<GfVec3f>(indices, name(), &value) &&
         !gather<bool>(indices, name(), &value) && !gather<int>(indices, name(), &value) &&
-        !gather<GfVec3d>(indices, name(), &value) && !gather<GfVec3h>(indices, name(), &value))
+        !gather<GfVec3d>(indices, name(), &value) && !gather<GfVec3h>(indices, name(), &value) &&
+        !gather<GfVec2f>(indices, name(), &value) && !gather<GfVec2d>(indices, name(), &value) &&
+        !gather<GfVec2h>(indices, name(), &value))
         throw fault("%s has indices, which its type cannot have here", name().c_str());
     return value;
 }

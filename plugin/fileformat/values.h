@@ -19,6 +19,9 @@ std::vector<int32_t> integers(const VtValue &value, const std::string &what);
 std::vector<float> floats(const VtValue &value, const std::string &what); // also of one float
 VtVec3fArray positions(const VtValue &value, const std::string &what);
 
+// A texCoord2f[], or another array of two numbers each, as twice as many floats. type  is named where it is none.
+std::vector<float> pairs(const VtValue &value, const std::string &what, const TfToken &type);
+
 // Values > 0 of a bool[], int[] or float[].
 std::vector<bool> positive(const VtValue &value, const std::string &what);
 

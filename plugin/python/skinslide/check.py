@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd
 
+from skinslide.controls import PatchControls
 from skinslide.derived import Derived
 from skinslide.frames import UsageError
+from skinslide.maps import SampledMap
 from skinslide.meshes import SlidMesh, is_skinned, read_meshes
 from skinslide.problems import Problem, StageProblems, errors, frame_text
 from skinslide.samples import sample_problems
-from skinslide.slider import Lookup, PatchInfo, Slider, SliderError, choose_lookup
+from skinslide.slider import Lookup, PatchInfo, PatchSetup, Slider, SliderError, choose_lookup
 from skinslide.stage import open_stage
 
 
@@ -38,6 +40,20 @@ class CheckedPatch:
 
 
 @dataclass(frozen=True)
+class CheckedMap:
+    """A map of a patch at the first time. `tiles` are those the patch lies in; 0 is the one image of a map without."""
+
+    patch: str
+    name: str  # of the attribute
+    file: str
+    channel: str
+    st: str
+    tiles: list[int]
+    width: int  # of the largest tile
+    height: int
+
+
+@dataclass(frozen=True)
 class CheckedMesh:
     """A mesh that a bake would slide. `samples` are the stage times it would write."""
 
@@ -47,6 +63,7 @@ class CheckedMesh:
     rest: str
     samples: list[float]
     patches: list[CheckedPatch]
+    maps: list[CheckedMap]
 
 
 @dataclass(frozen=True)
@@ -115,6 +132,10 @@ def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
         name = patch.name if patch.pieces == 1 else f"{patch.name} ({patch.piece} of {patch.pieces})"
         counts = ("vertices", "free", "edges", "faces", "holes")
         yield f"  {name}: " + ", ".join(f"{count} {getattr(patch, count)}" for count in counts)
+    for used in mesh.maps:
+        tiles = f", tiles {', '.join(map(str, used.tiles))}" if used.tiles != [0] else ""
+        size = f"{used.width} x {used.height}"
+        yield f"  {used.name}: {used.file}, channel {used.channel}, {size}{tiles}, at primvars:{used.st}"
 
 
 def check(
@@ -146,7 +167,18 @@ def _check_mesh(mesh: SlidMesh, problems: list[Problem]) -> CheckedMesh:
     problems += Derived(mesh).problems
     times = mesh.sample_times()
     problems += sample_problems(mesh, times)
-    return CheckedMesh(mesh.path, mesh.vertex_count, mesh.topology.face_count, mesh.rest_source, times, patches)
+    used = [_checked_map(patch.name, each) for patch, read in _animated(mesh) for each in read.maps]
+    faces = mesh.topology.face_count
+    return CheckedMesh(mesh.path, mesh.vertex_count, faces, mesh.rest_source, times, patches, used)
+
+
+def _animated(mesh: SlidMesh) -> Iterator[tuple[PatchSetup, PatchControls]]:
+    return zip(mesh.patches, mesh.animation, strict=True)
+
+
+def _checked_map(patch: str, used: SampledMap) -> CheckedMap:
+    width, height = max(used.sizes.values())
+    return CheckedMap(patch, used.name, used.file, used.channel, used.st, list(used.sizes), width, height)
 
 
 def _sliders(mesh: SlidMesh, problems: list[Problem]) -> list[Slider]:

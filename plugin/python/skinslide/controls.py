@@ -5,12 +5,13 @@ Values off the patch do not count, since paint is often 0 there: they are replac
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide import names
+from skinslide.maps import SampledMap
 from skinslide.problems import Fault
 from skinslide.slider import Controls
 from skinslide.topology import Topology
@@ -25,6 +26,8 @@ from skinslide.values import (
     primvar_sources,
     unchanging,
 )
+
+ABOVE_0 = "finite and above 0"
 
 
 def envelope(prim: Usd.Prim, patch: str) -> Reading[float]:
@@ -41,9 +44,20 @@ def envelope(prim: Usd.Prim, patch: str) -> Reading[float]:
     return Reading(read, [names.attribute(prim, patch, "envelope")])
 
 
-def weight(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[np.ndarray | None]:
-    """Slide weight by mesh vertex (V,), or None where it is not painted."""
-    return _by_vertex(names.inherited_primvar(prim, patch, "weight"), topology, faces, np.isfinite, "a number")
+MapReading = Reading[SampledMap | None] | None
+
+
+def weight(
+    prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray, mapped: MapReading = None
+) -> Reading[np.ndarray | None]:
+    """Slide weight by mesh vertex (V,), paint times map, or None where there is neither."""
+    painted = _by_vertex(names.inherited_primvar(prim, patch, "weight"), topology, faces, np.isfinite, "a number")
+
+    def read(time: Usd.TimeCode) -> np.ndarray | None:
+        sampled = mapped.at(time) if mapped else None
+        return _times(painted.at(time), sampled.values if sampled else None)
+
+    return Reading(read, [*painted.varying, *_varying(mapped)])
 
 
 def max_distance(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[np.ndarray | None]:
@@ -75,8 +89,13 @@ def _by_vertex(
     return Reading(read, primvar_sources(primvar))
 
 
-def density(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -> Reading[dict[str, np.ndarray]]:
-    """Painted force density as arguments of Controls: by vertex, by face, or none: a constant changes no ratio."""
+def density(
+    prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray, mapped: MapReading = None
+) -> Reading[dict[str, np.ndarray]]:
+    """Force density, painted and by map, as arguments of Controls: by vertex, by face, both or none.
+
+    A constant is left out: it changes no ratio.
+    """
     primvar = names.inherited_primvar(prim, patch, "forceDensity")
     chosen = np.zeros(topology.face_count, dtype=bool)
     chosen[faces] = True
@@ -91,15 +110,36 @@ def density(prim: Usd.Prim, patch: str, topology: Topology, faces: np.ndarray) -
         UsdGeom.Tokens.constant: None,
     }
 
-    def read(time: Usd.TimeCode) -> dict[str, np.ndarray]:
+    def paint(time: Usd.TimeCode) -> dict[str, np.ndarray]:
         values = _painted(primvar, time, sizes)
         if values is None:
             return {}
         argument, inside = kinds[primvar.GetInterpolation()]
-        _check(_is_density(values) | ~inside, values, primvar.GetName(), "finite and above 0")
+        _check(_is_density(values) | ~inside, values, primvar.GetName(), ABOVE_0)
         return {argument: np.where(inside, values, np.float32(1))} if argument else {}
 
-    return Reading(read, primvar_sources(primvar))
+    def read(time: Usd.TimeCode) -> dict[str, np.ndarray]:
+        painted, sampled = paint(time), mapped.at(time) if mapped else None
+        if sampled is None:
+            return painted
+        what = f"{sampled.name}: {sampled.file}"
+        _check(_is_density(sampled.values), sampled.values, what, ABOVE_0, " at point {}")
+        product = _times(painted.get("vertex_density"), sampled.values)
+        _check(_is_density(product), product, f"{primvar.GetName()} times {what}", ABOVE_0, " at point {}")
+        return {**painted, "vertex_density": product}
+
+    return Reading(read, [*primvar_sources(primvar), *_varying(mapped)])
+
+
+def _varying(mapped: MapReading) -> list[Usd.Attribute]:
+    return mapped.varying if mapped else []
+
+
+def _times(painted: np.ndarray | None, mapped: np.ndarray | None) -> np.ndarray | None:
+    if painted is None or mapped is None:
+        return mapped if painted is None else painted
+    with np.errstate(over="ignore"):
+        return painted * mapped
 
 
 def edge_density(prim: Usd.Prim, patch: str) -> Reading[dict[str, np.ndarray]]:
@@ -119,7 +159,7 @@ def edge_density(prim: Usd.Prim, patch: str) -> Reading[dict[str, np.ndarray]]:
             raise Fault(f"{factors_name} has {len(factors)} values, but {name} has {len(edges)} pairs")
         for k in np.flatnonzero(~_is_density(factors))[:1]:
             edge = f"edge {edges[k][0]}-{edges[k][1]}"
-            raise Fault(f"{factors_name}[{k}], for {edge}, is {factors[k]:g}; it must be finite and above 0")
+            raise Fault(f"{factors_name}[{k}], for {edge}, is {factors[k]:g}; it must be {ABOVE_0}")
         return {"edges": edges, "edge_density": factors} if len(edges) else {}
 
     return Reading(read, [factors_attr])
@@ -143,11 +183,18 @@ def corners(prim: Usd.Prim, patch: str, vertex_count: int) -> np.ndarray | None:
 
 
 class PatchControls:
-    """The controls of one patch over time."""
+    """The controls of one patch over time. `maps` are those of the first time."""
 
     def __init__(
-        self, envelope: Reading, weight: Reading, max_distance: Reading, density: Reading, edge_density: Reading
+        self,
+        envelope: Reading,
+        weight: Reading,
+        max_distance: Reading,
+        density: Reading,
+        edge_density: Reading,
+        maps: Iterable[SampledMap] = (),
     ):
+        self.maps = list(maps)
         self._envelope, self._weight, self._max_distance = envelope, weight, max_distance
         self._density, self._edges = density, edge_density
         self._readings = (envelope, weight, max_distance, density, edge_density)
@@ -204,7 +251,7 @@ def _is_density(values: np.ndarray) -> np.ndarray:
     return np.isfinite(values) & (values > 0)
 
 
-def _check(good: np.ndarray, values: np.ndarray, name: str, wanted: str) -> None:
+def _check(good: np.ndarray, values: np.ndarray, name: str, wanted: str, place: str = "[{}]") -> None:
     bad = np.flatnonzero(~good)
     if bad.size:
-        raise Fault(f"{name}[{bad[0]}] is {values[bad[0]]:g}; it must be {wanted}")
+        raise Fault(f"{name}{place.format(bad[0])} is {values[bad[0]]:g}; it must be {wanted}")

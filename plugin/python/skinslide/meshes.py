@@ -13,6 +13,7 @@ from skinslide import controls, names
 from skinslide.controls import PatchControls
 from skinslide.earlier import baked_layer
 from skinslide.faces import read_faces
+from skinslide.maps import read_map
 from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, core_problem, usd_message
 from skinslide.rest import read_rest
 from skinslide.slider import Controls, Lookup, PatchSetup, Slider, SliderError, Subdivision
@@ -226,14 +227,15 @@ def _read_patch(
     tokens["rule"] = attempt(names.token, "forceDensityRule")
     corners = attempt(controls.corners, topology.vertex_count)
     painted = np.arange(topology.face_count) if faces is None else faces
+    maps = {control: attempt(read_map, control, topology, painted) for control in ("weight", "forceDensity")}
     readings = (
         attempt(controls.envelope),
-        attempt(controls.weight, topology, painted),
+        attempt(controls.weight, topology, painted, maps["weight"]),
         attempt(controls.max_distance, topology, painted),
-        attempt(controls.density, topology, painted),
+        attempt(controls.density, topology, painted, maps["forceDensity"]),
         attempt(controls.edge_density),
     )
     if len(problems) > before:
         return None
-    animation = PatchControls(*readings)
+    animation = PatchControls(*readings, maps=[read.first for read in maps.values() if read.first])
     return PatchSetup(name=name, faces=faces, corners=corners, **tokens, controls=animation.at()), animation

@@ -271,6 +271,10 @@ def enum_value(setting: str, token: str, where: str) -> int:
     return values[token]
 
 
+def token_of(setting: str, value: int) -> str:
+    return next(token for token, number in _values_by_token(setting).items() if number == value)
+
+
 def call(function: Any, *arguments: Any) -> None:
     error = ffi.new("skinslide_error *")
     status = function(*arguments, error)

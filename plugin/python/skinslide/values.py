@@ -22,23 +22,24 @@ SAME_TIME = 1e-6
 class Reading(Generic[T]):
     """A checked value over time, read once where it does not vary.
 
-    read  gives the value at a time, or raises Fault
+    read     gives the value at a time, or raises Fault
+    varying  those of its sources that may
     """
 
     def __init__(self, read: Callable[[Usd.TimeCode], T], sources: Iterable[Usd.Attribute]):
         self._read = read
-        self._varying = [source for source in sources if source and source.ValueMightBeTimeVarying()]
+        self.varying = [source for source in sources if source and source.ValueMightBeTimeVarying()]
         self.first = read(FIRST)
 
     @property
     def varies(self) -> bool:
-        return bool(self._varying)
+        return bool(self.varying)
 
     def at(self, time: Usd.TimeCode) -> T:
-        return self._read(time) if self._varying else self.first
+        return self._read(time) if self.varying else self.first
 
     def times(self, span: Span | None) -> list[float]:
-        return [time for source in self._varying for time in sample_times(source, span)]
+        return [time for source in self.varying for time in sample_times(source, span)]
 
 
 def primvar_sources(primvar: UsdGeom.Primvar) -> list[Usd.Attribute]:
