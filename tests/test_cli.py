@@ -25,7 +25,7 @@ def test_version(capsys):
     assert capsys.readouterr().out == f"skinslide {skinslide.__version__}\n"
 
 
-@pytest.mark.parametrize("command", ["bake", "check", "setup", "stitch"])
+@pytest.mark.parametrize("command", ["bake", "check", "setup", "paint", "mirror", "stitch"])
 def test_help_names_every_option_and_exit_code(command, capsys):
     assert cli.main([command, "--help"]) == 0
     said = capsys.readouterr().out

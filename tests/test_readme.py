@@ -17,7 +17,7 @@ SCRIPTS = Path(sysconfig.get_path("scripts"))
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """What a reader has: a cached character with a mask painted on its elbow, and a stage with its patch set up."""
+    """What a reader has: a cached character with masks painted on it, and a stage with its elbow's patch set up."""
     folder = tmp_path_factory.mktemp("readme")
     subprocess.run([sys.executable, ROOT / "examples/elbow/make.py", folder], check=True, capture_output=True)
     stage = Usd.Stage.Open(str(folder / "stage.usda"))
@@ -28,6 +28,8 @@ def folder(tmp_path_factory):
     mesh = character.GetPrimAtPath(mesh.GetPath())
     mask = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("elbowMask", Sdf.ValueTypeNames.BoolArray, UsdGeom.Tokens.uniform)
     mask.Set(painted)
+    tendon = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("tendon", Sdf.ValueTypeNames.FloatArray, UsdGeom.Tokens.vertex)
+    tendon.Set([1.0] * len(UsdGeom.Mesh(mesh).GetPointsAttr().Get()))
     mesh.ClearMetadata("apiSchemas")
     character.Save()
     return folder
@@ -39,7 +41,7 @@ def python_snippets():
 
 def shell_commands():
     """The lines of indented blocks, and inline code, that call the tool."""
-    return re.findall(r"(?:^    |`)(skinslide (?:setup|check|bake|stitch) [^`\n]*)", README, re.MULTILINE)
+    return re.findall(r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|bake|stitch) [^`\n]*)", README, re.MULTILINE)
 
 
 def test_readme_is_short():
@@ -58,7 +60,7 @@ def test_python_snippet(snippet, folder):
 
 def test_shell_commands_in_order(folder):
     commands = shell_commands()
-    assert len(commands) >= 6
+    assert len(commands) >= 8
     for command in commands:
         words = shlex.split(command.replace("STAGE", "stage.usda"))
         subprocess.run([SCRIPTS / words[0], *words[1:]], cwd=folder, check=True, capture_output=True, text=True)

@@ -1,7 +1,7 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `check` says what would be slid, `setup` writes a patch,
-`stitch` puts chunks of a bake together; `Slider` is the same on numpy arrays.
+`bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `setup` writes a
+patch, `paint` its edges, `mirror` its counterpart on a mesh's other side; `Slider` is the same on numpy arrays.
 """
 
 from pathlib import Path
@@ -12,6 +12,8 @@ from skinslide import fileformat
 from skinslide.bake import bake, bake_to_file
 from skinslide.check import check
 from skinslide.frames import FrameSpecError, UsageError, parse_frames
+from skinslide.mirror import mirror
+from skinslide.paint import PaintReport, paint
 from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
 from skinslide.report import BakeReport
 from skinslide.setup import setup
@@ -53,6 +55,7 @@ __all__ = [
     "FrameSpecError",
     "Lookup",
     "LookupInfo",
+    "PaintReport",
     "PatchSetup",
     "Problem",
     "Slider",
@@ -67,6 +70,8 @@ __all__ = [
     "check",
     "choose_lookup",
     "cmake_dir",
+    "mirror",
+    "paint",
     "parse_frames",
     "plugin_dir",
     "setup",

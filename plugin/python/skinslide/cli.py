@@ -131,6 +131,44 @@ def _written(report: str, arguments: argparse.Namespace) -> str:
     return f"{report}\n{arguments.output}: written; sublayer it above the cache"
 
 
+def _paint(arguments: argparse.Namespace) -> Result:
+    from skinslide.paint import paint
+
+    report = paint(
+        arguments.stage,
+        arguments.output,
+        arguments.prim,
+        arguments.patch,
+        arguments.value,
+        subset=arguments.subset,
+        primvar=arguments.primvar,
+        threshold=arguments.threshold,
+        curve=arguments.curve,
+        distance=arguments.within,
+        direction=arguments.direction,
+        clear=arguments.clear,
+        force=arguments.force,
+    )
+    return f"{report.text()}\n{arguments.output}: written", DONE
+
+
+def _mirror(arguments: argparse.Namespace) -> Result:
+    from skinslide.mirror import mirror
+
+    report = mirror(
+        arguments.stage,
+        arguments.output,
+        arguments.prim,
+        arguments.patch,
+        to=arguments.to,
+        axis=arguments.axis,
+        plane=arguments.plane,
+        tolerance=arguments.tolerance,
+        force=arguments.force,
+    )
+    return f"{report.text()}\n{arguments.output}: written", DONE
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="skinslide",
@@ -142,6 +180,8 @@ def _parser() -> argparse.ArgumentParser:
     _add_bake(_add_command(commands, "bake", _bake, "slide every frame and write a layer of corrected points"))
     _add_check(_add_command(commands, "check", _check, "say what would be slid, and every problem"))
     _add_setup(_add_command(commands, "setup", _setup, "write a layer that makes a patch of some faces of a mesh"))
+    _add_paint(_add_command(commands, "paint", _paint, "write a layer that gives edges of a patch a force density"))
+    _add_mirror(_add_command(commands, "mirror", _mirror, "write a layer that copies a patch to a mesh's other side"))
     _add_stitch(_add_command(commands, "stitch", _stitch, "put chunks of frames, baked apart, into one layer"))
     return parser
 
@@ -250,7 +290,8 @@ def _add_check(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
 
 
-def _add_setup(command: argparse.ArgumentParser) -> None:
+def _add_layer(command: argparse.ArgumentParser) -> None:
+    """What the commands that write a set-up have."""
     _add_stage(command)
     command.add_argument(
         "-o",
@@ -263,6 +304,11 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--prim", required=True, metavar="PATH", help="the mesh")
     command.add_argument("--patch", required=True, metavar="NAME", help="the patch's name, such as elbow_L")
+    command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
+
+
+def _add_setup(command: argparse.ArgumentParser) -> None:
+    _add_layer(command)
     faces = command.add_mutually_exclusive_group(required=True)
     faces.add_argument("--faces", metavar="SPEC", help="faces by index, such as 0-120,140; both ends count")
     faces.add_argument("--subset", metavar="NAME", help="the faces of the GeomSubset NAME under the mesh")
@@ -271,7 +317,44 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="the faces where the primvar NAME is above 0, by face (uniform) or on all points (vertex)",
     )
-    command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
+
+
+def _add_paint(command: argparse.ArgumentParser) -> None:
+    _add_layer(command)
+    command.add_argument("--value", type=float, required=True, metavar="X", help="the factor, above 0")
+    edges = command.add_mutually_exclusive_group(required=True)
+    edges.add_argument("--subset", metavar="NAME", help="the edges of the GeomSubset NAME, of elementType edge")
+    edges.add_argument("--primvar", metavar="NAME", help="edges with at least --threshold at both ends")
+    edges.add_argument("--curve", metavar="PATH", help="edges near a BasisCurves prim drawn on the mesh at rest")
+    command.add_argument("--threshold", type=float, default=0.5, metavar="X", help="for --primvar (default: 0.5)")
+    command.add_argument(
+        "--within", type=float, metavar="D", help="for --curve: edges whose middle is no farther, in the mesh's units"
+    )
+    command.add_argument(
+        "--direction",
+        default="any",
+        choices=("any", "along", "across"),
+        help="for --curve: edges at 45 degrees or less to it (along), at more (across), or any (default)",
+    )
+    command.add_argument("--clear", action="store_true", help="forget what was painted by edge before")
+
+
+def _add_mirror(command: argparse.ArgumentParser) -> None:
+    _add_layer(command)
+    command.add_argument("--to", metavar="NAME", help="the new patch's name (default: elbow_R for elbow_L)")
+    command.add_argument(
+        "--axis",
+        default="x",
+        choices=("x", "y", "z"),
+        help="the mesh is symmetric about a plane across it (default: x)",
+    )
+    command.add_argument("--plane", type=float, default=0.0, metavar="X", help="where the plane is (default: 0)")
+    command.add_argument(
+        "--tolerance",
+        type=float,
+        metavar="D",
+        help="how far a point may be from its counterpart's mirror image (default: 1e-4 of the mesh's largest extent)",
+    )
 
 
 def _add_stitch(command: argparse.ArgumentParser) -> None:

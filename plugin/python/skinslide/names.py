@@ -84,6 +84,11 @@ def declared(name: str) -> Sdf.AttributeSpec:
     )
 
 
+def declared_names() -> list[str]:
+    """The properties of a patch that the schema declares, such as envelope."""
+    return [spec.name.rpartition(":")[2] for spec in _schema_layer().GetPrimAtPath(f"/{SCHEMA}").attributes]
+
+
 @cache
 def _schema_layer() -> Sdf.Layer:
     """The generated schema, read as a file since the registry may have started before skinslide was imported."""

@@ -37,6 +37,16 @@ class Topology:
         vertices[self.face_indices[np.repeat(inside, self.face_counts)]] = True
         return vertices
 
+    def edges_of(self, faces: np.ndarray) -> np.ndarray:
+        """The edges of some faces (n,), int32 (k, 2), each once, the lower vertex first, ascending."""
+        inside = np.zeros(self.face_count, dtype=bool)
+        inside[faces] = True
+        ends = np.cumsum(self.face_counts)
+        following = np.arange(1, len(self.face_indices) + 1)
+        following[(ends - 1)[self.face_counts > 0]] = (ends - self.face_counts)[self.face_counts > 0]
+        sides = np.stack([self.face_indices, self.face_indices[following]], axis=1)
+        return np.unique(np.sort(sides[np.repeat(inside, self.face_counts)], axis=1), axis=0)
+
 
 def read_topology(mesh: UsdGeom.Mesh, vertex_count: int) -> Topology:
     counts, indices = map(_read, (mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()))
