@@ -153,7 +153,7 @@ static skinslide_status run_images(const float *pixels, skinslide_error *error) 
     enum { SIDE = 40 };
     const skinslide_channel channels[2] = {{"R", pixels}, {"G", pixels}};
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {3, 1, 3, counts, indices, NULL};
+    const skinslide_mesh mesh = {3, 1, 3, counts, indices, NULL, NULL};
     const float st[6] = {0, 0, 1, 0, 1, 1};
     skinslide_bytes *made = NULL;
     skinslide_image *image = NULL;
