@@ -137,19 +137,34 @@ bool is_on_boundary(const Far::TopologyLevel &level, int vertex) {
 }
 
 bool is_crease(const Far::TopologyLevel &level, int edge) {
-    return !level.IsEdgeBoundary(edge) && level.GetEdgeSharpness(edge) > 0;
+    return !level.IsEdgeBoundary(edge) && !level.IsEdgeNonManifold(edge) && level.GetEdgeSharpness(edge) > 0;
 }
 
 bool is_creased(const Far::TopologyLevel &level, int vertex) {
     return any_of(level.GetVertexEdges(vertex), is_crease, level);
 }
 
-/* OpenSubdiv before 3.5.1 reads creases that it has not written where all three meet in a face, and crashes. */
-bool crashes(const ss_topology &topology, int32_t face) {
+/* Whether a face around the vertices of a face has an edge or a vertex, at which the mesh is not a surface. */
+bool is_near_non_manifold(const Far::TopologyLevel &level, const Far::ConstIndexArray &vertices) {
+    auto vertex_is = [](const Far::TopologyLevel &own, int vertex) { return own.IsVertexNonManifold(vertex); };
+    auto edge_is = [](const Far::TopologyLevel &own, int edge) { return own.IsEdgeNonManifold(edge); };
+    for (int vertex : vertices)
+        for (int face : level.GetVertexFaces(vertex))
+            if (any_of(level.GetFaceVertices(face), vertex_is, level) || any_of(level.GetFaceEdges(face), edge_is, level))
+                return true;
+    return false;
+}
+
+/* Why OpenSubdiv before 3.5.1 crashes at a face, or NULL. Around a creased vertex it reads creases that it has not written where
+ * a boundary and a vertex of two faces meet in the face, and looks for edges that are not there where the mesh is no surface. */
+const char *crash_at(const ss_topology &topology, int32_t face) {
     Far::TopologyLevel level = topology.refiner->GetLevel(0);
     Far::ConstIndexArray vertices = level.GetFaceVertices(face);
-    return OPENSUBDIV_VERSION_NUMBER < 30501 && any_of(vertices, has_two_faces_around, level) &&
-           any_of(vertices, is_on_boundary, level) && any_of(vertices, is_creased, level);
+    if (OPENSUBDIV_VERSION_NUMBER >= 30501 || !any_of(vertices, is_creased, level))
+        return nullptr;
+    if (any_of(vertices, has_two_faces_around, level) && any_of(vertices, is_on_boundary, level))
+        return "a crease, the mesh's boundary and a vertex of two faces";
+    return is_near_non_manifold(level, vertices) ? "a crease, near where the mesh is not manifold" : nullptr;
 }
 
 skinslide_status refuse_hole(const ss_topology &topology, int32_t face, const char *label, skinslide_error *error) {
@@ -166,11 +181,9 @@ skinslide_status build_surfaces(const ss_topology &topology, const int32_t *face
     surfaces.vertex_start.assign(1, 0);
     for (int32_t f = 0; f < count; f++) {
         Surface &surface = surfaces.faces[size_t(f)];
-        if (crashes(topology, faces[f]))
-            return ss_fail(error, SKINSLIDE_UNSUPPORTED,
-                           "%s: face %d has a crease, the mesh's boundary and a vertex of two faces; OpenSubdiv before 3.5.1 "
-                           "cannot subdivide it",
-                           label, faces[f]);
+        if (const char *why = crash_at(topology, faces[f]))
+            return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: face %d has %s; OpenSubdiv before 3.5.1 cannot subdivide it",
+                           label, faces[f], why);
         if (!topology.factory->InitVertexSurface(faces[f], &surface))
             return refuse_hole(topology, faces[f], label, error);
         int32_t start = surfaces.vertex_start.back(), own = surface.GetNumControlPoints();
