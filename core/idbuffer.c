@@ -7,7 +7,8 @@
  * is waited for: the host goes on with the next patch, and first waits when it maps the answers.
  *
  * What comes back only proposes faces. Everything may fail at any time; the context is then dropped, the caller walks, and the
- * next draw makes a new one, once: a context that cannot be made again is not tried for any more.
+ * next draw makes a new one. None is made any more where one cannot be made, or where two in a row are lost before either
+ * answers.
  *
  * Resolution: a power of two from 256 to 4096. Four texels a free vertex, along a side; more where the smallest face of the
  * rest embedding would be under a texel, up to four times as many. */
@@ -18,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SMALLEST_SIDE = 256, LARGEST_SIDE = 4096 };
+enum { SMALLEST_SIDE = 256, LARGEST_SIDE = 4096, MOST_LOSSES = 2 };
 
 /* One patch: its arrays on the host, its buffers on the device. */
 typedef struct drawing {
@@ -35,7 +36,8 @@ struct ss_idbuffer {
     ss_memory memory;
     ss_device_request request;
     ss_egl *egl; /* NULL once lost, until it is made again */
-    bool gone;   /* it could not be made again */
+    bool gone;   /* it is not made again */
+    int losses;  /* since it last answered */
     skinslide_lookup_info info;
     drawing *drawings; /* [drawing_count] */
     int32_t drawing_count, largest_side;
@@ -232,6 +234,7 @@ static void lose(ss_idbuffer *buffer, const char *call, const char *failure) {
     snprintf(buffer->info.reason, sizeof buffer->info.reason, "%s: %s", call, failure);
     ss_egl_close(buffer->egl);
     buffer->egl = NULL;
+    buffer->gone = ++buffer->losses >= MOST_LOSSES;
     for (int32_t p = 0; p < buffer->drawing_count; p++)
         buffer->drawings[p].drawn = false;
 }
@@ -261,6 +264,13 @@ static void leave(ss_idbuffer *buffer, const ss_egl_before *before, const char *
         lose(buffer, what, good ? "its answers cannot be mapped" : failure);
 }
 
+/* The device's description, and still how the one before it failed. */
+static void take_info(ss_idbuffer *buffer) {
+    skinslide_lookup_info info = buffer->egl->info;
+    memcpy(info.reason, buffer->info.reason, sizeof info.reason);
+    buffer->info = info;
+}
+
 /* Every side within the device's limit: a fixed one must be, a suitable one gives way. */
 static skinslide_status settle_sides(ss_idbuffer *buffer, skinslide_error *error) {
     int32_t most = buffer->info.largest_resolution;
@@ -281,7 +291,7 @@ static skinslide_status open_context(ss_idbuffer *buffer, skinslide_error *error
     skinslide_status status = ss_egl_open(&buffer->request, &buffer->egl, error);
     if (status)
         return status;
-    buffer->info = buffer->egl->info;
+    take_info(buffer);
     status = settle_sides(buffer, error);
     if (!status && !ss_egl_enter(buffer->egl, &before))
         status = ss_fail(error, SKINSLIDE_DEVICE_FAILED, "eglMakeCurrent: %s", ss_egl_error_name(before.failure));
@@ -439,6 +449,8 @@ bool ss_idbuffer_candidates(ss_idbuffer *buffer, int32_t patch, ss_candidates *c
         copy_answers(drawn, answers, candidates);
     bool mapped = answers && gl->glUnmapBuffer(GL_TRANSFORM_FEEDBACK_BUFFER);
     leave(buffer, &before, "reading candidates", mapped);
+    if (drawn->drawn)
+        buffer->losses = 0;
     return drawn->drawn;
 }
 
@@ -461,13 +473,17 @@ skinslide_status ss_idbuffer_read(ss_idbuffer *buffer, int32_t patch, const doub
     ss_memory scratch = {0};
     ss_egl_before before;
     uint32_t(*band)[4] = ss_new(&scratch, (int64_t)ROWS * drawn->side, sizeof *band);
-    if (!band)
-        return ss_out_of_memory(error);
-    if (enter_anew(buffer, &before)) {
+    uint32_t *read = SS_NEW(&scratch, uint32_t, (int64_t)drawn->side * drawn->side);
+    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status && enter_anew(buffer, &before)) {
         draw_faces(buffer, drawn, uv);
-        read_texels(&buffer->egl->api, drawn->side, band, ROWS, texels);
+        read_texels(&buffer->egl->api, drawn->side, band, ROWS, read);
         leave(buffer, &before, "reading the ID buffer", true);
     }
+    if (!status && !buffer->egl)
+        status = ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s", buffer->info.reason);
+    if (!status)
+        memcpy(texels, read, (size_t)drawn->side * (size_t)drawn->side * sizeof *texels);
     ss_free(&scratch);
-    return buffer->egl ? SKINSLIDE_OK : ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s", buffer->info.reason);
+    return status;
 }

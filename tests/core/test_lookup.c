@@ -199,6 +199,13 @@ static void options_that_cannot_be(void **state) {
 
 /* ---- In the middle of a shot ---- */
 
+static skinslide_lookup_info lookup_of(const skinslide_workspace *workspace) {
+    skinslide_lookup_info info;
+    skinslide_error error;
+    assert_ok(skinslide_workspace_lookup(workspace, &info, &error), &error);
+    return info;
+}
+
 /* A device that fails once, in each way: the frame has the same bytes and counts one texture lost, unless the failure showed
  * before anything was drawn; the next frame has its texture again. */
 static void a_context_lost_in_the_middle_of_a_shot(void **state) {
@@ -231,8 +238,30 @@ static void a_context_lost_in_the_middle_of_a_shot(void **state) {
         skinslide_patch_result next = expect_same(&s, workspace);
         assert_int_equal(next.lost_textures, 0);
         assert_true(next.found_in_centre > 0);
+        assert_true(strlen(lookup_of(workspace).reason) > 0); /* which a new context does not make forgotten */
         skinslide_workspace_destroy(workspace);
     }
+    free_scene(&s);
+}
+
+/* A device that takes every drawing and loses it: the second loss in a row is the last, one with answers between is not. */
+static void a_device_that_never_finishes(void **state) {
+    (void)state;
+    scene s = scene_of(6);
+    const fault resets = {.call = "glGetGraphicsResetStatus", .times = -1, .code = 0x8253, .devices = -1};
+    plan_fault((fault)NO_FAULT);
+    skinslide_workspace *workspace = workspace_at(s.exact.slider, SKINSLIDE_LOOKUP_EGL, 0, load_with_faults);
+    for (int i = 0; i < 3; i++) {
+        plan_fault((fault){.call = resets.call, .times = 1, .code = resets.code, .devices = -1});
+        assert_int_equal(expect_same(&s, workspace).lost_textures, 1);
+        assert_int_equal(expect_same(&s, workspace).lost_textures, 0);
+    }
+    plan_fault(resets);
+    for (int frame = 0; frame < 5; frame++)
+        assert_int_equal(expect_same(&s, workspace).lost_textures, 1);
+    assert_int_equal(faults_struck(), 2);
+    assert_non_null(strstr(lookup_of(workspace).reason, "the context was lost, 0x8253"));
+    skinslide_workspace_destroy(workspace);
     free_scene(&s);
 }
 
@@ -240,7 +269,6 @@ static void a_context_lost_in_the_middle_of_a_shot(void **state) {
 static void a_device_that_is_gone(void **state) {
     (void)state;
     scene s = scene_of(6);
-    skinslide_lookup_info info;
     skinslide_error error;
     plan_fault((fault)NO_FAULT);
     skinslide_workspace *workspace = workspace_at(s.exact.slider, SKINSLIDE_LOOKUP_EGL, 0, load_with_faults);
@@ -248,8 +276,7 @@ static void a_device_that_is_gone(void **state) {
     for (int frame = 0; frame < 3; frame++)
         assert_int_equal(expect_same(&s, workspace).lost_textures, 1);
     assert_int_equal(faults_struck(), 3); /* the draw; then the device and the surfaceless platform, anew */
-    assert_ok(skinslide_workspace_lookup(workspace, &info, &error), &error);
-    assert_non_null(strstr(info.reason, "EGL_CONTEXT_LOST"));
+    assert_non_null(strstr(lookup_of(workspace).reason, "EGL_CONTEXT_LOST"));
     int32_t side;
     uint32_t texel;
     assert_int_equal(skinslide_workspace_id_buffer(workspace, 0, &side, &texel, &error), SKINSLIDE_DEVICE_FAILED);
@@ -402,6 +429,29 @@ static void the_texture_can_be_read(void **state) {
     free_scene(&s);
 }
 
+static void a_texture_that_cannot_be_read_writes_nothing(void **state) {
+    (void)state;
+    enum { SIDE = 32 };
+    scene s = scene_of(8);
+    static uint32_t texels[SIDE * SIDE];
+    int32_t side = -7;
+    skinslide_error error;
+    plan_fault((fault)NO_FAULT);
+    skinslide_workspace *workspace = workspace_at(s.exact.slider, SKINSLIDE_LOOKUP_EGL, SIDE, load_with_faults);
+    expect_same(&s, workspace);
+    memset(texels, 0xab, sizeof texels);
+    plan_fault((fault){.call = "glGetError", .times = 1, .code = GL_OUT_OF_MEMORY, .devices = -1});
+    assert_fails(skinslide_workspace_id_buffer(workspace, 0, &side, texels, &error), &error, SKINSLIDE_DEVICE_FAILED,
+                 "reading the ID buffer: OpenGL error 0x0505");
+    assert_int_equal(side, -7);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_int_equal(texels[i], 0xabababab);
+    assert_ok(skinslide_workspace_id_buffer(workspace, 0, &side, texels, &error), &error);
+    assert_int_equal(texels[0], 0);
+    skinslide_workspace_destroy(workspace);
+    free_scene(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_lookups_give_the_same_bytes),
@@ -410,6 +460,7 @@ int main(void) {
         cmocka_unit_test(egl_asked_for_and_not_to_be_had),
         cmocka_unit_test(options_that_cannot_be),
         cmocka_unit_test(a_context_lost_in_the_middle_of_a_shot),
+        cmocka_unit_test(a_device_that_never_finishes),
         cmocka_unit_test(a_device_that_is_gone),
         cmocka_unit_test(a_device_that_answers_nonsense),
         cmocka_unit_test(a_host_that_ends_the_display),
@@ -417,6 +468,7 @@ int main(void) {
         cmocka_unit_test(a_workspace_goes_from_thread_to_thread),
         cmocka_unit_test(workspaces_come_and_go),
         cmocka_unit_test(the_texture_can_be_read),
+        cmocka_unit_test(a_texture_that_cannot_be_read_writes_nothing),
     };
     return cmocka_run_group_tests_name("lookup", tests, NULL, NULL);
 }
