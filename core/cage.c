@@ -91,18 +91,40 @@ static void append_stencil(const ss_cage *cage, int32_t s, double *weights, ss_r
     rows->start[s + 1] = end;
 }
 
-static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
-    int32_t count = cage->sample_count, most = ss_surfaces_most_vertices(cage->surfaces);
+/* Room for all rows, where a vertex that is in one twice counts twice: faces around a pole have many times what others have. */
+static int64_t count_entries(const ss_cage *cage, double *weights) {
+    int64_t entries = 0;
+    for (int32_t s = 0; s < cage->sample_count; s++) {
+        const sample *own = &cage->samples[s];
+        const int32_t *vertices;
+        int32_t count = ss_limit_stencil(cage->surfaces, own->face, &own->at, &vertices, weights);
+        for (int32_t k = 0; k < count; k++)
+            entries += fabs(weights[k]) >= negligible;
+    }
+    return entries;
+}
+
+static skinslide_status fill_stencils(ss_cage *cage, double *weights, skinslide_error *error) {
+    int32_t count = cage->sample_count;
+    int64_t entries = count_entries(cage, weights);
     ss_rows *rows = &cage->stencils;
-    ss_memory scratch = {0};
-    double *weights = SS_NEW(&scratch, double, most);
+    if (entries > INT32_MAX)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its limit system is too large", cage->patch->label);
     rows->row_count = count;
     rows->start = SS_NEW(&cage->memory, int32_t, (int64_t)count + 1);
-    rows->column = SS_NEW(&cage->memory, int32_t, (int64_t)count * most);
-    rows->value = SS_NEW(&cage->memory, double, (int64_t)count *most);
-    skinslide_status status = cage->memory.failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    for (int32_t s = 0; s < count && !status; s++)
+    rows->column = SS_NEW(&cage->memory, int32_t, entries);
+    rows->value = SS_NEW(&cage->memory, double, entries);
+    if (cage->memory.failed)
+        return ss_out_of_memory(error);
+    for (int32_t s = 0; s < count; s++)
         append_stencil(cage, s, weights, rows);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
+    ss_memory scratch = {0};
+    double *weights = SS_NEW(&scratch, double, ss_surfaces_most_vertices(cage->surfaces));
+    skinslide_status status = weights ? fill_stencils(cage, weights, error) : ss_out_of_memory(error);
     ss_free(&scratch);
     return status;
 }

@@ -14,15 +14,21 @@ void __wrap_free(void *memory);
 static bool watching;
 static int32_t left_to_give; /* allocations before one fails; below 0: none does */
 static int32_t live;
+static size_t largest; /* that the core asked for */
 
 static bool refuse(void) {
     return watching && left_to_give >= 0 && left_to_give-- == 0;
 }
 
-void *__wrap_calloc(size_t count, size_t size) {
+static void *give(size_t count, size_t size) {
     void *memory = refuse() ? NULL : __real_calloc(count, size);
     live += watching && memory;
     return memory;
+}
+
+void *__wrap_calloc(size_t count, size_t size) {
+    largest = watching && count * size > largest ? count * size : largest;
+    return give(count, size);
 }
 
 void __wrap_free(void *memory) {
@@ -31,7 +37,7 @@ void __wrap_free(void *memory) {
 }
 
 static void *solver_malloc(size_t size) {
-    return __wrap_calloc(1, size);
+    return give(1, size);
 }
 
 /* ---- Memory of the core itself ---- */
@@ -209,6 +215,28 @@ static void a_frame_allocates_nothing(void **state) {
     free_scene(&s);
 }
 
+/* 200 faces around a pole have 200 vertices and more each; the 1,800 others have 16, and no room is taken for more. */
+static void a_pole_takes_room_for_itself_alone(void **state) {
+    (void)state;
+    static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    test_mesh mesh = finger(200, 9);
+    skinslide_mesh view = view_of(&mesh);
+    view.subdivision = &catmull_clark;
+    int32_t *faces = all_faces(&mesh);
+    skinslide_patch_setup setup = setup_of(faces, mesh.face_count);
+    skinslide_slider *slider = NULL;
+    skinslide_error error;
+    left_to_give = -1, largest = 0, watching = true;
+    skinslide_status status = skinslide_slider_create(&view, &setup, 1, &slider, &error);
+    watching = false;
+    assert_ok(status, &error);
+    print_message("%d faces: at most %zu bytes at once\n", mesh.face_count, largest);
+    assert_in_range(largest, 1, 2500000);
+    skinslide_slider_destroy(slider);
+    free(faces);
+    free_mesh(&mesh);
+}
+
 int main(void) {
     SuiteSparse_config.malloc_func = solver_malloc;
     SuiteSparse_config.calloc_func = __wrap_calloc;
@@ -216,7 +244,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(counts_that_are_too_large_fail), cmocka_unit_test(memory_is_zero_and_aligned),
         cmocka_unit_test(each_allocation_fails_in_turn),  cmocka_unit_test(each_allocation_for_images_fails_in_turn),
-        cmocka_unit_test(a_frame_allocates_nothing),
+        cmocka_unit_test(a_frame_allocates_nothing),      cmocka_unit_test(counts_that_are_too_large_fail),
+        cmocka_unit_test(memory_is_zero_and_aligned),     cmocka_unit_test(each_allocation_fails_in_turn),
+        cmocka_unit_test(a_frame_allocates_nothing),      cmocka_unit_test(a_pole_takes_room_for_itself_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
