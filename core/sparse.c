@@ -17,7 +17,9 @@ struct ss_sparse {
     klu_numeric *numeric;
 };
 
-/* klu_solve works in memory of the factor's: each thread has a copy of the factor's head with memory of its own. */
+/* klu_solve works in memory of the factor's: each thread has a copy of the factor's head with memory of its own. That the head
+ * can be copied, and that Xwork alone is written, holds for KLU 1 and 2. */
+_Static_assert(KLU_MAIN_VERSION == 1 || KLU_MAIN_VERSION == 2, "see whether klu_solve of this KLU writes more than Xwork");
 struct ss_sparse_work {
     ss_memory memory;
     const ss_sparse *sparse;
@@ -83,7 +85,11 @@ static int32_t multiply_row(const ss_rows *rows, const ss_rows *transposed, int3
     return count;
 }
 
-static skinslide_status multiply(const ss_rows *rows, product *out, skinslide_error *error) {
+static skinslide_status too_large(const char *label, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its limit system is too large", label);
+}
+
+static skinslide_status multiply(const ss_rows *rows, const char *label, product *out, skinslide_error *error) {
     ss_memory *memory = &out->memory;
     int32_t n = rows->column_count;
     int64_t entries = 0;
@@ -97,7 +103,7 @@ static skinslide_status multiply(const ss_rows *rows, product *out, skinslide_er
     for (int32_t j = 0; j < n; j++)
         entries += multiply_row(rows, &out->transpose, j, place, touched, NULL);
     if (entries > INT32_MAX)
-        return ss_out_of_memory(error);
+        return too_large(label, error);
     new_rows(memory, n, n, entries, &out->square);
     if (memory->failed)
         return ss_out_of_memory(error);
@@ -112,7 +118,7 @@ static skinslide_status refuse(const ss_sparse *sparse, const char *label, skins
     if (sparse->common.status == KLU_OUT_OF_MEMORY)
         return ss_out_of_memory(error);
     if (sparse->common.status == KLU_TOO_LARGE)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its limit system is too large", label);
+        return too_large(label, error);
     return ss_fail(error, SKINSLIDE_SINGULAR, "%s: its vertices do not follow from points of its limit surface", label);
 }
 
@@ -148,7 +154,7 @@ skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_spa
     copy_rows(&sparse->memory, rows, &sparse->rows);
     skinslide_status status = sparse->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status && rows->column_count > 0)
-        status = multiply(rows, &square, error);
+        status = multiply(rows, label, &square, error);
     if (!status && rows->column_count > 0)
         status = factor(sparse, &square.square, label, error);
     ss_free(&square.memory);

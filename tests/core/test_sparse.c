@@ -103,11 +103,29 @@ static void dependent_columns_are_refused(void **state) {
     }
 }
 
+/* A row of 46,341 entries, whose square has more than an int counts. */
+static void a_square_that_is_too_large(void **state) {
+    (void)state;
+    enum { COLUMNS = 46341 };
+    int32_t start[2] = {0, COLUMNS}, *column = malloc(COLUMNS * sizeof *column);
+    double *value = malloc(COLUMNS * sizeof *value);
+    for (int32_t j = 0; j < COLUMNS; j++)
+        column[j] = j, value[j] = 1;
+    const ss_rows rows = {1, COLUMNS, start, column, value};
+    ss_sparse *sparse = NULL;
+    skinslide_error error;
+    assert_fails(ss_sparse_create(&rows, "patch all", &sparse, &error), &error, SKINSLIDE_UNSUPPORTED,
+                 "patch all: its limit system is too large");
+    assert_null(sparse);
+    free(column), free(value);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(normal_equations_hold),
         cmocka_unit_test(no_columns_are_no_work),
         cmocka_unit_test(dependent_columns_are_refused),
+        cmocka_unit_test(a_square_that_is_too_large),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
