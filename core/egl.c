@@ -19,20 +19,19 @@
 
 enum { MOST_DEVICES = 32, MOST_DISPLAYS = MOST_DEVICES + 2 };
 
-/* What is to be said of everything tried. */
-typedef struct log {
-    char text[360];
+typedef struct account {
+    char text[400];
     size_t length;
-} log;
+} account;
 
-__attribute__((format(printf, 2, 3))) static void say(log *tried, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static void say(account *told, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(tried->text + tried->length, sizeof tried->text - tried->length, format, arguments);
+    int length = vsnprintf(told->text + told->length, sizeof told->text - told->length, format, arguments);
     va_end(arguments);
-    tried->length += length > 0 ? (size_t)length : 0;
-    if (tried->length > sizeof tried->text - 1)
-        tried->length = sizeof tried->text - 1;
+    told->length += length > 0 ? (size_t)length : 0;
+    if (told->length > sizeof told->text - 1)
+        told->length = sizeof told->text - 1;
 }
 
 const char *ss_egl_error_name(EGLint code) {
@@ -135,13 +134,17 @@ static int32_t list_devices(const ss_egl_api *api, const char *client, const ss_
 
 /* Fills choices [MOST_DISPLAYS]; returns their count. Where EGL lists devices and only hardware will do, they are all there is:
  * it would be the same devices that the other platforms find. */
-static int32_t list_choices(const ss_egl_api *api, const ss_device_request *request, choice *choices, log *tried) {
+static int32_t list_choices(const ss_egl_api *api, const ss_device_request *request, choice *choices, account *tried) {
     const char *client = api->eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     int32_t count = 0, devices = list_devices(api, client, request, choices, &count);
     if (devices < 0)
         say(tried, "EGL does not list devices; ");
+    else if (request->device >= MOST_DEVICES && devices == MOST_DEVICES)
+        say(tried, "only EGL's first %d devices are tried, not device %d; ", MOST_DEVICES, request->device);
     else if (request->device >= devices)
         say(tried, "there is no EGL device %d, there are %d; ", request->device, devices);
+    else if (request->hardware_only && count == 0 && request->device >= 0)
+        say(tried, "EGL device %d is a software rasteriser; ", request->device);
     else if (request->hardware_only && count == 0)
         say(tried, devices ? "EGL has only software rasterisers; " : "EGL has no devices; ");
     if (request->device >= 0 || (request->hardware_only && devices > 0))
@@ -162,16 +165,16 @@ static void name_choice(const choice *made, char *name, size_t size) {
 
 /* ---- A context on one of them ---- */
 
-static bool report_code(log *tried, const char *call, EGLint code) {
+static bool report_code(account *tried, const char *call, EGLint code) {
     say(tried, "%s: %s; ", call, ss_egl_error_name(code));
     return false;
 }
 
-static bool report(const ss_egl_api *api, log *tried, const char *call) {
+static bool report(const ss_egl_api *api, account *tried, const char *call) {
     return report_code(tried, call, api->eglGetError());
 }
 
-static bool open_display(ss_egl *egl, const choice *made, log *tried) {
+static bool open_display(ss_egl *egl, const choice *made, account *tried) {
     const ss_egl_api *api = &egl->api;
     egl->display = made->platform ? api->eglGetPlatformDisplayEXT(made->platform, made->native, NULL)
                                   : api->eglGetDisplay(EGL_DEFAULT_DISPLAY);
@@ -181,7 +184,7 @@ static bool open_display(ss_egl *egl, const choice *made, log *tried) {
 }
 
 /* Robust where that is to be had: a reset of the device then loses the context and tells, and does not end the process. */
-static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions, log *tried) {
+static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions, account *tried) {
     const ss_egl_api *api = &egl->api;
     const EGLint robust[] = {EGL_CONTEXT_CLIENT_VERSION,
                              3,
@@ -200,7 +203,7 @@ static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions
 }
 
 /* A context without config and surface, or with the first config for a pixel of a buffer. */
-static bool make_context(ss_egl *egl, log *tried) {
+static bool make_context(ss_egl *egl, account *tried) {
     const ss_egl_api *api = &egl->api;
     const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_NONE};
     const EGLint pixel[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
@@ -228,8 +231,7 @@ static bool is_software(const char *renderer) {
 /* Only the context's own list says whether the function may be called. */
 static void find_reset_status(ss_egl_api *api) {
     const char *extensions = (const char *)api->glGetString(GL_EXTENSIONS);
-    if (api->glGetGraphicsResetStatus)
-        return;
+    api->glGetGraphicsResetStatus = NULL;
     if (has(extensions, "GL_EXT_robustness"))
         set(&api->glGetGraphicsResetStatus, gl_address(api, "glGetGraphicsResetStatusEXT"));
     else if (has(extensions, "GL_KHR_robustness"))
@@ -237,7 +239,7 @@ static void find_reset_status(ss_egl_api *api) {
 }
 
 /* What the context is; false where it is no OpenGL ES 3 or cannot be made current. */
-static bool describe(ss_egl *egl, const choice *made, log *tried) {
+static bool describe(ss_egl *egl, const choice *made, account *tried) {
     ss_egl_before before;
     skinslide_lookup_info *info = &egl->info;
     if (!ss_egl_enter(egl, &before))
@@ -255,7 +257,7 @@ static bool describe(ss_egl *egl, const choice *made, log *tried) {
     info->software = made->software || is_software(info->renderer);
     if (strncmp(info->driver, "OpenGL ES 3", 11) == 0)
         return true;
-    say(tried, "it has %s; ", info->driver);
+    say(tried, "it has %.60s; ", info->driver);
     return false;
 }
 
@@ -267,13 +269,10 @@ static void drop_context(ss_egl *egl) {
     egl->surface = EGL_NO_SURFACE, egl->context = EGL_NO_CONTEXT;
 }
 
-static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, log *tried) {
-    char name[sizeof egl->info.device_name];
-    name_choice(made, name, sizeof name);
-    say(tried, "%s: ", name);
+static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, account *tried) {
     bool made_one = open_display(egl, made, tried) && make_context(egl, tried) && describe(egl, made, tried);
     if (made_one && hardware_only && egl->info.software) {
-        say(tried, "%s is a software rasteriser; ", egl->info.renderer);
+        say(tried, "%.60s is a software rasteriser; ", egl->info.renderer);
         made_one = false;
     }
     if (!made_one)
@@ -281,32 +280,90 @@ static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, log 
     return made_one;
 }
 
+/* ---- All of them ---- */
+
+/* Devices of successive numbers that failed alike are told as one, and those for which there is no room by their number. */
+typedef struct attempts {
+    account told;
+    account failure; /* not told yet, of first and the devices behind it */
+    choice first;
+    int32_t count, untold;
+} attempts;
+
+enum { ROOM_FOR_OTHERS = 180 }; /* than devices, which are tried last */
+
+static void tell(attempts *tried) {
+    char name[96];
+    account entry = {0};
+    bool is_device = tried->first.platform == EGL_PLATFORM_DEVICE_EXT;
+    name_choice(&tried->first, name, sizeof name);
+    if (tried->count > 1)
+        snprintf(name, sizeof name, "EGL devices %d-%d", tried->first.device, tried->first.device + tried->count - 1);
+    say(&entry, "%s: %s", name, tried->failure.text);
+    if (is_device && tried->told.length + entry.length > sizeof entry.text - ROOM_FOR_OTHERS)
+        tried->untold += tried->count;
+    else if (tried->count > 0)
+        say(&tried->told, "%s", entry.text);
+    tried->count = 0;
+}
+
+static void note(attempts *tried, const choice *made, const account *failure) {
+    const choice *first = &tried->first;
+    bool same = tried->count > 0 && first->platform == EGL_PLATFORM_DEVICE_EXT && made->platform == first->platform &&
+                made->device == first->device + tried->count && strcmp(tried->failure.text, failure->text) == 0;
+    if (!same) {
+        tell(tried);
+        tried->first = *made, tried->failure = *failure;
+    }
+    if (made->platform != EGL_PLATFORM_DEVICE_EXT && tried->untold) {
+        say(&tried->told, "and %d more devices; ", tried->untold);
+        tried->untold = 0;
+    }
+    tried->count++;
+}
+
+static const char *tell_all(attempts *tried) {
+    tell(tried);
+    if (tried->untold)
+        say(&tried->told, "and %d more devices; ", tried->untold);
+    if (tried->told.length > 2)
+        tried->told.text[tried->told.length - 2] = 0; /* the last separator */
+    return tried->told.text;
+}
+
+static bool try_all(ss_egl *egl, const ss_device_request *request, attempts *tried) {
+    choice choices[MOST_DISPLAYS];
+    EGLenum before = egl->api.eglQueryAPI();
+    int32_t count = list_choices(&egl->api, request, choices, &tried->told);
+    bool made = false;
+    egl->api.eglBindAPI(EGL_OPENGL_ES_API);
+    for (int32_t i = 0; i < count && !made; i++) {
+        account failure = {0};
+        made = try_choice(egl, &choices[i], request->hardware_only, &failure);
+        if (!made)
+            note(tried, &choices[i], &failure);
+    }
+    egl->api.eglBindAPI(before);
+    return made;
+}
+
 /* ---- Open, enter, leave, close ---- */
 
 skinslide_status ss_egl_open(const ss_device_request *request, ss_egl **out, skinslide_error *error) {
-    log tried = {0};
-    choice choices[MOST_DISPLAYS];
+    attempts tried = {0};
+    const char *kind = request->hardware_only ? "hardware " : "", *why = tried.told.text;
     ss_egl *egl = calloc(1, sizeof *egl);
     if (!egl)
         return ss_out_of_memory(error);
-    bool made = false;
-    if (request->load(&egl->api, tried.text, sizeof tried.text)) {
-        EGLenum before = egl->api.eglQueryAPI();
-        int32_t count = list_choices(&egl->api, request, choices, &tried);
-        egl->api.eglBindAPI(EGL_OPENGL_ES_API);
-        for (int32_t i = 0; i < count && !made; i++)
-            made = try_choice(egl, &choices[i], request->hardware_only, &tried);
-        egl->api.eglBindAPI(before);
+    if (request->load(&egl->api, tried.told.text, sizeof tried.told.text)) {
+        if (try_all(egl, request, &tried)) {
+            *out = egl;
+            return SKINSLIDE_OK;
+        }
+        why = tell_all(&tried);
     }
-    if (!made) {
-        if (tried.length > 2)
-            tried.text[tried.length - 2] = 0; /* the last separator */
-        free(egl);
-        return ss_fail(error, SKINSLIDE_NO_DEVICE, "no %sEGL device with OpenGL ES 3: %s",
-                       request->hardware_only ? "hardware " : "", tried.text);
-    }
-    *out = egl;
-    return SKINSLIDE_OK;
+    free(egl);
+    return ss_fail(error, SKINSLIDE_NO_DEVICE, "no %sEGL device with OpenGL ES 3: %s", kind, why);
 }
 
 void ss_egl_close(ss_egl *egl) {

@@ -10,11 +10,12 @@ static fault plan = NO_FAULT;
 static int32_t seen, struck;
 static EGLint egl_error;
 static GLenum gl_error;
-static char extensions[4096];
+static char extensions[4096], context_extensions[16384];
+static int32_t contexts; /* whose extensions were asked for */
 
 void plan_fault(fault planned) {
     plan = planned;
-    seen = struck = 0;
+    seen = struck = contexts = 0;
     egl_error = EGL_SUCCESS, gl_error = GL_NO_ERROR;
 }
 
@@ -31,7 +32,7 @@ static bool strikes(const char *call) {
 
 static bool egl_strikes(const char *call) {
     bool failed = strikes(call);
-    egl_error = failed ? (EGLint)plan.code : EGL_SUCCESS;
+    egl_error = failed ? (EGLint)plan.code + (plan.varied ? struck % 12 : 0) : EGL_SUCCESS;
     return failed;
 }
 
@@ -85,8 +86,10 @@ static const char *query_string(EGLDisplay display, EGLint name) {
 
 static EGLBoolean query_devices(EGLint most, EGLDeviceEXT *devices, EGLint *count) {
     EGLBoolean done = real.eglQueryDevicesEXT(most, devices, count);
-    if (plan.devices >= 0 && *count > plan.devices)
-        *count = plan.devices;
+    for (int32_t d = *count; done && d < plan.devices && d < most; d++)
+        devices[d] = devices[0];
+    if (plan.devices >= 0)
+        *count = plan.devices < most ? plan.devices : most;
     return done;
 }
 
@@ -94,7 +97,26 @@ static const char *query_device(EGLDeviceEXT device, EGLint name) {
     return plan.shown && name == EGL_EXTENSIONS ? plan.shown : real.eglQueryDeviceStringEXT(device, name);
 }
 
+/* Which software rasterisers need not have. */
+static const GLubyte *get_extensions(void) {
+    const char *own = (const char *)real.glGetString(GL_EXTENSIONS), *robust = strstr(own, "GL_EXT_robustness");
+    bool shown = !plan.robust || contexts++ < plan.robust;
+    if (robust)
+        snprintf(context_extensions, sizeof context_extensions, "%.*s%s%s", (int)(robust - own), own, shown ? "" : "No_",
+                 robust);
+    else
+        snprintf(context_extensions, sizeof context_extensions, "%s%s", own, shown ? " GL_EXT_robustness" : "");
+    char *other = strstr(context_extensions, "GL_KHR_robustness");
+    if (other)
+        *other = '_';
+    return (const GLubyte *)context_extensions;
+}
+
 static const GLubyte *get_string(GLenum name) {
+    if (name == GL_EXTENSIONS)
+        return get_extensions();
+    if (name == GL_VERSION && strikes("glGetString"))
+        return (const GLubyte *)"OpenGL ES 2.0";
     return plan.renderer && name == GL_RENDERER ? (const GLubyte *)plan.renderer : real.glGetString(name);
 }
 
@@ -121,6 +143,12 @@ static GLenum get_gl_error(void) {
 
 static GLenum reset_status(void) {
     return strikes("glGetGraphicsResetStatus") ? plan.code : GL_NO_ERROR;
+}
+
+typedef void (*address)(void);
+
+static address get_address(const char *name) {
+    return strcmp(name, "glGetGraphicsResetStatusEXT") == 0 ? (address)reset_status : real.eglGetProcAddress(name);
 }
 
 /* Answers that a device never wrote: with no code none at all, else random numbers up to it. */
@@ -156,7 +184,7 @@ bool load_with_faults(struct ss_egl_api *api, char *why, size_t size) {
     api->eglQueryDevicesEXT = query_devices, api->eglQueryDeviceStringEXT = query_device;
     api->glGetString = get_string, api->glGetIntegerv = get_integer, api->glGetProgramiv = get_program;
     api->glCheckFramebufferStatus = check_framebuffer, api->glGetError = get_gl_error;
-    api->glGetGraphicsResetStatus = reset_status;
+    api->eglGetProcAddress = get_address;
     api->glMapBufferRange = map_buffer, api->glUnmapBuffer = unmap_buffer;
     return true;
 }

@@ -14,7 +14,9 @@ typedef struct fault {
     const char *shown;  /* what the only device says of itself, or NULL: what it does */
     const char *renderer;
     int32_t largest; /* texture, or 0: what it is */
-    int32_t devices; /* that EGL lists, or -1: what it has */
+    int32_t devices; /* that EGL lists, or -1: what it has, which beyond that are its first again */
+    int32_t robust;  /* contexts that can tell that they were lost, the first ones, or 0: all */
+    bool varied;     /* EGL's errors go up from code */
 } fault;
 
 #define NO_FAULT                                                                                                               \

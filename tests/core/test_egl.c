@@ -91,6 +91,9 @@ static void only_hardware(void **state) {
     assert_string_equal(error.message, "no hardware EGL device with OpenGL ES 3: EGL has only software rasterisers");
     open_with(disguised, request, SKINSLIDE_NO_DEVICE, &error);
     assert_non_null(strstr(error.message, "softpipe is a software rasteriser"));
+    request.device = 0;
+    open_with(software, request, SKINSLIDE_NO_DEVICE, &error);
+    assert_string_equal(error.message, "no hardware EGL device with OpenGL ES 3: EGL device 0 is a software rasteriser");
 }
 
 /* ---- Every call that can fail ---- */
@@ -113,11 +116,56 @@ static void every_failure_is_named(void **state) {
     ss_device_request first = {.device = 0};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         skinslide_error error;
-        fault planned = {cases[i].call, 0, -1, (uint32_t)cases[i].code, cases[i].hidden, NULL, NULL, 0, -1};
+        fault planned = {.call = cases[i].call, .times = -1, .code = (uint32_t)cases[i].code, .devices = -1};
+        planned.hidden = cases[i].hidden;
         open_with(planned, first, SKINSLIDE_NO_DEVICE, &error);
         assert_true(faults_struck() > 0);
         assert_non_null(strstr(error.message, cases[i].text));
     }
+}
+
+/* Devices that fail alike are told as one, and what is tried after them is always told. */
+static void many_failures_are_told(void **state) {
+    (void)state;
+    skinslide_error error;
+    fault alike = {.call = "eglInitialize", .times = -1, .code = EGL_NOT_INITIALIZED, .devices = 8};
+    alike.shown = "EGL_EXT_device_drm";
+    open_with(alike, any, SKINSLIDE_NO_DEVICE, &error);
+    assert_string_equal(error.message, "no EGL device with OpenGL ES 3: EGL devices 0-7: eglInitialize: EGL_NOT_INITIALIZED; "
+                                       "EGL surfaceless: eglInitialize: EGL_NOT_INITIALIZED; "
+                                       "EGL default display: eglInitialize: EGL_NOT_INITIALIZED");
+    alike.varied = true;
+    open_with(alike, any, SKINSLIDE_NO_DEVICE, &error);
+    const char *parts[] = {"EGL device 0", "EGL device 1", "and ", " more devices; EGL surfaceless: ", "EGL default display: "};
+    const char *at = error.message;
+    for (int i = 0; i < 5; i++) {
+        at = strstr(at, parts[i]);
+        assert_non_null(at);
+    }
+    assert_true(strlen(error.message) < sizeof error.message - 20);
+}
+
+static void devices_beyond_the_most(void **state) {
+    (void)state;
+    skinslide_error error;
+    ss_device_request far = {.device = 40};
+    open_with((fault){.devices = 64}, far, SKINSLIDE_NO_DEVICE, &error);
+    assert_string_equal(error.message, "no EGL device with OpenGL ES 3: only EGL's first 32 devices are tried, not device 40");
+}
+
+/* The first context can tell that it was lost, the next cannot, and must not be asked. */
+static void each_context_says_whether_it_can_tell(void **state) {
+    (void)state;
+    skinslide_error error;
+    fault second = {.call = "glGetString", .times = 1, .devices = 1, .robust = 1}, both = second;
+    both.robust = 2;
+    ss_egl *egl = open_with(second, any, SKINSLIDE_OK, &error);
+    assert_string_equal(egl->info.device_name, "EGL surfaceless");
+    assert_true(egl->api.glGetGraphicsResetStatus == NULL);
+    ss_egl_close(egl);
+    egl = open_with(both, any, SKINSLIDE_OK, &error);
+    assert_true(egl->api.glGetGraphicsResetStatus != NULL);
+    ss_egl_close(egl);
 }
 
 static void no_library(void **state) {
@@ -258,6 +306,9 @@ int main(void) {
         cmocka_unit_test(a_device_by_number_is_the_only_one),
         cmocka_unit_test(only_hardware),
         cmocka_unit_test(every_failure_is_named),
+        cmocka_unit_test(many_failures_are_told),
+        cmocka_unit_test(devices_beyond_the_most),
+        cmocka_unit_test(each_context_says_whether_it_can_tell),
         cmocka_unit_test(no_library),
         cmocka_unit_test(without_extensions),
         cmocka_unit_test(a_hosts_context_stays_current),

@@ -145,7 +145,8 @@ static void auto_is_egl_on_hardware_only(void **state) {
     scene s = scene_of(8);
     fault hardware = {.devices = 1, .shown = "EGL_EXT_device_drm", .renderer = "A GPU"};
     fault software = {.devices = 1, .shown = "EGL_MESA_device_software"};
-    fault incomplete = {"glCheckFramebufferStatus", 0, -1, GL_FRAMEBUFFER_UNSUPPORTED, NULL, hardware.shown, "A GPU", 0, 1};
+    fault incomplete = hardware;
+    incomplete.call = "glCheckFramebufferStatus", incomplete.times = -1, incomplete.code = GL_FRAMEBUFFER_UNSUPPORTED;
     skinslide_lookup_info info = choose(&s, automatic, hardware, load_with_faults);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EGL);
     assert_string_equal(info.renderer, "A GPU");
