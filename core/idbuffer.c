@@ -41,6 +41,7 @@ struct ss_idbuffer {
     skinslide_lookup_info info;
     drawing *drawings; /* [drawing_count] */
     int32_t drawing_count, largest_side;
+    int32_t least_side; /* of the texture, whatever is drawn */
     int32_t resolution; /* 0: each drawing its own */
     float (*staged)[2]; /* [most vertices or queries] on their way to the device */
     uint32_t *numbers;  /* [most vertices] */
@@ -277,7 +278,7 @@ static skinslide_status settle_sides(ss_idbuffer *buffer, skinslide_error *error
     if (buffer->resolution > most)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "resolution %d is above the device's limit of %d", buffer->resolution,
                        most);
-    buffer->largest_side = 1;
+    buffer->largest_side = buffer->resolution ? buffer->resolution : buffer->least_side < most ? buffer->least_side : most;
     for (int32_t p = 0; p < buffer->drawing_count; p++) {
         int32_t *side = &buffer->drawings[p].side;
         *side = buffer->resolution ? buffer->resolution : *side < most ? *side : most;
@@ -346,6 +347,7 @@ skinslide_status ss_idbuffer_create(const ss_device_request *request, const ss_i
     buffer->request = *request;
     buffer->drawing_count = patch_count;
     buffer->resolution = resolution;
+    buffer->least_side = patches ? 1 : LARGEST_SIDE;
     skinslide_status status = copy_patches(buffer, patches, error);
     if (!status)
         status = open_context(buffer, error);

@@ -14,7 +14,7 @@ static skinslide_status check_options(const skinslide_workspace_options *options
 }
 
 /* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with
- * EGL for its absence; a lack of memory is no choice. */
+ * EGL for its absence, and so a resolution that its device does not have; a lack of memory is no choice. */
 skinslide_status ss_open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
                                 int32_t patch_count, ss_idbuffer **out, skinslide_lookup_info *info, skinslide_error *error) {
     const skinslide_workspace_options standard = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
@@ -30,7 +30,7 @@ skinslide_status ss_open_lookup(const skinslide_workspace_options *options, ss_e
     status = ss_idbuffer_create(&request, patches, patch_count, own->resolution, out, &why);
     if (!status)
         *info = *ss_idbuffer_info(*out);
-    bool absent = status == SKINSLIDE_NO_DEVICE || status == SKINSLIDE_DEVICE_FAILED;
+    bool absent = status == SKINSLIDE_NO_DEVICE || status == SKINSLIDE_DEVICE_FAILED || status == SKINSLIDE_BAD_ARGUMENT;
     if (own->lookup == SKINSLIDE_LOOKUP_AUTO && absent) {
         memcpy(info->reason, why.message, sizeof info->reason);
         return SKINSLIDE_OK;

@@ -222,6 +222,27 @@ static void resolution_within_the_device(void **state) {
     ss_idbuffer_destroy(NULL);
 }
 
+/* Without patches the largest texture is tried that any could ask for. */
+static void without_patches_the_largest_is_tried(void **state) {
+    (void)state;
+    static const struct {
+        int32_t resolution, largest;
+        const char *text;
+    } cases[] = {{0, 0, "the device's framebuffer of 4096 by 4096 texels is not complete..."},
+                 {0, 512, "the device's framebuffer of 512 by 512 texels is not complete..."},
+                 {300, 0, "the device's framebuffer of 300 by 300 texels is not complete..."}};
+    ss_device_request request = {.load = load_with_faults, .device = SKINSLIDE_ANY_DEVICE};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        skinslide_error error;
+        ss_idbuffer *buffer = NULL;
+        fault planned = {.call = "glCheckFramebufferStatus", .times = -1, .code = GL_FRAMEBUFFER_UNSUPPORTED, .devices = -1};
+        planned.largest = cases[i].largest;
+        plan_fault(planned);
+        assert_fails(ss_idbuffer_create(&request, NULL, 0, cases[i].resolution, &buffer, &error), &error,
+                     SKINSLIDE_DEVICE_FAILED, cases[i].text);
+    }
+}
+
 /* ---- Devices that cannot ---- */
 
 static void devices_that_cannot(void **state) {
@@ -246,11 +267,9 @@ static void devices_that_cannot(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(candidates_are_those_of_the_texels),
-        cmocka_unit_test(every_texel_is_in_its_face),
-        cmocka_unit_test(resolution_follows_the_patch),
-        cmocka_unit_test(resolution_within_the_device),
-        cmocka_unit_test(devices_that_cannot),
+        cmocka_unit_test(candidates_are_those_of_the_texels),   cmocka_unit_test(every_texel_is_in_its_face),
+        cmocka_unit_test(resolution_follows_the_patch),         cmocka_unit_test(resolution_within_the_device),
+        cmocka_unit_test(without_patches_the_largest_is_tried), cmocka_unit_test(devices_that_cannot),
     };
     return cmocka_run_group_tests_name("idbuffer", tests, NULL, NULL);
 }

@@ -166,6 +166,26 @@ static void auto_is_egl_on_hardware_only(void **state) {
     free_scene(&s);
 }
 
+/* A resolution above the device's limit: AUTO does without the device, EGL says so. */
+static void a_resolution_above_the_limit(void **state) {
+    (void)state;
+    scene s = scene_of(4);
+    skinslide_workspace_options options = {SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE, 600};
+    skinslide_workspace *workspace;
+    skinslide_lookup_info info;
+    skinslide_error error;
+    plan_fault((fault){.devices = 1, .shown = "EGL_EXT_device_drm", .renderer = "A GPU", .largest = 512});
+    assert_ok(ss_workspace_create(s.exact.slider, &options, load_with_faults, &workspace, &error), &error);
+    assert_ok(skinslide_workspace_lookup(workspace, &info, &error), &error);
+    assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EXACT);
+    assert_string_equal(info.reason, "resolution 600 is above the device's limit of 512");
+    skinslide_workspace_destroy(workspace);
+    options.lookup = SKINSLIDE_LOOKUP_EGL;
+    assert_fails(ss_workspace_create(s.exact.slider, &options, load_with_faults, &workspace, &error), &error,
+                 SKINSLIDE_BAD_ARGUMENT, "lookup egl: resolution 600 is above the device's limit of 512");
+    free_scene(&s);
+}
+
 static void egl_asked_for_and_not_to_be_had(void **state) {
     (void)state;
     scene s = scene_of(4);
@@ -458,6 +478,7 @@ int main(void) {
         cmocka_unit_test(both_lookups_give_the_same_bytes),
         cmocka_unit_test(faces_below_a_texel),
         cmocka_unit_test(auto_is_egl_on_hardware_only),
+        cmocka_unit_test(a_resolution_above_the_limit),
         cmocka_unit_test(egl_asked_for_and_not_to_be_had),
         cmocka_unit_test(options_that_cannot_be),
         cmocka_unit_test(a_context_lost_in_the_middle_of_a_shot),

@@ -146,7 +146,8 @@ typedef enum skinslide_rule {
  * vertices and of the middles of the patch's faces are taken back, along the normal, to where each is looked up on the limit
  * surface of the deformed mesh, as near as the free vertices can take all of them with every other held. It can be as near as
  * faces are fine for the slide. A vertex that this would take farther from its LINEAR place than half the mean edge of the
- * face it lands in is put at that distance, and counted as damped: the solve rings where a target jumps over a crease. */
+ * face it lands in is put at that distance, and counted as damped: the solve rings where a target jumps over a crease. It is
+ * limit points that weights scale the slide of: one of weight 0 stays, and its vertex follows so that it does. */
 typedef enum skinslide_interpolation {
     SKINSLIDE_INTERPOLATION_AUTO,
     SKINSLIDE_INTERPOLATION_LINEAR,     /* barycentric, in the triangle fan from the face's first vertex */
@@ -162,8 +163,9 @@ typedef struct skinslide_controls {
     const int32_t *edges;        /* [edge_count][2] mesh vertices of edges of the patch, each edge at most once; or NULL */
     const float *edge_density;   /* [edge_count] */
     int32_t edge_count;
-    const float *weight;       /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted) */
-    float envelope;            /* scales every weight, 0..1 (clamped, and counted once) */
+    const float *weight; /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted). Under LIMIT
+                            a vertex of weight 0 still moves as its neighbours slide, so that its limit point stays */
+    float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
     const float *max_distance; /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
                                   object units; measured on the triangles that `linear` interpolates in */
 } skinslide_controls;
@@ -233,7 +235,7 @@ SKINSLIDE_API int32_t skinslide_slider_patch_count(const skinslide_slider *slide
 /* Each fails with BAD_ARGUMENT only where patch is not one of the slider's.
  *   vertices  out [vertex_count] the mesh vertex of each patch vertex, ascending
  *   faces     out [face_count] the mesh face of each patch face, ascending
- *   uv        out [vertex_count][2] the rest embedding U0, in [0,1]^2 */
+ *   uv        out [vertex_count][2] the rest embedding U0, in [0,1]^2 up to rounding */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int32_t patch,
                                                            skinslide_patch_info *info, skinslide_error *error);
 SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
@@ -247,8 +249,8 @@ SKINSLIDE_API skinslide_status skinslide_slider_embedding(const skinslide_slider
 
 /* How rest vertices are looked up in the frame's embedding; where they are found is the same bit for bit. */
 typedef enum skinslide_lookup {
-    SKINSLIDE_LOOKUP_AUTO, /* EGL where it has a hardware device; EXACT on software rasterisers and where EGL is missing or its
-                              device fails when the workspace is made */
+    SKINSLIDE_LOOKUP_AUTO, /* EGL where it has a hardware device; EXACT on software rasterisers and where EGL is missing, its
+                              device fails when the workspace is made, or a fixed resolution is above the device's limit */
     SKINSLIDE_LOOKUP_EGL,  /* proposed by rendering a colour a face (paper, section 3.3), decided exactly, and walked for where
                               the texture missed */
     SKINSLIDE_LOOKUP_EXACT /* by walking from face to face */
@@ -259,9 +261,10 @@ typedef enum skinslide_lookup {
 /* How a workspace works. Start from SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT. */
 typedef struct skinslide_workspace_options {
     skinslide_lookup lookup;
-    int32_t device;     /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
+    int32_t device; /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
                            order, hardware before software, then its surfaceless platform, then its default display */
-    int32_t resolution; /* texels along a side of the texture; 0: for each patch, the power of two from 256 to 4096, within the
+    int32_t
+        resolution; /* texels along a side of the texture, within the device's limit (OpenGL ES 3 has 2048 or more); 0: for each patch, the power of two from 256 to 4096, within the
                            device's limit, that gives four texels along a side for each free vertex under the root, and up to
                            four times as many where the smallest face of the rest embedding would be under a texel */
 } skinslide_workspace_options;
@@ -281,8 +284,9 @@ typedef struct skinslide_lookup_info {
     char reason[480];           /* why AUTO came to EXACT, or how the device failed last; one line, or empty */
 } skinslide_lookup_info;
 
-/* Says what options, or the default for NULL, come to; makes a context and drops it where that must be tried.
- * Fails with BAD_ARGUMENT (no such lookup, device or resolution), NO_DEVICE (lookup EGL: names all that was tried, with EGL's
+/* Says what options, or the default for NULL, come to; makes a context and drops it where that must be tried, with
+ * the largest texture that a workspace with these options could ask for.
+ * Fails with BAD_ARGUMENT (no such lookup, device or resolution), DEVICE_FAILED, NO_DEVICE (lookup EGL: names all that was tried, with EGL's
  * errors), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
                                                        skinslide_error *error);
@@ -376,6 +380,7 @@ typedef struct skinslide_limit_place {
  *   out      out  [count][3]
  * Fast where places of one face follow each other.
  * Fails with BAD_ARGUMENT, BAD_MESH (as above, or a mesh that is not subdivided), BAD_PATCH (a place on a hole), BAD_POINTS,
+ * UNSUPPORTED (with OpenSubdiv before 3.5.1 some faces with creases, at a boundary or where the mesh is not manifold),
  * OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_limit_points(const skinslide_mesh *mesh, const float *points,
                                                       const skinslide_limit_place *places, int32_t count, float *out,
