@@ -74,6 +74,7 @@
     X(PFNGLRENDERBUFFERSTORAGEPROC, glRenderbufferStorage)                                                                     \
     X(PFNGLSHADERSOURCEPROC, glShaderSource)                                                                                   \
     X(PFNGLTEXPARAMETERIPROC, glTexParameteri)                                                                                 \
+    X(PFNGLSCISSORPROC, glScissor)                                                                                             \
     X(PFNGLTEXSTORAGE2DPROC, glTexStorage2D)                                                                                   \
     X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, glTransformFeedbackVaryings)                                                         \
     X(PFNGLUNIFORM1IPROC, glUniform1i)                                                                                         \

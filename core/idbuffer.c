@@ -221,6 +221,7 @@ static skinslide_status make_objects(ss_idbuffer *buffer, skinslide_error *error
         return status;
     buffer->side_uniform = gl->glGetUniformLocation(buffer->gather_program, "side");
     gl->glDisable(GL_DITHER);
+    gl->glEnable(GL_SCISSOR_TEST);
     for (int32_t p = 0; p < buffer->drawing_count; p++)
         make_buffers(buffer, &buffer->drawings[p]);
     GLenum failure = gl->glGetError();
@@ -389,6 +390,7 @@ static void draw_faces(ss_idbuffer *buffer, const drawing *drawn, const double (
         }
     gl->glBindFramebuffer(GL_FRAMEBUFFER, buffer->framebuffer);
     gl->glViewport(0, 0, drawn->side, drawn->side);
+    gl->glScissor(0, 0, drawn->side, drawn->side); /* what is cleared, of a texture for the largest drawing */
     gl->glClearBufferuiv(GL_COLOR, 0, nothing);
     gl->glUseProgram(buffer->draw_program);
     gl->glBindVertexArray(drawn->arrays[0]);

@@ -63,10 +63,10 @@ dvec2 inverse_bilinear(const Quad &quad, dvec2 p, double *missed) {
     return best;
 }
 
-const double accepted_miss = 1e-8;
+const double accepted_miss = 1e-8; /* in a quad; a polygon takes the best of its quads, however far off */
 
-/* The parameters of a triangle of the fan, for faces on which the inverse fails: of no area, or not convex; in a polygon the
- * corner that is nearest by weight. */
+/* The parameters of a triangle of the fan, for faces on which the inverse fails: quads of no area or not convex, and polygons
+ * none of whose quads has one; in these the corner that is nearest by weight. */
 ss_parameter from_fan(const ss_faces *faces, const double (*uv)[2], const ss_location *location, int32_t n) {
     double weights[3];
     ss_linear_weights(faces, uv, location, weights);

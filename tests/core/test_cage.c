@@ -20,7 +20,7 @@ static rig subdivided_rig(const test_mesh *mesh, const skinslide_subdivision *ow
         setup.name = "all", setup.faces = faces, setup.face_count = mesh->face_count;
     skinslide_error error;
     assert_ok(skinslide_slider_create(&view, &setup, 1, &r.slider, &error), &error);
-    assert_ok(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_AUTO, &r.workspace, &error), &error);
+    assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
     free(faces);
     return r;
 }
@@ -346,7 +346,7 @@ static void *run_job(void *argument) {
     job *j = argument;
     skinslide_workspace *workspace = NULL;
     float *slid = malloc(j->bytes);
-    j->differ = skinslide_workspace_create(j->slider, SKINSLIDE_LOOKUP_AUTO, &workspace, NULL) ? 1 : 0;
+    j->differ = skinslide_workspace_create(j->slider, NULL, &workspace, NULL) ? 1 : 0;
     for (int k = 0; k < 8 * FRAMES && !j->differ; k++) {
         int i = (j->first + 5 * k) % FRAMES;
         j->differ +=

@@ -110,6 +110,18 @@ static void free_creased(creased *c) {
     free(c->lengths), free(c->indices), free(c->corners), free(c->sharpnesses), free(c->corner_sharpnesses);
 }
 
+static int32_t compared, refused; /* meshes, since a test began */
+
+static void begin_counting(void) {
+    compared = refused = 0;
+}
+
+/* Creases at a boundary are refused on some meshes; most are compared all the same. */
+static void assert_most_compared(void) {
+    print_message("%d compared, %d refused\n", compared, refused);
+    assert_true(compared > refused);
+}
+
 /* Corners, middles of sides and middles of faces: the core's evaluation, and refinement, which has no vertex in the middle of a
  * loop triangle. Only rounding to float parts them but at corners, next to which a patch may stand for infinitely many. */
 static void compare(const test_mesh *mesh, const skinslide_subdivision *subdivision, double at_corners) {
@@ -127,6 +139,7 @@ static void compare(const test_mesh *mesh, const skinslide_subdivision *subdivis
     }
     skinslide_error error;
     skinslide_status status = skinslide_limit_points(&view, mesh->points, places, (int32_t)count, &got[0][0], &error);
+    refused += status == SKINSLIDE_UNSUPPORTED, compared += status == SKINSLIDE_OK;
     if (status == SKINSLIDE_UNSUPPORTED) { /* named below */
         free(places), free(got), free(refined);
         return;
@@ -167,7 +180,10 @@ static void check_smooth(const test_mesh *mesh, skinslide_scheme scheme, int32_t
 
 static void stencils_match_a_refined_mesh(void **state) {
     (void)state;
+    begin_counting();
     each_mesh(check_smooth);
+    assert_most_compared();
+    assert_int_equal(refused, 0);
 }
 
 /* Seen at corners: 2.9e-3 of the mesh, where creases of several sharpnesses meet. */
@@ -179,7 +195,9 @@ static void check_creased(const test_mesh *mesh, skinslide_scheme scheme, int32_
 
 static void creases_match_a_refined_mesh(void **state) {
     (void)state;
+    begin_counting();
     each_mesh(check_creased);
+    assert_most_compared();
 }
 
 /* Weights sum to one, so every affine map commutes with the limit. */
@@ -204,6 +222,7 @@ static void check_affine(const test_mesh *mesh, skinslide_scheme scheme, int32_t
     skinslide_status status = skinslide_limit_points(&view, mesh->points, places, 64, &before[0][0], &error);
     if (!status)
         status = skinslide_limit_points(&view, mapped, places, 64, &after[0][0], &error);
+    refused += status == SKINSLIDE_UNSUPPORTED, compared += status == SKINSLIDE_OK;
     if (status != SKINSLIDE_UNSUPPORTED)
         assert_ok(status, &error);
     for (int i2 = 0; i2 < 64 && !status; i2++)
@@ -218,7 +237,9 @@ static void check_affine(const test_mesh *mesh, skinslide_scheme scheme, int32_t
 
 static void affine_maps_commute(void **state) {
     (void)state;
+    begin_counting();
     each_mesh(check_affine);
+    assert_most_compared();
 }
 
 /* ---- Parameters ---- */
@@ -265,7 +286,7 @@ static void point_at(const surfaces_of_patch *s, const ss_location *location, do
 }
 
 /* A point of a side is the same from both faces, whatever polygons they are. Fitted patches meet along curves that agree to
- * 1e-4 of the mesh. */
+ * 2e-3 of the mesh. */
 static void check_sides(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
     skinslide_subdivision own = {.scheme = scheme};
     if (i == 1 || i == 2 || i == 5) /* closed: no patch */

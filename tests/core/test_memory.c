@@ -206,7 +206,7 @@ static void a_frame_allocates_nothing(void **state) {
     skinslide_mesh view = view_of_scene(&s);
     skinslide_error error;
     assert_ok(skinslide_slider_create(&view, s.setups, 2, &r.slider, &error), &error);
-    assert_ok(skinslide_workspace_create(r.slider, SKINSLIDE_LOOKUP_AUTO, &r.workspace, &error), &error);
+    assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
     left_to_give = 0, watching = true;
     skinslide_status plain = skinslide_slide(r.workspace, s.points, NULL, s.slid, NULL, &error);
     watching = false;
