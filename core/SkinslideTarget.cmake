@@ -1,4 +1,5 @@
-# What every target of ours is built with. Contraction is off so that a frame has the same bytes on every machine.
+# What every target of ours is built with. Contraction is off so that a frame has the same bytes on every machine
+# that has the same builds of our libraries.
 function(skinslide_configure_target target)
   target_compile_features(${target} PRIVATE c_std_17 cxx_std_17)
   set_target_properties(${target} PROPERTIES C_EXTENSIONS OFF CXX_EXTENSIONS OFF C_VISIBILITY_PRESET hidden

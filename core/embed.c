@@ -10,7 +10,7 @@
  * and each diagonal entry is the sum of the others of its row and of a slack >= 0, the densities to fixed vertices. Elimination
  * keeps that form, so with the slack carried along (Grassmann, Taksar, Heyman 1985) nothing is ever subtracted, no digit is lost
  * however much densities differ, and u and v are the convex combinations that they should be. It also takes the sums in one
- * order on every machine, which a library built elsewhere need not. */
+ * order on every machine; the ordering is the AMD build's, so bytes are the same on machines that have the same one. */
 #include "system.h"
 
 #include <amd.h>
