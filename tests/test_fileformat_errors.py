@@ -1,5 +1,6 @@
 """What a `.skinslide` file says when it cannot be opened, or slid, and what it gives instead."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -53,6 +54,75 @@ def test_a_file_that_leads_back_to_itself_is_refused(tmp_path, between):
     script = f"import skinslide; from pxr import Usd; Usd.Stage.Open({str(tmp_path / 'x.skinslide')!r})"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1 and "leads back to itself" in done.stderr
+
+
+def run_python(script: str, timeout: int = 60, **environment: str) -> subprocess.CompletedProcess:
+    """In a process of its own: a test that hangs says nothing."""
+    return subprocess.run(
+        [sys.executable, "-c", script],
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+        env={**os.environ, **environment},
+    )
+
+
+def reference(path: Path, asset: str, head: str = "") -> Path:
+    path.write_text(f'#usda 1.0\n({head})\ndef "World" (references = @{asset}@</World>) {{}}\n')
+    return path
+
+
+def cycle_by_variable_handed_down(folder: Path) -> None:
+    reference(folder / "x.skinslide", "./a.usda")
+    reference(folder / "a.usda", "./b.usda", 'expressionVariables = { string X = "x" }')
+    reference(folder / "b.usda", '`"./${X}.skinslide"`')
+
+
+def cycle_only_by_itself(folder: Path) -> None:
+    """Composed in x, y leads to z; y by itself leads to x."""
+    reference(folder / "x.skinslide", "./y.skinslide", 'expressionVariables = { string X = "z" }')
+    reference(folder / "y.skinslide", '`"./${X}.skinslide"`', 'expressionVariables = { string X = "x" }')
+    reference(folder / "z.skinslide", "./none.usda")
+
+
+def cycle_by_search_path(folder: Path) -> None:
+    (folder / "lib").mkdir()
+    reference(folder / "x.skinslide", "./lib/a.usda")
+    reference(folder / "lib" / "a.usda", "x.skinslide")
+
+
+def cycle_by_link(folder: Path) -> None:
+    (folder / "link").symlink_to(".")
+    reference(folder / "x.skinslide", "./link/x.skinslide")
+
+
+def cycle_by_variant(folder: Path) -> None:
+    (folder / "x.skinslide").write_text(
+        '#usda 1.0\ndef "World" (variants = { string v = "a" }; add variantSets = "v") '
+        '{\nvariantSet "v" = {\n"a" {}\n"b" (references = @./x.skinslide@</World>) {}\n}\n}'
+    )
+
+
+@pytest.mark.parametrize(
+    "lay",
+    [cycle_by_variable_handed_down, cycle_only_by_itself, cycle_by_search_path, cycle_by_link, cycle_by_variant],
+)
+def test_a_hidden_cycle_is_refused(tmp_path, lay):
+    lay(tmp_path)
+    done = run_python(f"import skinslide; from pxr import Usd; Usd.Stage.Open({str(tmp_path / 'x.skinslide')!r})")
+    assert done.returncode == 1
+    assert "leads back to itself" in done.stderr and "variant that is not selected" in done.stderr
+
+
+def test_a_variable_that_leads_elsewhere_is_no_cycle(tmp_path):
+    """By the layer's own variable b leads to x; what refers to it says otherwise."""
+    save(patched_stage(grid())[0], tmp_path / "cache.usda")
+    path = reference(
+        tmp_path / "x.skinslide", "./b.usda", f'{HEAD}; expressionVariables = {{ string X = "cache.usda" }}'
+    )
+    reference(tmp_path / "b.usda", '`"./${X}"`', 'expressionVariables = { string X = "x.skinslide" }')
+    _stage, mesh = open_mesh(path)
+    assert mesh.GetPointsAttr().GetNumTimeSamples() == 3
 
 
 def test_a_cycle_by_a_sublayer_or_an_expression_is_refused(tmp_path):

@@ -275,18 +275,9 @@ bool Prim::hasProperty(const TfToken &name) const {
 
 // ---- Composition ----
 
-namespace {
-
-ArResolverContext contextFor(const std::string &resolvedPath) {
-    ArResolverContext bound = ArGetResolver().GetCurrentContext();
-    return bound.IsEmpty() ? ArGetResolver().CreateDefaultContextForAsset(resolvedPath) : bound;
-}
-
-} // namespace
-
 Composition::Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath)
     : _root(root), _resolvedPath(resolvedPath) {
-    PcpLayerStackIdentifier identifier(root, SdfLayerHandle(), contextFor(resolvedPath));
+    PcpLayerStackIdentifier identifier(root, SdfLayerHandle(), ArGetResolver().GetCurrentContext());
     _cache = std::make_unique<PcpCache>(identifier, std::string(), /* usd = */ true);
 }
 

@@ -112,7 +112,8 @@ class Prim {
 
 class Composition {
   public:
-    // root  an anonymous copy of the file at resolvedPath, with asset paths anchored to it
+    // root  an anonymous copy of the file at resolvedPath, with asset paths anchored to it; they are resolved in the context
+    //       that is bound
     Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath);
 
     // Everything below a prim is visited parents first; `visit` returns whether to go below its prim.

@@ -24,7 +24,9 @@ class Data : public SdfData {
 
     // Resolved paths of every file that the values depend on.
     std::set<std::string> dependencies;
-    std::vector<SdfLayerRefPtr> sources; // kept open, so that a reload finds them
+    // Kept open. Sources, so that a reload finds them; .skinslide files, because every layer that leads to one through others
+    // would read it again, which doubles with each.
+    std::vector<SdfLayerRefPtr> sources, nested;
 
     bool StreamsData() const override;
     bool IsDetached() const override;

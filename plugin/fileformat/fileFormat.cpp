@@ -4,11 +4,14 @@
 #include "fault.h"
 #include "layers.h"
 #include "names.h"
+#include "reading.h"
 
 #include "pxr/base/tf/diagnostic.h"
 #include "pxr/base/tf/pathUtils.h"
 #include "pxr/base/tf/registryManager.h"
 #include "pxr/base/tf/type.h"
+#include "pxr/usd/ar/resolver.h"
+#include "pxr/usd/ar/resolverContextBinder.h"
 #include "pxr/usd/pcp/dynamicFileFormatContext.h"
 #include "pxr/usd/sdf/layer.h"
 
@@ -44,17 +47,50 @@ bool SkinSlideFileFormat::Read(SdfLayer *layer, const std::string &resolvedPath,
     }
 }
 
+namespace {
+
+// So that an asset path means the same to everything that resolves it here.
+ArResolverContext contextFor(const std::string &resolvedPath) {
+    ArResolverContext bound = ArGetResolver().GetCurrentContext();
+    return bound.IsEmpty() ? ArGetResolver().CreateDefaultContextForAsset(resolvedPath) : bound;
+}
+
+// On a reload, the layers that this one leads to may be reloaded after it. Unsaved edits are the user's to throw away.
+void reloadUnedited(const std::vector<SdfLayerRefPtr> &layers) {
+    std::set<SdfLayerHandle> unedited;
+    for (const SdfLayerRefPtr &layer : layers) {
+        if (!layer->IsDirty())
+            unedited.insert(layer);
+    }
+    SdfLayer::ReloadLayers(unedited);
+}
+
+std::vector<SdfLayerRefPtr> nestedIn(const Composition &composition) {
+    std::vector<SdfLayerRefPtr> nested;
+    for (const SdfLayerHandle &layer : composition.usedLayers()) {
+        if (layer->GetFileFormat()->GetFormatId() == "skinslide")
+            nested.push_back(layer);
+    }
+    return nested;
+}
+
+} // namespace
+
 void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
     std::vector<std::string> problems;
     Params params = Params::fromArguments(layer->GetFileFormatArguments(), &problems);
+    Reading reading(resolvedPath);
+    ArResolverContextBinder bound(contextFor(resolvedPath));
     SdfLayerRefPtr shown = readText(resolvedPath), anchored = anchoredCopy(shown, resolvedPath);
     std::vector<std::shared_ptr<SlidMesh>> meshes;
     Sources sources;
+    std::vector<SdfLayerRefPtr> nested;
     if (!metadataOnly) {
-        sources = findSources(anchored, resolvedPath);
-        // On a reload, sources may be reloaded after this layer.
-        if (TfDynamic_cast<TfWeakPtr<const Data>>(_GetLayerData(*layer)))
-            SdfLayer::ReloadLayers(std::set<SdfLayerHandle>(sources.layers.begin(), sources.layers.end()));
+        sources = findSources(shown, resolvedPath);
+        if (auto before = TfDynamic_cast<TfWeakPtr<const Data>>(_GetLayerData(*layer))) {
+            reloadUnedited(sources.layers);
+            reloadUnedited(before->nested);
+        }
         adoptRate(shown, sources);
         adoptRate(anchored, sources);
     }
@@ -66,12 +102,14 @@ void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath,
             for (const Patch &patch : source->patches)
                 sources.paths.merge(patch.files());
         }
+        nested = nestedIn(composition);
         std::vector<std::string> errors = composition.errors();
         problems.insert(problems.end(), errors.begin(), errors.end());
     }
     DataRefPtr data = Data::create(meshes, shown, [](const SdfLayer &from) { return _GetLayerData(from); });
     data->dependencies = std::move(sources.paths);
     data->sources = std::move(sources.layers);
+    data->nested = std::move(nested);
     for (const std::string &problem : problems)
         TF_WARN("%s: %s", resolvedPath.c_str(), problem.c_str());
     SdfAbstractDataRefPtr content = data;

@@ -1,6 +1,7 @@
 #include "layers.h"
 
 #include "fault.h"
+#include "reading.h"
 
 #include "pxr/base/tf/errorMark.h"
 #include "pxr/base/tf/pathUtils.h"
@@ -12,7 +13,9 @@
 #include "pxr/usd/sdf/schema.h"
 #include "pxr/usd/sdf/variableExpression.h"
 
+#include <algorithm>
 #include <deque>
+#include <map>
 
 namespace skinslide {
 namespace {
@@ -29,22 +32,6 @@ std::string readFile(const std::string &resolvedPath) {
 
 bool isSkinslide(const std::string &path) {
     return SdfFileFormat::GetFileExtension(path) == "skinslide";
-}
-
-// Opens or reads a source; null where it cannot be, which composition reports.
-SdfLayerRefPtr openSource(const std::string &identifier, const std::string &resolvedPath) {
-    TfErrorMark mark;
-    SdfLayerRefPtr layer;
-    if (!isSkinslide(resolvedPath)) {
-        layer = SdfLayer::FindOrOpen(identifier);
-    } else {
-        try {
-            layer = anchoredCopy(readText(resolvedPath), resolvedPath);
-        } catch (const Fault &) {
-        }
-    }
-    mark.Clear();
-    return layer;
 }
 
 } // namespace
@@ -85,46 +72,98 @@ SdfLayerRefPtr anchoredCopy(const SdfLayerRefPtr &text, const std::string &resol
 
 namespace {
 
-// The asset paths that a layer names, anchored to it. Expressions are evaluated with the variables of the root over its own.
-std::vector<std::string> assetsOf(const SdfLayerRefPtr &layer, const SdfLayerRefPtr &root) {
-    std::vector<std::string> assets;
-    VtDictionary variables = VtDictionaryOver(root->GetExpressionVariables(), layer->GetExpressionVariables());
-    for (const std::string &asset : layer->GetCompositionAssetDependencies()) {
-        std::string evaluated = evaluate(asset, variables);
-        if (!evaluated.empty())
-            assets.push_back(SdfComputeAssetPathRelativeToLayer(layer, evaluated));
+// A layer to look into, with the variables that its expressions are evaluated with.
+struct Place {
+    SdfLayerRefPtr layer;
+    std::string file; // of a .skinslide file, whose layer here is anonymous; else empty
+    VtDictionary variables;
+};
+
+// Finds at least what Pcp would open, and what each .skinslide file on the way would open when it is read.
+class Walk {
+  public:
+    explicit Walk(const Place &root) {
+        enter(root.file, root);
+        while (!_waiting.empty()) {
+            Place place = _waiting.front();
+            _waiting.pop_front();
+            for (const std::string &asset : place.layer->GetCompositionAssetDependencies())
+                follow(place, asset);
+        }
     }
-    return assets;
-}
+    Sources found;
+
+  private:
+    void follow(const Place &from, const std::string &asset) {
+        std::string evaluated = evaluate(asset, from.variables), bare;
+        if (evaluated.empty())
+            return;
+        std::string identifier = from.file.empty() ? SdfComputeAssetPathRelativeToLayer(from.layer, evaluated)
+                                                   : ArGetResolver().CreateIdentifier(evaluated, ArResolvedPath(from.file));
+        SdfLayer::FileFormatArguments arguments;
+        SdfLayer::SplitIdentifier(identifier, &bare, &arguments);
+        ArResolvedPath resolved = ArGetResolver().Resolve(bare);
+        if (resolved && Reading::isRead(resolved))
+            throw fault("leads back to itself through %s, be it in a variant that is not selected",
+                        from.file.empty() ? from.layer->GetIdentifier().c_str() : from.file.c_str());
+        // A file that appears later is a change too.
+        std::string path = resolved ? resolved.GetPathString() : ArGetResolver().ResolveForNewAsset(bare).GetPathString();
+        if (path.empty())
+            return;
+        found.paths.insert(path);
+        if (SdfLayerRefPtr next = resolved ? open(identifier, path) : nullptr)
+            enterAll(from, asset, path, next);
+    }
+
+    // Variables of what refers to a layer are stronger than its own, and a sublayer has none. A .skinslide file is also a root.
+    void enterAll(const Place &from, const std::string &asset, const std::string &path, const SdfLayerRefPtr &next) {
+        std::string file = isSkinslide(path) ? path : "";
+        VtDictionary own = next->GetExpressionVariables();
+        const auto &sublayers = from.layer->GetSubLayerPaths();
+        if (sublayers.Find(asset) != size_t(-1))
+            enter(path, {next, file, from.variables});
+        enter(path, {next, file, VtDictionaryOver(from.variables, own)});
+        if (!file.empty())
+            enter(path, {next, file, own});
+    }
+
+    void enter(const std::string &path, const Place &place) {
+        std::vector<VtDictionary> &seen = _seen[path];
+        if (std::find(seen.begin(), seen.end(), place.variables) != seen.end())
+            return;
+        seen.push_back(place.variables);
+        _waiting.push_back(place);
+    }
+
+    // Opens a source, or reads it as text; null where it cannot be, which composition reports.
+    SdfLayerRefPtr open(const std::string &identifier, const std::string &path) {
+        auto [known, isNew] = _opened.try_emplace(path);
+        if (!isNew)
+            return known->second;
+        TfErrorMark mark;
+        if (!isSkinslide(path)) {
+            known->second = SdfLayer::FindOrOpen(identifier);
+            if (known->second)
+                found.layers.push_back(known->second);
+        } else {
+            try {
+                known->second = readText(path);
+            } catch (const Fault &) {
+            }
+        }
+        mark.Clear();
+        return known->second;
+    }
+
+    std::deque<Place> _waiting;
+    std::map<std::string, SdfLayerRefPtr> _opened;
+    std::map<std::string, std::vector<VtDictionary>> _seen; // by path
+};
 
 } // namespace
 
-Sources findSources(const SdfLayerRefPtr &anchored, const std::string &resolvedPath) {
-    Sources sources;
-    std::deque<SdfLayerRefPtr> waiting{anchored};
-    while (!waiting.empty()) {
-        SdfLayerRefPtr layer = waiting.front();
-        waiting.pop_front();
-        for (const std::string &identifier : assetsOf(layer, anchored)) {
-            std::string bare;
-            SdfLayer::FileFormatArguments arguments;
-            SdfLayer::SplitIdentifier(identifier, &bare, &arguments);
-            ArResolvedPath found = ArGetResolver().Resolve(bare);
-            if (found.GetPathString() == resolvedPath)
-                throw fault("leads back to itself through %s",
-                            layer == anchored ? "its own text" : layer->GetIdentifier().c_str());
-            // A file that appears later is a change too.
-            std::string path = found ? found.GetPathString() : ArGetResolver().ResolveForNewAsset(bare).GetPathString();
-            if (path.empty() || !sources.paths.insert(path).second || !found)
-                continue;
-            if (SdfLayerRefPtr next = openSource(identifier, path)) {
-                waiting.push_back(next);
-                if (!isSkinslide(path))
-                    sources.layers.push_back(next);
-            }
-        }
-    }
-    return sources;
+Sources findSources(const SdfLayerRefPtr &text, const std::string &resolvedPath) {
+    return Walk({text, resolvedPath, text->GetExpressionVariables()}).found;
 }
 
 void adoptRate(const SdfLayerRefPtr &layer, const Sources &sources) {

@@ -29,9 +29,10 @@ struct Sources {
     std::set<std::string> paths;        // resolved, of every file, also of those that could not be read
 };
 
-// Follows every composition arc. Throws Fault where a .skinslide file leads back to itself: a layer that is opened while it is
-// being read waits for itself for ever, so .skinslide files on the way are read as text and never opened.
-Sources findSources(const SdfLayerRefPtr &anchored, const std::string &resolvedPath);
+// Follows every composition arc of a file's text, in the resolver context that is bound. Throws Fault where it leads back to a
+// file that this thread is reading: a layer that is opened while it is being read waits for itself for ever, so .skinslide files
+// on the way are read as text and never opened.
+Sources findSources(const SdfLayerRefPtr &text, const std::string &resolvedPath);
 
 // A layer without a rate counts as 24 a second, and what it leads to is scaled to that: gives it the rate of the first source.
 void adoptRate(const SdfLayerRefPtr &layer, const Sources &sources);
