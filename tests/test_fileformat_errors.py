@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Sdf, Ts, Usd, UsdGeom, Vt
+from pxr import Sdf, Tf, Ts, Usd, UsdGeom, Vt
 
 import skinslide
 from layers import HEAD, make, open_mesh, points, refusal, said, solve_count, write
@@ -352,6 +352,75 @@ def test_a_lookup_that_cannot_be_had_gives_the_cache_and_one_message(tmp_path, m
         for frame in FRAMES[1:]:
             assert np.array_equal(layer.QueryTimeSample(f"{MESH}.points", frame), grid().moved(frame))
     assert len([message for message in messages if MESH in message]) == 1
+
+
+@pytest.mark.parametrize("value", ["abc", "99999999999", "-1", "1.5"])
+def test_numbers_of_the_environment_that_are_none_are_said(tmp_path, value):
+    script = (
+        f"import skinslide; from pxr import Sdf; layer = Sdf.Layer.FindOrOpen({str(make(tmp_path))!r}); "
+        f"[layer.QueryTimeSample({MESH + '.points'!r}, time) for time in (1002, 1003)]"
+    )
+    done = run_python(script, SKINSLIDE_CACHE_MB=value)
+    assert done.returncode == 0
+    assert done.stderr.count("SKINSLIDE_CACHE_MB") == 1 and "it counts as 512" in done.stderr
+    done = run_python(script, SKINSLIDE_EGL_DEVICE=value)
+    assert done.returncode == 0
+    assert done.stderr.count("SKINSLIDE_EGL_DEVICE") == 1 and "the points are those of the cache" in done.stderr
+    assert not run_python(script, SKINSLIDE_CACHE_MB="", SKINSLIDE_EGL_DEVICE="").stderr
+
+
+def chain(folder: Path, length: int) -> Path:
+    path = make(folder)
+    for number in range(length):
+        path = write(folder / f"c{number}.skinslide", cache=f"./{path.name}")
+    return path
+
+
+def test_each_file_of_a_chain_is_read_once(tmp_path):
+    with said() as messages:
+        stage, mesh = open_mesh(chain(tmp_path, 12))
+        assert mesh.GetPointsAttr().GetNumTimeSamples() == 3
+    assert sum("c0.skinslide:" in message for message in messages) == 1
+    # A reload of the last one picks up a change of the first one's source.
+    edited = Sdf.Layer.OpenAsAnonymous(str(tmp_path / "cache.usda"))
+    edited.SetTimeSample(f"{MESH}.points", 1009, vectors(grid().moved(1003)))
+    edited.Export(str(tmp_path / "cache.usda"))
+    with said():
+        assert stage.GetRootLayer().Reload()
+    assert 1009.0 in mesh.GetPointsAttr().GetTimeSamples()
+
+
+def test_a_chain_that_is_too_long_is_refused(tmp_path):
+    with said() as messages:
+        try:
+            open_mesh(chain(tmp_path, 40))
+        except (Tf.ErrorException, RuntimeError) as error:
+            messages.append(str(error))
+    assert "is led to by 32 .skinslide files" in "".join(messages)
+
+
+def test_a_reload_keeps_unsaved_edits_of_a_source(tmp_path):
+    path = make(tmp_path)
+    layer, cache = (Sdf.Layer.FindOrOpen(str(each)) for each in (path, tmp_path / "cache.usda"))
+    cache.SetTimeSample(f"{MESH}.points", 1009, vectors(grid().moved(1003)))
+    path.write_text(path.read_text() + "\n")
+    assert layer.Reload(force=True)
+    assert cache.dirty and 1009.0 in layer.ListTimeSamplesForPath(f"{MESH}.points")
+
+
+def test_threads_that_read_do_not_abort_an_exit(tmp_path):
+    stage, _ = patched_stage(grid(60, 60))
+    save(stage, tmp_path / "cache.usda")
+    path = write(tmp_path / "x.skinslide")
+    script = (
+        "import skinslide, sys, threading, time; from pxr import Usd; "
+        f"stage = Usd.Stage.Open({str(path)!r}); points = stage.GetAttributeAtPath({MESH + '.points'!r})\n"
+        "def read():\n    while True: points.Get(1002); points.Get(1003)\n"
+        "for _ in range(8): threading.Thread(target=read, daemon=True).start()\n"
+        "time.sleep(0.15); sys.exit(3)"
+    )
+    for _ in range(4):
+        assert run_python(script, SKINSLIDE_CACHE_MB="0").returncode == 3
 
 
 def test_mutated_files_neither_crash_nor_hang(tmp_path):

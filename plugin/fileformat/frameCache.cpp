@@ -1,11 +1,13 @@
 #include "frameCache.h"
 
+#include "environment.h"
+#include "fault.h"
+
 #include "pxr/base/gf/vec3f.h"
-#include "pxr/base/tf/getenv.h"
+#include "pxr/base/tf/diagnostic.h"
 #include "pxr/base/vt/array.h"
 #include "pxr/base/vt/types.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace skinslide {
@@ -22,11 +24,22 @@ size_t sizeOf(const Frame &frame) {
     return sizeof frame + points * sizeof(GfVec3f);
 }
 
+size_t capacityInBytes() {
+    const int fallback = 512;
+    int megabytes = fallback;
+    try {
+        megabytes = countFromEnvironment("SKINSLIDE_CACHE_MB", fallback);
+    } catch (const Fault &bad) {
+        TF_WARN("%s; it counts as %d", bad.what(), fallback);
+    }
+    return static_cast<size_t>(megabytes) << 20;
+}
+
 } // namespace
 
 FrameCache &FrameCache::shared() {
     // Never destroyed: layers may be closed after the statics of this library are gone.
-    static FrameCache *cache = new FrameCache(static_cast<size_t>(std::max(0, TfGetenvInt("SKINSLIDE_CACHE_MB", 512))) << 20);
+    static FrameCache *cache = new FrameCache(capacityInBytes());
     return *cache;
 }
 

@@ -1,12 +1,12 @@
 #include "slidMesh.h"
 
+#include "environment.h"
 #include "fault.h"
 #include "names.h"
+#include "pythonLock.h"
 
 #include "pxr/base/gf/range3f.h"
 #include "pxr/base/tf/diagnostic.h"
-#include "pxr/base/tf/getenv.h"
-#include "pxr/base/tf/pyLock.h"
 #include "pxr/usd/sdf/types.h"
 
 #include <algorithm>
@@ -115,6 +115,25 @@ void SlidMesh::build() {
     }
 }
 
+// For good: what keeps one frame from being solved here keeps all of them. Throws Fault.
+void SlidMesh::giveUp(const std::string &problem) {
+    std::lock_guard<std::mutex> lock(_mutex);
+    _problem = problem;
+    throw Fault(problem);
+}
+
+skinslide_workspace_options SlidMesh::workspaceOptions() {
+    skinslide_workspace_options options = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
+    auto found = std::find(lookupTokens.begin(), lookupTokens.end(), _lookup);
+    options.lookup = static_cast<skinslide_lookup>(found - lookupTokens.begin());
+    try {
+        options.device = countFromEnvironment("SKINSLIDE_EGL_DEVICE", SKINSLIDE_ANY_DEVICE);
+    } catch (const Fault &bad) {
+        giveUp(bad.what());
+    }
+    return options;
+}
+
 // Built when the first frame is asked for. Throws Fault where it cannot be.
 const skinslide_slider *SlidMesh::slider() {
     std::call_once(_built, [this] { build(); });
@@ -133,17 +152,11 @@ skinslide_workspace *SlidMesh::takeWorkspace() {
             return workspace;
         }
     }
-    skinslide_workspace_options options = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
-    auto found = std::find(lookupTokens.begin(), lookupTokens.end(), _lookup);
-    options.lookup = static_cast<skinslide_lookup>(found - lookupTokens.begin());
-    options.device = TfGetenvInt("SKINSLIDE_EGL_DEVICE", SKINSLIDE_ANY_DEVICE);
+    skinslide_workspace_options options = workspaceOptions();
     skinslide_workspace *workspace = nullptr;
     skinslide_error error = {};
-    if (skinslide_workspace_create(slider, &options, &workspace, &error) != SKINSLIDE_OK) {
-        std::lock_guard<std::mutex> lock(_mutex);
-        _problem = error.message;
-        throw Fault(_problem);
-    }
+    if (skinslide_workspace_create(slider, &options, &workspace, &error) != SKINSLIDE_OK)
+        giveUp(error.message);
     return workspace;
 }
 
@@ -200,7 +213,7 @@ Frame SlidMesh::solve(double time) {
 std::shared_ptr<const Frame> SlidMesh::frame(double time) {
     // A thread that waits for a frame, or solves one, lets others run Python; and one that waited with the lock would keep the
     // one that solves from taking it back.
-    TF_PY_ALLOW_THREADS_IN_SCOPE();
+    PythonReleased released;
     return FrameCache::shared().get(this, time, [&] { return solve(time); });
 }
 

@@ -39,6 +39,8 @@ class SlidMesh {
     bool pose(double time, Pose *pose);
     const skinslide_slider *slider();
     void build();
+    [[noreturn]] void giveUp(const std::string &problem);
+    skinslide_workspace_options workspaceOptions();
     skinslide_workspace *takeWorkspace();
     void giveBack(skinslide_workspace *workspace);
     skinslide_mesh nativeMesh() const;
