@@ -271,6 +271,39 @@ def test_an_envelope_by_spline_points_at_the_bake(tmp_path):
     assert "is a spline" in messages_of(make(tmp_path, animate))
 
 
+# ---- Live ----
+
+
+def shot(folder: Path, live: str) -> Path:
+    make(folder)
+    path = folder / "shot.usda"
+    path.write_text(f'#usda 1.0\ndef "World" (payload = @./x.skinslide@) {{\n{live}\n}}')
+    return path
+
+
+@pytest.mark.parametrize(
+    ("live", "message"),
+    [
+        ('string skinSlide:live:envelope = "half"', "skinSlide:live:envelope is a string; it must be a number"),
+        ("float[] skinSlide:live:envelope = [0.5]", "skinSlide:live:envelope is a VtArray<float>; it must be a number"),
+        ("int skinSlide:live:interpolation = 1", "skinSlide:live:interpolation is a int; it must be a token"),
+    ],
+)
+def test_a_live_attribute_of_a_wrong_type_is_said(tmp_path, live, message):
+    assert message in messages_of(shot(tmp_path, live))
+
+
+# ---- Importing too late ----
+
+
+@pytest.mark.parametrize("early", [True, False])
+def test_an_import_after_a_layer_was_opened_is_said(early):
+    imports = ["import skinslide", "from pxr import Sdf; layer = Sdf.Layer.CreateAnonymous()"]
+    done = run_python("; ".join(imports if early else imports[::-1]))
+    assert done.returncode == 0
+    assert done.stderr.count("Import skinslide first") == (0 if early else 1)
+
+
 # ---- Frames that fail ----
 
 

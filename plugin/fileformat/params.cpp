@@ -2,7 +2,9 @@
 
 #include "names.h"
 
+#include "pxr/base/tf/diagnostic.h"
 #include "pxr/base/tf/stringUtils.h"
+#include "pxr/usd/sdf/types.h"
 
 #include <algorithm>
 #include <cctype>
@@ -57,6 +59,22 @@ void takeEnvelope(const std::string &value, double *envelope, std::vector<std::s
         problems->push_back(TfStringPrintf("skinSlide:live:envelope is '%s'; it must be a number", value.c_str()));
 }
 
+// Said where the prim is composed, as no argument could tell.
+void sayType(const TfToken &attribute, const VtValue &value, const char *wanted) {
+    if (!value.IsHolding<SdfValueBlock>())
+        TF_WARN("%s is a %s; it must be %s", attribute.GetText(), value.GetTypeName().c_str(), wanted);
+}
+
+void addEnvelope(const Params::ComposeAttribute &compose, SdfFileFormat::FileFormatArguments *arguments) {
+    VtValue value;
+    if (!compose(names().liveEnvelope, &value) || value.IsEmpty())
+        return;
+    if (value.CanCast<double>())
+        (*arguments)[names().envelopeArgument] = encode(TfStringify(value.Cast<double>().Get<double>()));
+    else
+        sayType(names().liveEnvelope, value, "a number");
+}
+
 void addToken(const TfToken &attribute, const std::string &argument, const Params::ComposeAttribute &compose,
               SdfFileFormat::FileFormatArguments *arguments) {
     VtValue value;
@@ -66,6 +84,8 @@ void addToken(const TfToken &attribute, const std::string &argument, const Param
         (*arguments)[argument] = encode(value.UncheckedGet<TfToken>().GetString());
     else if (value.IsHolding<std::string>())
         (*arguments)[argument] = encode(value.UncheckedGet<std::string>());
+    else
+        sayType(attribute, value, "a token");
 }
 
 } // namespace
@@ -91,10 +111,7 @@ Params Params::fromArguments(const SdfFileFormat::FileFormatArguments &arguments
 
 SdfFileFormat::FileFormatArguments Params::argumentsFromAttributes(const ComposeAttribute &compose) {
     SdfFileFormat::FileFormatArguments arguments;
-    VtValue value;
-    // A blocked value arrives as SdfValueBlock and a float where a double may be; neither casts to a wrong number.
-    if (compose(names().liveEnvelope, &value) && !value.IsEmpty() && value.CanCast<double>())
-        arguments[names().envelopeArgument] = encode(TfStringify(value.Cast<double>().Get<double>()));
+    addEnvelope(compose, &arguments);
     addToken(names().liveInterpolation, names().interpolationArgument, compose, &arguments);
     addToken(names().liveLookup, names().lookupArgument, compose, &arguments);
     return arguments;

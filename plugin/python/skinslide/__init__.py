@@ -43,7 +43,10 @@ def cmake_dir() -> str:
 
 
 def plugin_dir() -> str:
-    """The folder to add to PXR_PLUGINPATH_NAME, for a host with a USD that skinslide was built for with pxr_DIR."""
+    """The folder to add to PXR_PLUGINPATH_NAME, for a host with a USD that skinslide was built for with pxr_DIR.
+
+    Not with the wheel usd-core, whose library hides its symbols until skinslide is imported: import it first there.
+    """
     return str(fileformat.PLUGIN_DIR)
 
 

@@ -37,6 +37,15 @@ def register() -> None:
     for library in (Path(pxr.__file__).parent.parent / "usd_core.libs").glob("libusd_ms-*"):
         ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
     Plug.Registry().RegisterPlugins(str(_DESCRIPTION.parent))
+    # USD lists its formats once, when it first needs one. A layer that is open shows that it has; without one, asking
+    # would make it, and shut out the formats that others register later.
+    if Sdf.Layer.GetLoadedLayers() and not registered():
+        warnings.warn(
+            "skinslide was imported after USD opened a layer, when it takes no more file formats: .skinslide files do "
+            "not open as layers. Import skinslide first.",
+            RuntimeWarning,
+            stacklevel=3,
+        )
 
 
 def registered() -> bool:
