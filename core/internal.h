@@ -66,6 +66,10 @@ static inline int32_t ss_previous_corner(const ss_faces *faces, int32_t corner) 
     return corner > faces->face_start[face] ? corner - 1 : faces->face_start[face + 1] - 1;
 }
 
+/* For qsort and bsearch: int32_t, and int32_t[2]. */
+int ss_ascending(const void *a, const void *b);
+int ss_ascending_pairs(const void *a, const void *b);
+
 /* Counts, indices and rest points of the whole mesh. */
 skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error);
 /* Names the first vertex that is not finite. */

@@ -4,6 +4,16 @@
 #include <math.h>
 #include <stdlib.h>
 
+int ss_ascending(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+int ss_ascending_pairs(const void *a, const void *b) {
+    const int32_t *x = a, *y = b;
+    return x[0] != y[0] ? ss_ascending(x, y) : ss_ascending(x + 1, y + 1);
+}
+
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error) {
     if (!points)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
@@ -86,11 +96,6 @@ static skinslide_status pair_sides(ss_faces *faces, const side *sides, const int
 
 /* ---- The faces of a patch ---- */
 
-static int ascending(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* sorted is scratch of the face's size. */
 static skinslide_status check_face(const int32_t *vertices, int32_t count, int32_t face, int32_t *sorted, const char *label,
                                    skinslide_error *error) {
@@ -98,7 +103,7 @@ static skinslide_status check_face(const int32_t *vertices, int32_t count, int32
         return ss_fail(error, SKINSLIDE_BAD_MESH, "%s: face %d has %d vertices; a face needs 3", label, face, count);
     for (int32_t k = 0; k < count; k++)
         sorted[k] = vertices[k];
-    qsort(sorted, (size_t)count, sizeof *sorted, ascending);
+    qsort(sorted, (size_t)count, sizeof *sorted, ss_ascending);
     for (int32_t k = 1; k < count; k++)
         if (sorted[k] == sorted[k - 1])
             return ss_fail(error, SKINSLIDE_BAD_MESH, "%s: face %d has vertex %d more than once", label, face, sorted[k]);

@@ -8,14 +8,9 @@
 
 /* ---- Vertices ---- */
 
-static int ascending(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return x < y ? -1 : x > y;
-}
-
 int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex) {
     const int32_t *found =
-        bsearch(&mesh_vertex, patch->mesh_vertex, (size_t)patch->vertex_count, sizeof mesh_vertex, ascending);
+        bsearch(&mesh_vertex, patch->mesh_vertex, (size_t)patch->vertex_count, sizeof mesh_vertex, ss_ascending);
     return found ? (int32_t)(found - patch->mesh_vertex) : -1;
 }
 
@@ -27,7 +22,7 @@ static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error)
         return ss_out_of_memory(error);
     for (int32_t c = 0; c < faces->corner_count; c++)
         patch->mesh_vertex[c] = faces->corner_vertex[c];
-    qsort(patch->mesh_vertex, (size_t)faces->corner_count, sizeof *patch->mesh_vertex, ascending);
+    qsort(patch->mesh_vertex, (size_t)faces->corner_count, sizeof *patch->mesh_vertex, ss_ascending);
     for (int32_t c = 0; c < faces->corner_count; c++)
         if (c == 0 || patch->mesh_vertex[c] != patch->mesh_vertex[c - 1])
             patch->mesh_vertex[patch->vertex_count++] = patch->mesh_vertex[c];
@@ -45,17 +40,10 @@ static void list_edges(ss_patch *patch) {
     }
 }
 
-static int by_vertices(const void *a, const void *b) {
-    const int32_t *x = a, *y = b;
-    if (x[0] != y[0])
-        return x[0] < y[0] ? -1 : 1;
-    return x[1] < y[1] ? -1 : x[1] > y[1];
-}
-
 int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b) {
     int32_t key[2] = {a < b ? a : b, a < b ? b : a};
     const int32_t(*found)[2] =
-        bsearch(key, patch->edge_vertex, (size_t)patch->faces.edge_count, sizeof *patch->edge_vertex, by_vertices);
+        bsearch(key, patch->edge_vertex, (size_t)patch->faces.edge_count, sizeof *patch->edge_vertex, ss_ascending_pairs);
     return found ? (int32_t)(found - (const int32_t(*)[2])patch->edge_vertex) : -1;
 }
 

@@ -6,11 +6,6 @@
 
 /* ---- Checks of a set-up ---- */
 
-static int ascending(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return x < y ? -1 : x > y;
-}
-
 static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, skinslide_error *error) {
     if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE ||
         (unsigned)setup->rule > SKINSLIDE_RULE_RELAXED || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
@@ -30,18 +25,11 @@ static skinslide_status sort_faces(const skinslide_mesh *mesh, const skinslide_p
                            setup->faces[i], mesh->face_count);
         sorted[i] = setup->faces[i];
     }
-    qsort(sorted, (size_t)setup->face_count, sizeof *sorted, ascending);
+    qsort(sorted, (size_t)setup->face_count, sizeof *sorted, ss_ascending);
     for (int32_t i = 1; i < setup->face_count; i++)
         if (sorted[i] == sorted[i - 1])
             return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: face %d is listed more than once", setup->name, sorted[i]);
     return SKINSLIDE_OK;
-}
-
-static int by_pair(const void *a, const void *b) {
-    const int32_t *x = a, *y = b;
-    if (x[0] != y[0])
-        return x[0] < y[0] ? -1 : 1;
-    return x[1] < y[1] ? -1 : x[1] > y[1];
 }
 
 static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a, int32_t b) {
@@ -70,9 +58,9 @@ static skinslide_status check_edges(const skinslide_slider *slider, int32_t setu
             status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: %d-%d is not an edge of the patch", name, a, b);
     }
     if (!status)
-        qsort(pairs, (size_t)controls->edge_count, sizeof *pairs, by_pair);
+        qsort(pairs, (size_t)controls->edge_count, sizeof *pairs, ss_ascending_pairs);
     for (int32_t i = 1; i < controls->edge_count && !status; i++)
-        if (by_pair(pairs[i], pairs[i - 1]) == 0)
+        if (ss_ascending_pairs(pairs[i], pairs[i - 1]) == 0)
             status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: edge %d-%d is listed more than once", name, pairs[i][0],
                              pairs[i][1]);
     ss_free(&scratch);
