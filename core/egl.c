@@ -220,6 +220,10 @@ static bool make_context(ss_egl *egl, account *tried) {
     return no_surface || egl->surface != EGL_NO_SURFACE || report(api, tried, "eglCreatePbufferSurface");
 }
 
+bool ss_gl_has(const ss_egl_api *gl, const char *extension) {
+    return has((const char *)gl->glGetString(GL_EXTENSIONS), extension);
+}
+
 static bool is_software(const char *renderer) {
     static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "SWR", "SwiftShader", "Software"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)

@@ -1,4 +1,5 @@
-/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, idbuffer.c and their tests. */
+/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, program.c, what
+ * draws (idbuffer.c, canvas.c) and their tests. */
 #ifndef SKINSLIDE_EGL_H
 #define SKINSLIDE_EGL_H
 
@@ -43,20 +44,26 @@
     X(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                                                                           \
     X(PFNGLBINDTEXTUREPROC, glBindTexture)                                                                                     \
     X(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray)                                                                             \
+    X(PFNGLBLITFRAMEBUFFERPROC, glBlitFramebuffer)                                                                             \
     X(PFNGLBUFFERDATAPROC, glBufferData)                                                                                       \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, glCheckFramebufferStatus)                                                               \
+    X(PFNGLCLEARBUFFERFVPROC, glClearBufferfv)                                                                                 \
     X(PFNGLCLEARBUFFERUIVPROC, glClearBufferuiv)                                                                               \
     X(PFNGLCOMPILESHADERPROC, glCompileShader)                                                                                 \
     X(PFNGLCREATEPROGRAMPROC, glCreateProgram)                                                                                 \
     X(PFNGLCREATESHADERPROC, glCreateShader)                                                                                   \
     X(PFNGLDELETESHADERPROC, glDeleteShader)                                                                                   \
+    X(PFNGLDEPTHFUNCPROC, glDepthFunc)                                                                                         \
     X(PFNGLDISABLEPROC, glDisable)                                                                                             \
     X(PFNGLDRAWARRAYSPROC, glDrawArrays)                                                                                       \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, glDrawArraysInstanced)                                                                     \
+    X(PFNGLDRAWELEMENTSPROC, glDrawElements)                                                                                   \
     X(PFNGLENABLEPROC, glEnable)                                                                                               \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                                                             \
     X(PFNGLENDTRANSFORMFEEDBACKPROC, glEndTransformFeedback)                                                                   \
     X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, glFramebufferRenderbuffer)                                                             \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, glFramebufferTexture2D)                                                                   \
+    X(PFNGLFRONTFACEPROC, glFrontFace)                                                                                         \
     X(PFNGLGENBUFFERSPROC, glGenBuffers)                                                                                       \
     X(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers)                                                                             \
     X(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                                                                           \
@@ -64,22 +71,30 @@
     X(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays)                                                                             \
     X(PFNGLGETERRORPROC, glGetError)                                                                                           \
     X(PFNGLGETINTEGERVPROC, glGetIntegerv)                                                                                     \
-    X(PFNGLGETPROGRAMIVPROC, glGetProgramiv)                                                                                   \
     X(PFNGLGETPROGRAMINFOLOGPROC, glGetProgramInfoLog)                                                                         \
+    X(PFNGLGETPROGRAMIVPROC, glGetProgramiv)                                                                                   \
     X(PFNGLGETSTRINGPROC, glGetString)                                                                                         \
     X(PFNGLGETUNIFORMLOCATIONPROC, glGetUniformLocation)                                                                       \
     X(PFNGLLINKPROGRAMPROC, glLinkProgram)                                                                                     \
     X(PFNGLMAPBUFFERRANGEPROC, glMapBufferRange)                                                                               \
+    X(PFNGLPOLYGONOFFSETPROC, glPolygonOffset)                                                                                 \
     X(PFNGLREADPIXELSPROC, glReadPixels)                                                                                       \
     X(PFNGLRENDERBUFFERSTORAGEPROC, glRenderbufferStorage)                                                                     \
+    X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, glRenderbufferStorageMultisample)                                               \
+    X(PFNGLSCISSORPROC, glScissor)                                                                                             \
     X(PFNGLSHADERSOURCEPROC, glShaderSource)                                                                                   \
     X(PFNGLTEXPARAMETERIPROC, glTexParameteri)                                                                                 \
-    X(PFNGLSCISSORPROC, glScissor)                                                                                             \
     X(PFNGLTEXSTORAGE2DPROC, glTexStorage2D)                                                                                   \
     X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, glTransformFeedbackVaryings)                                                         \
+    X(PFNGLUNIFORM1FPROC, glUniform1f)                                                                                         \
     X(PFNGLUNIFORM1IPROC, glUniform1i)                                                                                         \
+    X(PFNGLUNIFORM2FPROC, glUniform2f)                                                                                         \
+    X(PFNGLUNIFORM3FVPROC, glUniform3fv)                                                                                       \
+    X(PFNGLUNIFORMMATRIX3FVPROC, glUniformMatrix3fv)                                                                           \
+    X(PFNGLUNIFORMMATRIX4FVPROC, glUniformMatrix4fv)                                                                           \
     X(PFNGLUNMAPBUFFERPROC, glUnmapBuffer)                                                                                     \
     X(PFNGLUSEPROGRAMPROC, glUseProgram)                                                                                       \
+    X(PFNGLVERTEXATTRIBDIVISORPROC, glVertexAttribDivisor)                                                                     \
     X(PFNGLVERTEXATTRIBIPOINTERPROC, glVertexAttribIPointer)                                                                   \
     X(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer)                                                                     \
     X(PFNGLVIEWPORTPROC, glViewport)
@@ -120,5 +135,12 @@ bool ss_egl_enter(const ss_egl *egl, ss_egl_before *before);
 void ss_egl_leave(const ss_egl *egl, const ss_egl_before *before);
 /* "EGL_BAD_ALLOC"; "an unknown error" for a number that EGL does not have. */
 const char *ss_egl_error_name(EGLint code);
+/* Whether the device did all that it was asked for since the context was entered; else says what it did not. */
+bool ss_gl_did(const ss_egl_api *gl, char *failure, size_t size);
+/* Whether the context, which is current, has an extension. */
+bool ss_gl_has(const ss_egl_api *gl, const char *extension);
+/* Links a program, capturing the outputs [captured_count] of its vertex shader where there are any. */
+skinslide_status ss_gl_program(const ss_egl_api *gl, const char *vertex, const char *fragment, const char *const *captured,
+                               int32_t captured_count, GLuint *program, skinslide_error *error);
 
 #endif

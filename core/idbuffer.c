@@ -120,34 +120,6 @@ static const char gather_fragment[] = "#version 300 es\n"
                                       "void main() {\n"
                                       "}\n";
 
-static void attach_shader(const ss_egl_api *gl, GLuint program, GLenum kind, const char *source) {
-    GLuint shader = gl->glCreateShader(kind);
-    gl->glShaderSource(shader, 1, &source, NULL);
-    gl->glCompileShader(shader);
-    gl->glAttachShader(program, shader);
-    gl->glDeleteShader(shader); /* lives on in the program */
-}
-
-/* Links a program, capturing the answers where it has any. */
-static skinslide_status make_program(const ss_egl_api *gl, const char *vertex, const char *fragment, bool captured,
-                                     GLuint *program, skinslide_error *error) {
-    static const char *const answers[] = {"answer0", "answer1", "answer2"};
-    GLint linked = GL_FALSE;
-    *program = gl->glCreateProgram();
-    attach_shader(gl, *program, GL_VERTEX_SHADER, vertex);
-    attach_shader(gl, *program, GL_FRAGMENT_SHADER, fragment);
-    if (captured)
-        gl->glTransformFeedbackVaryings(*program, 3, answers, GL_INTERLEAVED_ATTRIBS);
-    gl->glLinkProgram(*program);
-    gl->glGetProgramiv(*program, GL_LINK_STATUS, &linked);
-    if (linked)
-        return SKINSLIDE_OK;
-    char text[200] = "";
-    gl->glGetProgramInfoLog(*program, sizeof text, NULL, text);
-    text[strcspn(text, "\n")] = 0;
-    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "the device's compiler refuses a program: %s", text);
-}
-
 /* ---- Objects of the context ---- */
 
 /* The texture, as large as the largest drawing, stays bound; a pixel of its own serves the second pass, since a texture must
@@ -212,9 +184,10 @@ static void make_buffers(ss_idbuffer *buffer, drawing *drawn) {
 
 static skinslide_status make_objects(ss_idbuffer *buffer, skinslide_error *error) {
     const ss_egl_api *gl = &buffer->egl->api;
-    skinslide_status status = make_program(gl, draw_vertex, draw_fragment, false, &buffer->draw_program, error);
+    static const char *const answers[] = {"answer0", "answer1", "answer2"};
+    skinslide_status status = ss_gl_program(gl, draw_vertex, draw_fragment, NULL, 0, &buffer->draw_program, error);
     if (!status)
-        status = make_program(gl, gather_vertex, gather_fragment, true, &buffer->gather_program, error);
+        status = ss_gl_program(gl, gather_vertex, gather_fragment, answers, 3, &buffer->gather_program, error);
     if (!status)
         status = make_targets(buffer, error);
     if (status)
@@ -241,14 +214,6 @@ static void lose(ss_idbuffer *buffer, const char *call, const char *failure) {
         buffer->drawings[p].drawn = false;
 }
 
-/* Whether the device did all that it was asked for since the context was entered. */
-static bool no_failure(ss_idbuffer *buffer, char *failure, size_t size) {
-    const ss_egl_api *gl = &buffer->egl->api;
-    GLenum code = gl->glGetError(), reset = gl->glGetGraphicsResetStatus ? gl->glGetGraphicsResetStatus() : GL_NO_ERROR;
-    snprintf(failure, size, reset ? "the context was lost, 0x%04x" : "OpenGL error 0x%04x", reset ? reset : code);
-    return !code && !reset;
-}
-
 static bool enter(ss_idbuffer *buffer, ss_egl_before *before) {
     if (!buffer->egl)
         return false;
@@ -260,7 +225,7 @@ static bool enter(ss_idbuffer *buffer, ss_egl_before *before) {
 
 static void leave(ss_idbuffer *buffer, const ss_egl_before *before, const char *what, bool mapped) {
     char failure[64];
-    bool good = no_failure(buffer, failure, sizeof failure);
+    bool good = ss_gl_did(&buffer->egl->api, failure, sizeof failure);
     ss_egl_leave(buffer->egl, before);
     if (!good || !mapped)
         lose(buffer, what, good ? "its answers cannot be mapped" : failure);

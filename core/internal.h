@@ -308,6 +308,12 @@ typedef struct ss_surfaces ss_surfaces; /* limit surfaces of some of its faces: 
 
 skinslide_status ss_topology_create(const skinslide_mesh *mesh, ss_topology **out, skinslide_error *error);
 void ss_topology_destroy(ss_topology *topology);
+typedef enum ss_face_surface {
+    SS_SURFACE,         /* the face has a limit surface */
+    SS_SURFACE_NONE,    /* it is not rendered */
+    SS_SURFACE_REFUSED, /* it would have one but for OpenSubdiv */
+} ss_face_surface;
+ss_face_surface ss_face_surface_of(const ss_topology *topology, int32_t mesh_face);
 /* BAD_PATCH where a face has none. label begins messages. */
 skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,
                                     ss_surfaces **out, skinslide_error *error);

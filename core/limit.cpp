@@ -238,6 +238,12 @@ void ss_topology_destroy(ss_topology *topology) {
     delete topology;
 }
 
+ss_face_surface ss_face_surface_of(const ss_topology *topology, int32_t mesh_face) {
+    if (!topology->factory->FaceHasLimitSurface(mesh_face))
+        return SS_SURFACE_NONE;
+    return crash_at(*topology, mesh_face) ? SS_SURFACE_REFUSED : SS_SURFACE;
+}
+
 skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,
                                     ss_surfaces **out, skinslide_error *error) {
     return guarded(error, [&] {

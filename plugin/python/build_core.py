@@ -1,4 +1,4 @@
-"""Writes the C source of `skinslide._core` from the preprocessed public header: build_core.py DECLARATIONS OUTPUT."""
+"""Writes the C source of `skinslide._core` from the preprocessed public headers: build_core.py DECLARATIONS OUTPUT."""
 
 import sys
 from pathlib import Path
@@ -7,10 +7,10 @@ from cffi import FFI
 
 
 def main(declarations: Path, output: Path) -> None:
-    """Emits a module that gives every function, struct and enum of the header; calls release the GIL."""
+    """Emits a module that gives every function, struct and enum of the headers; calls release the GIL."""
     ffi = FFI()
     ffi.cdef(declarations.read_text())
-    ffi.set_source("skinslide._core", "#include <skinslide/skinslide.h>")
+    ffi.set_source("skinslide._core", "#include <skinslide/picture.h>")
     ffi.emit_c_code(str(output))
 
 

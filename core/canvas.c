@@ -1,0 +1,200 @@
+/* What pictures are drawn on: two framebuffers of a context of our own, one of four samples a pixel that is drawn to, one of a
+ * single sample that is read. Bytes hold sRGB, which the programs that draw make of linear light: the device would do it once a
+ * sample, which software rasterisers are slow at. */
+#include "canvas.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SIDE = 16384, MOST_PIXELS = 1 << 26, SAMPLES = 4 };
+
+/* ---- Entering and leaving ---- */
+
+skinslide_status ss_canvas_enter(const skinslide_canvas *canvas, ss_egl_before *before, skinslide_error *error) {
+    if (ss_egl_enter(canvas->egl, before))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "eglMakeCurrent: %s", ss_egl_error_name(before->failure));
+}
+
+skinslide_status ss_canvas_leave(const skinslide_canvas *canvas, const ss_egl_before *before, const char *what,
+                                 skinslide_error *error) {
+    char failure[64];
+    bool did = ss_gl_did(&canvas->egl->api, failure, sizeof failure);
+    ss_egl_leave(canvas->egl, before);
+    return did ? SKINSLIDE_OK : ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s: %s", what, failure);
+}
+
+/* ---- Colours ---- */
+
+void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]) {
+    for (int k = 0; k < 3; k++) {
+        float encoded = light[k] < 0.0031308f ? 12.92f * light[k] : 1.055f * powf(light[k], 1 / 2.4f) - 0.055f;
+        out[k] = canvas->pixels == SKINSLIDE_PIXELS_BYTES ? encoded : light[k];
+    }
+}
+
+/* ---- Creation ---- */
+
+static skinslide_status check_options(const skinslide_canvas_options *options, skinslide_error *error) {
+    int32_t width = options->width, height = options->height;
+    if (width < 1 || height < 1 || width > MOST_SIDE || height > MOST_SIDE || (int64_t)width * height > MOST_PIXELS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT,
+                       "a picture of %d by %d pixels; each side is 1 to %d, and all are at most %d", width, height, MOST_SIDE,
+                       MOST_PIXELS);
+    if ((unsigned)options->pixels > SKINSLIDE_PIXELS_FLOATS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such pixels: %d", (int)options->pixels);
+    if (options->device < SKINSLIDE_ANY_DEVICE)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such device: %d", options->device);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status check_limits(const skinslide_canvas *canvas, skinslide_error *error) {
+    const ss_egl_api *gl = &canvas->egl->api;
+    GLint most = 0;
+    gl->glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
+    if (canvas->width > most || canvas->height > most)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a picture of %d by %d pixels is above the device's limit of %d",
+                       canvas->width, canvas->height, most);
+    if (canvas->pixels == SKINSLIDE_PIXELS_FLOATS && !ss_gl_has(gl, "GL_EXT_color_buffer_float") &&
+        !ss_gl_has(gl, "GL_EXT_color_buffer_half_float"))
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "the device draws no floats: it lacks GL_EXT_color_buffer_float");
+    return SKINSLIDE_OK;
+}
+
+static void attach(const skinslide_canvas *canvas, GLenum place, GLenum format, int32_t samples) {
+    const ss_egl_api *gl = &canvas->egl->api;
+    GLuint buffer;
+    gl->glGenRenderbuffers(1, &buffer);
+    gl->glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+    gl->glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, canvas->width, canvas->height);
+    gl->glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer);
+}
+
+static skinslide_status make_framebuffers(skinslide_canvas *canvas, skinslide_error *error) {
+    const ss_egl_api *gl = &canvas->egl->api;
+    GLenum colour = canvas->pixels == SKINSLIDE_PIXELS_FLOATS ? GL_RGBA16F : GL_RGBA8;
+    gl->glGenFramebuffers(1, &canvas->resolved);
+    gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->resolved);
+    attach(canvas, GL_COLOR_ATTACHMENT0, colour, 0);
+    GLenum state = gl->glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    gl->glGenFramebuffers(1, &canvas->drawn);
+    gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
+    attach(canvas, GL_COLOR_ATTACHMENT0, colour, SAMPLES);
+    attach(canvas, GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, SAMPLES);
+    if (state == GL_FRAMEBUFFER_COMPLETE)
+        state = gl->glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    gl->glEnable(GL_DEPTH_TEST);
+    gl->glDepthFunc(GL_LEQUAL);
+    gl->glDisable(GL_DITHER);
+    if (state == GL_FRAMEBUFFER_COMPLETE)
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "the device's framebuffer of %d by %d pixels is not complete: 0x%04x",
+                   canvas->width, canvas->height, state);
+}
+
+static skinslide_status make_objects(skinslide_canvas *canvas, skinslide_error *error) {
+    ss_egl_before before;
+    skinslide_status status = ss_canvas_enter(canvas, &before, error);
+    if (status)
+        return status;
+    status = check_limits(canvas, error);
+    if (!status)
+        status = make_framebuffers(canvas, error);
+    if (!status)
+        status = ss_figure_objects_create(&canvas->egl->api, &canvas->objects, error);
+    skinslide_status left = ss_canvas_leave(canvas, &before, "making a canvas", status ? NULL : error);
+    return status ? status : left;
+}
+
+skinslide_status ss_canvas_create(const skinslide_canvas_options *options, ss_egl_loader load, skinslide_canvas **out,
+                                  skinslide_error *error) {
+    const skinslide_canvas_options standard = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
+    const skinslide_canvas_options *own = options ? options : &standard;
+    skinslide_status status =
+        out ? check_options(own, error) : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the canvas");
+    if (status)
+        return status;
+    skinslide_canvas *canvas = calloc(1, sizeof *canvas);
+    if (!canvas)
+        return ss_out_of_memory(error);
+    canvas->width = own->width, canvas->height = own->height, canvas->pixels = own->pixels;
+    const ss_device_request request = {load, own->device, false};
+    status = ss_egl_open(&request, &canvas->egl, error);
+    if (!status)
+        status = make_objects(canvas, error);
+    if (status)
+        skinslide_canvas_destroy(canvas);
+    else
+        *out = canvas;
+    return status;
+}
+
+skinslide_status skinslide_canvas_create(const skinslide_canvas_options *options, skinslide_canvas **out,
+                                         skinslide_error *error) {
+    return ss_canvas_create(options, ss_egl_load, out, error);
+}
+
+void skinslide_canvas_destroy(skinslide_canvas *canvas) {
+    if (!canvas)
+        return;
+    ss_egl_close(canvas->egl); /* and with the context all of its objects */
+    free(canvas);
+}
+
+skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_lookup_info *info, skinslide_error *error) {
+    if (!canvas || !info)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no place for the answer");
+    *info = canvas->egl->info;
+    return SKINSLIDE_OK;
+}
+
+/* ---- Clearing and reading ---- */
+
+skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float colour[3], skinslide_error *error) {
+    ss_egl_before before;
+    if (!canvas || !colour)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no colour");
+    skinslide_status status = ss_canvas_enter(canvas, &before, error);
+    if (status)
+        return status;
+    const ss_egl_api *gl = &canvas->egl->api;
+    const float farthest = 1;
+    float all[4] = {0, 0, 0, 1};
+    ss_canvas_colour(canvas, colour, all);
+    gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
+    gl->glClearBufferfv(GL_COLOR, 0, all);
+    gl->glClearBufferfv(GL_DEPTH, 0, &farthest);
+    return ss_canvas_leave(canvas, &before, "clearing a canvas", error);
+}
+
+/* OpenGL has the lowest row first. */
+static void turn_over(const uint8_t *rows, int32_t height, size_t row_size, uint8_t *out) {
+    for (int32_t y = 0; y < height; y++)
+        memcpy(out + (size_t)y * row_size, rows + (size_t)(height - 1 - y) * row_size, row_size);
+}
+
+skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error) {
+    ss_egl_before before;
+    ss_memory scratch = {0};
+    if (!canvas || !pixels)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no place for its pixels");
+    bool floats = canvas->pixels == SKINSLIDE_PIXELS_FLOATS;
+    int32_t width = canvas->width, height = canvas->height;
+    size_t row_size = (size_t)width * 4 * (floats ? sizeof(float) : 1);
+    uint8_t *rows = ss_new(&scratch, height, row_size);
+    skinslide_status status = rows ? ss_canvas_enter(canvas, &before, error) : ss_out_of_memory(error);
+    if (!status) {
+        const ss_egl_api *gl = &canvas->egl->api;
+        gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->drawn);
+        gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->resolved);
+        gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->resolved);
+        gl->glReadPixels(0, 0, width, height, GL_RGBA, floats ? GL_FLOAT : GL_UNSIGNED_BYTE, rows);
+        status = ss_canvas_leave(canvas, &before, "reading a canvas", error);
+    }
+    if (!status)
+        turn_over(rows, height, row_size, pixels);
+    ss_free(&scratch);
+    return status;
+}

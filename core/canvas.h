@@ -1,0 +1,39 @@
+/* A canvas from inside: canvas.c makes, clears and reads it, figure.c draws figures on it. */
+#ifndef SKINSLIDE_CANVAS_H
+#define SKINSLIDE_CANVAS_H
+
+#include "draw.h"
+#include "egl.h"
+
+/* Objects that draw figures. */
+typedef struct ss_figure_objects {
+    GLuint surface_program, outline_program;
+    GLuint surface_array, outline_array;
+    GLuint fixed_buffer, posed_buffer, triangle_buffer, segment_buffer;
+    GLint surface_to_camera, surface_to_clip, turn_normal, coordinates, scale, colours, encoded; /* uniforms */
+    GLint outline_to_clip, half_width, line_colour;
+} ss_figure_objects;
+
+struct skinslide_canvas {
+    ss_egl *egl;
+    int32_t width, height;
+    skinslide_pixels pixels;
+    GLuint drawn, resolved; /* framebuffers: of several samples a pixel, and of one */
+    ss_figure_objects objects;
+};
+
+/* The context is current. */
+skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);
+
+/* Makes the canvas's context current; DEVICE_FAILED where it cannot. */
+skinslide_status ss_canvas_enter(const skinslide_canvas *canvas, ss_egl_before *before, skinslide_error *error);
+/* What was current is again. Fails with DEVICE_FAILED where the device did since the enter. */
+skinslide_status ss_canvas_leave(const skinslide_canvas *canvas, const ss_egl_before *before, const char *what,
+                                 skinslide_error *error);
+/* What a colour of linear light is in the canvas's pixels. */
+void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]);
+/* Tests give loaders that fail. */
+skinslide_status ss_canvas_create(const skinslide_canvas_options *options, ss_egl_loader load, skinslide_canvas **out,
+                                  skinslide_error *error);
+
+#endif

@@ -1,0 +1,97 @@
+/* What the files that draw share: tessellate.c, view.cpp, canvas.c. */
+#ifndef SKINSLIDE_DRAW_H
+#define SKINSLIDE_DRAW_H
+
+#include "internal.h"
+#include "skinslide/picture.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- tessellation.c, tessellate.c ---- */
+
+/* Part of a face: the fan of all of it, where side is 0, or a grid of side by side cells on its limit surface. */
+typedef struct ss_piece {
+    int32_t face;    /* mesh face */
+    int32_t surface; /* of the tessellation's surfaces, -1 for a fan */
+    int32_t corner;  /* of the face whose quad it is; -1: all of the face */
+    int32_t side;
+    uint8_t coarse; /* bit k: along its side k there may be a face of 2 by 2 cells */
+    int32_t first_vertex;
+} ss_piece;
+
+/* What of a vertex never changes. */
+typedef struct ss_fixed_vertex {
+    float coordinates[3]; /* st, or the place at rest */
+    float inside;         /* 1 in the patch, else 0 */
+} ss_fixed_vertex;
+
+/* What does. */
+typedef struct ss_posed_vertex {
+    float place[3]; /* less the origin */
+    float normal[3];
+    float value;
+} ss_posed_vertex;
+
+struct skinslide_tessellation {
+    ss_memory memory;
+    ss_surfaces *surfaces; /* NULL where nothing is subdivided */
+    int32_t mesh_vertex_count, mesh_face_count, largest_face;
+    int32_t *face_start;    /* [mesh_face_count + 1] */
+    int32_t *corner_vertex; /* [mesh index_count] mesh vertices */
+    bool in_space;          /* coordinates are places at rest */
+    int32_t piece_count, vertex_count, triangle_count, segment_count, flat_faces;
+    ss_piece *pieces; /* [piece_count] */
+    ss_parameter *at; /* [vertex_count] in its face; of grids */
+    uint32_t (*triangles)[3];
+    uint32_t (*segments)[2]; /* of the outline */
+    ss_fixed_vertex *fixed;  /* [vertex_count] */
+};
+
+/* Scratch of one thread for ss_tessellate. */
+typedef struct ss_tessellation_work {
+    ss_memory memory;
+    double *patch_points;      /* [ss_surfaces_scratch] */
+    double (*normals)[3];      /* [mesh_vertex_count], of fans */
+    double *weights;           /* [largest_face] */
+    ss_posed_vertex *vertices; /* [vertex_count] */
+} ss_tessellation_work;
+
+static inline int32_t ss_face_size(const skinslide_tessellation *tessellation, int32_t face) {
+    return tessellation->face_start[face + 1] - tessellation->face_start[face];
+}
+
+static inline int32_t ss_piece_size(const skinslide_tessellation *tessellation, const ss_piece *piece) {
+    return piece->side ? (piece->side + 1) * (piece->side + 1) : ss_face_size(tessellation, piece->face);
+}
+
+/* The vertex on side k of a grid, step cells on: the sides go round it as those of a face do, from its first corner on. */
+uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step);
+/* Blends values [width] at the corners of a piece's face linearly at one of its vertices: values are of the mesh's vertices, or
+ * of its corners. */
+void ss_blend(const skinslide_tessellation *tessellation, const ss_piece *piece, int32_t vertex, const float *values,
+              int32_t width, bool by_corner, double *weights, float *out);
+
+bool ss_tessellation_work_allocate(const skinslide_tessellation *tessellation, ss_tessellation_work *work);
+/* The mesh in a pose, less the origin: work->vertices, whose values are 0 where values is NULL. */
+void ss_tessellate(const skinslide_tessellation *tessellation, const float *points, const float *values, const double origin[3],
+                   ss_tessellation_work *work);
+
+/* ---- view.cpp: the only file that knows cameras ---- */
+
+/* For columns, as OpenGL has them, and for places less an origin of the mesh. */
+typedef struct ss_view {
+    float to_camera[16], to_clip[16];
+    float turn_normal[9]; /* from the mesh's space to the camera's */
+    bool mirrored;        /* what turns left in the mesh's space turns right in the camera's */
+} ss_view;
+
+/* False where it is not finite. to_world may be NULL. */
+bool ss_view_of(const skinslide_camera *camera, const double *to_world, const double origin[3], ss_view *view);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,145 @@
+/* Pictures of skin, drawn offscreen: what a slide did to a texture, before and after. No display and no GPU are needed, only
+ * EGL with OpenGL ES 3, of which a software rasteriser will do.
+ *
+ *     skinslide_tessellation  a mesh made into triangles, along its limit surface where it is subdivided; immutable
+ *     skinslide_canvas        what is drawn on, with an OpenGL ES context of its own; for one thread at a time
+ *
+ * Conventions are those of skinslide.h. Matrices are double [16] as USD has them: row by row, for points as rows. */
+#ifndef SKINSLIDE_PICTURE_H
+#define SKINSLIDE_PICTURE_H
+
+#include "skinslide.h"
+
+#ifndef SKINSLIDE_CDEF
+#ifdef __cplusplus
+extern "C" {
+#endif
+#endif
+
+/* ---- What is drawn -------------------------------------------------------------------------------------------------------- */
+
+typedef struct skinslide_tessellation skinslide_tessellation;
+
+typedef struct skinslide_tessellation_info {
+    int32_t vertex_count;
+    int32_t triangle_count;
+    int32_t flat_faces; /* of a subdivided mesh, drawn flat: OpenSubdiv before 3.5.1 cannot subdivide them */
+} skinslide_tessellation_info;
+
+/* Makes a mesh into triangles: the fans of its faces, or, where it is subdivided, grids on its limit surface: 2 by 2 cells a
+ * quad, in the patch and around it up to 16 by 16, and there 65,536 cells in all. Faces that are not rendered (holeIndices, and with boundary rule NONE those at the
+ * boundary) are left out. In faces, texture coordinates and values go linearly, as in USD with faceVaryingLinearInterpolation
+ * "all".
+ *   mesh   in  read during the call only
+ *   st     in  [index_count][2] texture coordinates of the mesh's corners, face by face; NULL: rest_points take their place, as
+ *              the coordinates of squares in space
+ *   faces  in  [face_count] mesh faces: the patch, which is outlined; what is outside it is drawn paler
+ * Fails with BAD_MESH, BAD_POINTS, BAD_CONTROL (st not finite: names the face), BAD_ARGUMENT, UNSUPPORTED, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const float *st, const int32_t *faces,
+                                                             int32_t face_count, skinslide_tessellation **out,
+                                                             skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_tessellation_destroy(skinslide_tessellation *tessellation);
+
+/* Fails with BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_tessellation_describe(const skinslide_tessellation *tessellation,
+                                                               skinslide_tessellation_info *info, skinslide_error *error);
+
+/* A mesh in one pose, and what it is painted with. */
+typedef struct skinslide_figure {
+    const skinslide_tessellation *tessellation;
+    const float *points;    /* [mesh vertex_count][3] */
+    const double *to_world; /* [16] from the mesh's object space; NULL: it is the world's */
+    const float *values;    /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */
+    float lowest, highest;  /* lowest < highest */
+    float squares;          /* of the chequer, for each unit of st or of length at rest; > 0 */
+    int32_t double_sided;   /* 0: faces turned away from the camera are left out, as USD has it */
+    int32_t left_handed;    /* not 0 where the mesh's orientation is leftHanded */
+} skinslide_figure;
+
+/* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
+SKINSLIDE_API void skinslide_false_colour(float share, float colour[3]);
+
+/* ---- From where ------------------------------------------------------------------------------------------------------------ */
+
+typedef struct skinslide_camera {
+    double to_camera[16]; /* from the world; the camera looks along -z */
+    double to_screen[16]; /* the projection: to clip space, -1..1 in all of x/w, y/w, z/w */
+} skinslide_camera;
+
+/* A camera that has faces of a mesh in sight in each of some poses, as near as all of them fit. It looks against the mean of
+ * the faces' normals over the poses; where those cancel out, as round a limb, from where the faces are widest.
+ *   mesh       in  rest_points are not read
+ *   faces      in  [face_count] mesh faces, face_count > 0
+ *   poses      in  [pose_count] each [mesh vertex_count][3]
+ *   to_world   in  [pose_count][16], or NULL: poses are in the world
+ *   up         in  the world's, a direction
+ *   aspect     in  width of the picture by its height
+ * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite, or no camera can see them: all in one place), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_frame_faces(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count,
+                                                     const float *const *poses, const double *to_world, int32_t pose_count,
+                                                     const double up[3], double aspect, skinslide_camera *camera,
+                                                     skinslide_error *error);
+
+/* ---- On what ---------------------------------------------------------------------------------------------------------------- */
+
+/* How a canvas holds colours. */
+typedef enum skinslide_pixels {
+    SKINSLIDE_PIXELS_BYTES, /* sRGB, 8 bits: read as uint8_t */
+    SKINSLIDE_PIXELS_FLOATS /* linear light, half floats: read as float */
+} skinslide_pixels;
+
+/* Start from SKINSLIDE_CANVAS_OPTIONS_DEFAULT. */
+typedef struct skinslide_canvas_options {
+    int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit */
+    skinslide_pixels pixels;
+    int32_t device; /* as in skinslide_workspace_options */
+} skinslide_canvas_options;
+
+#define SKINSLIDE_CANVAS_OPTIONS_DEFAULT                                                                                       \
+    { 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE }
+
+typedef struct skinslide_canvas skinslide_canvas;
+
+/* Makes a canvas. Its context is current only within calls, as a workspace's is (see skinslide_workspace_create).
+ *   options  in, or NULL: the default
+ * Fails with BAD_ARGUMENT (sizes, no such pixels, above the device's limit), NO_DEVICE (names all that was tried),
+ * DEVICE_FAILED, UNSUPPORTED (the device draws no floats), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_canvas_create(const skinslide_canvas_options *options, skinslide_canvas **out,
+                                                       skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_canvas_destroy(skinslide_canvas *canvas);
+
+/* What it is drawn with. Fails with BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_lookup_info *info,
+                                                       skinslide_error *error);
+
+/* Fills a canvas with a colour, linear light, and with nothing in front of it. Fails with BAD_ARGUMENT, DEVICE_FAILED. */
+SKINSLIDE_API skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float colour[3], skinslide_error *error);
+
+/* Part of a canvas, pixels from its lower left corner. */
+typedef struct skinslide_viewport {
+    int32_t x, y, width, height;
+} skinslide_viewport;
+
+/* Draws a figure, shaded by a light at the camera, four samples a pixel, behind what is nearer of what was drawn before.
+ * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer or of the scale), BAD_POINTS (points, values or matrices not
+ * finite), DEVICE_FAILED, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
+                                                     const skinslide_camera *camera, const skinslide_figure *figure,
+                                                     skinslide_error *error);
+
+/* Reads what was drawn.
+ *   pixels  out [height][width][4] red, green, blue, and 1, from the top row on; uint8_t or float, as the canvas has them
+ * Fails with BAD_ARGUMENT, DEVICE_FAILED, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error);
+
+#ifndef SKINSLIDE_CDEF
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+#endif

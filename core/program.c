@@ -1,0 +1,37 @@
+/* OpenGL ES programs, and what a device says of its failures. */
+#include "egl.h"
+
+#include <stdio.h>
+#include <string.h>
+
+bool ss_gl_did(const ss_egl_api *gl, char *failure, size_t size) {
+    GLenum code = gl->glGetError(), reset = gl->glGetGraphicsResetStatus ? gl->glGetGraphicsResetStatus() : GL_NO_ERROR;
+    snprintf(failure, size, reset ? "the context was lost, 0x%04x" : "OpenGL error 0x%04x", reset ? reset : code);
+    return !code && !reset;
+}
+
+static void attach_shader(const ss_egl_api *gl, GLuint program, GLenum kind, const char *source) {
+    GLuint shader = gl->glCreateShader(kind);
+    gl->glShaderSource(shader, 1, &source, NULL);
+    gl->glCompileShader(shader);
+    gl->glAttachShader(program, shader);
+    gl->glDeleteShader(shader); /* lives on in the program */
+}
+
+skinslide_status ss_gl_program(const ss_egl_api *gl, const char *vertex, const char *fragment, const char *const *captured,
+                               int32_t captured_count, GLuint *program, skinslide_error *error) {
+    GLint linked = GL_FALSE;
+    *program = gl->glCreateProgram();
+    attach_shader(gl, *program, GL_VERTEX_SHADER, vertex);
+    attach_shader(gl, *program, GL_FRAGMENT_SHADER, fragment);
+    if (captured_count > 0)
+        gl->glTransformFeedbackVaryings(*program, captured_count, captured, GL_INTERLEAVED_ATTRIBS);
+    gl->glLinkProgram(*program);
+    gl->glGetProgramiv(*program, GL_LINK_STATUS, &linked);
+    if (linked)
+        return SKINSLIDE_OK;
+    char text[200] = "";
+    gl->glGetProgramInfoLog(*program, sizeof text, NULL, text);
+    text[strcspn(text, "\n")] = 0;
+    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "the device's compiler refuses a program: %s", text);
+}

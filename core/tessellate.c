@@ -1,0 +1,148 @@
+/* A tessellated mesh in a pose: where its vertices are, their normals, and the values at them. */
+#include "draw.h"
+
+#include <math.h>
+
+/* ---- Linear in a face ---- */
+
+/* Weights of the corners of a face of n at a place of its limit surface. */
+static void linear_weights(const ss_parameter *at, int32_t n, double *weights) {
+    double s = at->st[0], t = at->st[1];
+    for (int32_t k = 0; k < n; k++)
+        weights[k] = at->corner >= 0 ? s * t / n : 0;
+    if (at->corner >= 0) {
+        weights[at->corner] += (1 - s) * (1 - t) + 0.5 * s * (1 - t) + 0.5 * (1 - s) * t;
+        weights[(at->corner + 1) % n] += 0.5 * s * (1 - t);
+        weights[(at->corner + n - 1) % n] += 0.5 * (1 - s) * t;
+    } else if (n == 4) {
+        weights[0] = (1 - s) * (1 - t), weights[1] = s * (1 - t), weights[2] = s * t, weights[3] = (1 - s) * t;
+    } else {
+        weights[0] = 1 - s - t, weights[1] = s, weights[2] = t;
+    }
+}
+
+void ss_blend(const skinslide_tessellation *own, const ss_piece *piece, int32_t vertex, const float *values, int32_t width,
+              bool by_corner, double *weights, float *out) {
+    int32_t n = ss_face_size(own, piece->face), start = own->face_start[piece->face];
+    for (int32_t k = 0; k < n; k++)
+        weights[k] = k == vertex - piece->first_vertex;
+    if (piece->side)
+        linear_weights(&own->at[vertex], n, weights);
+    for (int32_t i = 0; i < width; i++) {
+        double sum = 0;
+        for (int32_t k = 0; k < n; k++) {
+            int64_t place = by_corner ? start + k : own->corner_vertex[start + k];
+            sum += weights[k] == 0 ? 0 : weights[k] * values[width * place + i];
+        }
+        out[i] = (float)sum;
+    }
+}
+
+/* ---- Fans ---- */
+
+/* Weighted by area, from fans of all faces, for those that are drawn flat. */
+static void add_fan_normal(const int32_t *vertices, int32_t n, const float *points, double (*normals)[3]) {
+    double area[3] = {0, 0, 0};
+    const float *o = points + 3 * (int64_t)vertices[0];
+    for (int32_t k = 1; k + 1 < n; k++) {
+        const float *p = points + 3 * (int64_t)vertices[k], *q = points + 3 * (int64_t)vertices[k + 1];
+        double a[3] = {(double)p[0] - o[0], (double)p[1] - o[1], (double)p[2] - o[2]};
+        double b[3] = {(double)q[0] - o[0], (double)q[1] - o[1], (double)q[2] - o[2]};
+        for (int i = 0; i < 3; i++)
+            area[i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    }
+    for (int32_t k = 0; k < n; k++)
+        for (int i = 0; i < 3; i++)
+            normals[vertices[k]][i] += area[i];
+}
+
+static void find_normals(const skinslide_tessellation *own, const float *points, double (*normals)[3]) {
+    for (int32_t v = 0; v < own->mesh_vertex_count; v++)
+        normals[v][0] = normals[v][1] = normals[v][2] = 0;
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        if (ss_face_size(own, f) >= 3)
+            add_fan_normal(own->corner_vertex + own->face_start[f], ss_face_size(own, f), points, normals);
+}
+
+static void pose_fan(const skinslide_tessellation *own, const ss_piece *piece, const float *points, const double origin[3],
+                     ss_tessellation_work *work) {
+    for (int32_t k = 0; k < ss_face_size(own, piece->face); k++) {
+        int32_t v = own->corner_vertex[own->face_start[piece->face] + k];
+        ss_posed_vertex *out = &work->vertices[piece->first_vertex + k];
+        const double *n = work->normals[v];
+        double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int i = 0; i < 3; i++) {
+            out->place[i] = (float)(points[3 * (int64_t)v + i] - origin[i]);
+            out->normal[i] = (float)(length > 0 ? n[i] / length : 0);
+        }
+    }
+}
+
+/* ---- Grids ---- */
+
+uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step) {
+    int32_t row = piece->side + 1, m = piece->side;
+    int32_t place = side == 0 ? step : side == 1 ? step * row + m : side == 2 ? m * row + m - step : (m - step) * row;
+    return (uint32_t)(piece->first_vertex + place);
+}
+
+/* Puts a vertex at a share of the way between two others, as a coarse neighbour has it. */
+static void put_between(ss_posed_vertex *vertex, const ss_posed_vertex *a, const ss_posed_vertex *b, float share) {
+    for (int i = 0; i < 3; i++) {
+        vertex->place[i] = a->place[i] + share * (b->place[i] - a->place[i]);
+        vertex->normal[i] = a->normal[i] + share * (b->normal[i] - a->normal[i]);
+    }
+}
+
+/* Leaves no gap along a side where the face beyond has fewer cells. */
+static void join_side(const ss_piece *piece, int side, ss_posed_vertex *vertices) {
+    int32_t stride = piece->corner < 0 ? piece->side / 2 : piece->side;
+    for (int32_t step = 0; step < piece->side; step++) {
+        int32_t begin = step - step % stride;
+        put_between(&vertices[ss_on_side(piece, side, step)], &vertices[ss_on_side(piece, side, begin)],
+                    &vertices[ss_on_side(piece, side, begin + stride)], (float)(step - begin) / (float)stride);
+    }
+}
+
+static void pose_grid(const skinslide_tessellation *own, const ss_piece *piece, const float *points, const double origin[3],
+                      ss_tessellation_work *work) {
+    ss_limit_prepare(own->surfaces, piece->surface, points, origin, work->patch_points);
+    for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++) {
+        double place[3], normal[3];
+        ss_limit_frame(own->surfaces, piece->surface, &own->at[v], work->patch_points, place, normal);
+        for (int i = 0; i < 3; i++)
+            work->vertices[v].place[i] = (float)place[i], work->vertices[v].normal[i] = (float)normal[i];
+    }
+    for (int side = 0; side < 4; side++)
+        if (piece->coarse >> side & 1)
+            join_side(piece, side, work->vertices);
+}
+
+/* ---- All ---- */
+
+static void set_values(const skinslide_tessellation *own, const float *values, ss_tessellation_work *work) {
+    for (int32_t p = 0; p < own->piece_count; p++) {
+        const ss_piece *piece = &own->pieces[p];
+        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++)
+            ss_blend(own, piece, v, values, 1, false, work->weights, &work->vertices[v].value);
+    }
+}
+
+bool ss_tessellation_work_allocate(const skinslide_tessellation *own, ss_tessellation_work *work) {
+    ss_memory *memory = &work->memory;
+    work->patch_points = SS_NEW(memory, double, own->surfaces ? ss_surfaces_scratch(own->surfaces) : 0);
+    work->normals = ss_new(memory, own->mesh_vertex_count, sizeof *work->normals);
+    work->weights = SS_NEW(memory, double, own->largest_face);
+    work->vertices = SS_NEW(memory, ss_posed_vertex, own->vertex_count);
+    return !memory->failed;
+}
+
+void ss_tessellate(const skinslide_tessellation *own, const float *points, const float *values, const double origin[3],
+                   ss_tessellation_work *work) {
+    if (!own->surfaces || own->flat_faces)
+        find_normals(own, points, work->normals);
+    for (int32_t p = 0; p < own->piece_count; p++)
+        (own->pieces[p].side ? pose_grid : pose_fan)(own, &own->pieces[p], points, origin, work);
+    if (values)
+        set_values(own, values, work);
+}

@@ -1,0 +1,392 @@
+/* Makes a mesh into triangles to be drawn: fans of its faces, or grids on its limit surface. Each face has vertices of its own,
+ * so that what differs from face to face at a mesh vertex, such as st at a seam, can; places and normals of neighbouring faces
+ * meet all the same. Grids are fine in the patch and around it, where a picture looks, and coarse elsewhere. */
+#include "draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST_CELLS = 32768, MOST_STEPS = 8 }; /* of fine grids in all; along half a side of a face */
+enum { MOST_CORNERS = 100000000 };
+enum { RINGS = 2 }; /* of faces around the patch that are fine */
+
+/* What is to become of each face, while the tessellation is built. */
+typedef struct blueprint {
+    int32_t *surface_of; /* [face_count] its surface, or -1 */
+    uint8_t *drawn;      /* [face_count] it is rendered */
+    uint8_t *inside;     /* [face_count] it is in the patch */
+    uint8_t *fine;       /* [face_count] */
+    uint8_t *border;     /* [index_count] sides of the outline */
+    uint8_t *coarse;     /* [index_count] sides with a coarse face beyond */
+} blueprint;
+
+/* ---- Pieces ---- */
+
+/* How many steps along half a side of a face give no more cells than there may be. */
+static int32_t steps_for(int64_t quarters) {
+    int32_t steps = MOST_STEPS;
+    while (steps > 1 && quarters * steps * steps > MOST_CELLS)
+        steps /= 2;
+    return steps;
+}
+
+static void add_piece(skinslide_tessellation *own, ss_piece piece) {
+    piece.first_vertex = own->vertex_count;
+    own->pieces[own->piece_count++] = piece;
+    own->vertex_count += ss_piece_size(own, &piece);
+    own->triangle_count += piece.side ? 2 * piece.side * piece.side : ss_face_size(own, piece.face) - 2;
+}
+
+/* A quad is one grid, another polygon one for each corner. coarse: bit k for side k of the face. */
+static void add_grids(skinslide_tessellation *own, int32_t face, int32_t surface, int32_t steps, const uint8_t *coarse) {
+    int32_t n = ss_face_size(own, face);
+    if (n == 4) {
+        uint8_t sides = (uint8_t)(coarse[0] | coarse[1] << 1 | coarse[2] << 2 | coarse[3] << 3);
+        add_piece(own, (ss_piece){face, surface, -1, 2 * steps, sides, 0});
+    }
+    for (int32_t k = 0; k < n && n != 4; k++) {
+        uint8_t sides = (uint8_t)(coarse[k] | coarse[(k + n - 1) % n] << 3);
+        add_piece(own, (ss_piece){face, surface, k, steps, sides, 0});
+    }
+}
+
+static void list_pieces(skinslide_tessellation *own, const blueprint *plan) {
+    int64_t quarters = 0;
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        quarters += plan->surface_of[f] >= 0 && plan->fine[f] ? ss_face_size(own, f) : 0;
+    int32_t steps = steps_for(quarters);
+    for (int32_t f = 0; f < own->mesh_face_count; f++) {
+        if (plan->surface_of[f] >= 0)
+            add_grids(own, f, plan->surface_of[f], plan->fine[f] ? steps : 1, plan->coarse + own->face_start[f]);
+        else if (plan->drawn[f] && ss_face_size(own, f) >= 3)
+            add_piece(own, (ss_piece){f, -1, -1, 0, 0, 0});
+    }
+}
+
+/* ---- Fine and coarse ---- */
+
+/* Marks the vertices of every face of which one is marked. */
+static void grow(const skinslide_tessellation *own, uint8_t *marked, uint8_t *grown) {
+    for (int32_t f = 0; f < own->mesh_face_count; f++) {
+        bool any = false;
+        for (int32_t c = own->face_start[f]; c < own->face_start[f + 1]; c++)
+            any = any || marked[own->corner_vertex[c]];
+        for (int32_t c = own->face_start[f]; c < own->face_start[f + 1] && any; c++)
+            grown[own->corner_vertex[c]] = 1;
+    }
+    for (int32_t v = 0; v < own->mesh_vertex_count; v++)
+        marked[v] = grown[v];
+}
+
+static void mark_face(const skinslide_tessellation *own, int32_t face, uint8_t *marked, uint8_t mark) {
+    for (int32_t c = own->face_start[face]; c < own->face_start[face + 1]; c++)
+        marked[own->corner_vertex[c]] = mark;
+}
+
+static bool all_marked(const skinslide_tessellation *own, int32_t face, const uint8_t *marked) {
+    bool all = true;
+    for (int32_t c = own->face_start[face]; c < own->face_start[face + 1]; c++)
+        all = all && marked[own->corner_vertex[c]];
+    return all;
+}
+
+/* Which faces are fine; and which of their sides may have a coarse one beyond: a vertex of a coarse face at an end. Only what
+ * both faces at a side see decides, so they agree. marked and other are scratch [mesh_vertex_count]. */
+static void choose_fine(const skinslide_tessellation *own, blueprint *plan, uint8_t *marked, uint8_t *other) {
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        if (plan->inside[f])
+            mark_face(own, f, marked, 1);
+    for (int ring = 0; ring < RINGS; ring++)
+        grow(own, marked, other);
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        plan->fine[f] = all_marked(own, f, marked);
+    for (int32_t v = 0; v < own->mesh_vertex_count; v++)
+        marked[v] = 1;
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        if (!plan->fine[f])
+            mark_face(own, f, marked, 0);
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        for (int32_t begin = own->face_start[f], n = ss_face_size(own, f), k = 0; k < n; k++)
+            plan->coarse[begin + k] =
+                !marked[own->corner_vertex[begin + k]] || !marked[own->corner_vertex[begin + (k + 1) % n]];
+}
+
+static skinslide_status plan_grids(const skinslide_tessellation *own, blueprint *plan, skinslide_error *error) {
+    ss_memory scratch = {0};
+    uint8_t *marked = SS_NEW(&scratch, uint8_t, own->mesh_vertex_count);
+    uint8_t *other = SS_NEW(&scratch, uint8_t, own->mesh_vertex_count);
+    if (!scratch.failed)
+        choose_fine(own, plan, marked, other);
+    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    ss_free(&scratch);
+    return status;
+}
+
+/* ---- Surfaces ---- */
+
+/* Which faces are drawn, and which of them have a surface, in the order of faces. */
+static int32_t choose_surfaces(skinslide_tessellation *own, const ss_topology *topology, int32_t *faces, blueprint *plan) {
+    int32_t count = 0;
+    for (int32_t f = 0; f < own->mesh_face_count; f++) {
+        ss_face_surface kind = topology ? ss_face_surface_of(topology, f) : SS_SURFACE_REFUSED;
+        plan->surface_of[f] = kind == SS_SURFACE ? count : -1;
+        plan->drawn[f] = kind != SS_SURFACE_NONE;
+        if (kind == SS_SURFACE)
+            faces[count++] = f;
+        own->flat_faces += topology && kind == SS_SURFACE_REFUSED;
+    }
+    return count;
+}
+
+static skinslide_status take_surfaces(skinslide_tessellation *own, const skinslide_mesh *mesh, blueprint *plan,
+                                      skinslide_error *error) {
+    ss_topology *topology = NULL;
+    ss_memory scratch = {0};
+    int32_t *faces = SS_NEW(&scratch, int32_t, mesh->face_count);
+    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status && ss_is_subdivided(mesh))
+        status = ss_topology_create(mesh, &topology, error);
+    if (!status) {
+        int32_t count = choose_surfaces(own, topology, faces, plan);
+        if (topology)
+            status = ss_surfaces_create(topology, faces, count, "picture", &own->surfaces, error);
+    }
+    ss_topology_destroy(topology);
+    ss_free(&scratch);
+    return status;
+}
+
+/* ---- Triangles ---- */
+
+static void list_fan(const skinslide_tessellation *own, const ss_piece *piece, uint32_t (**next)[3]) {
+    uint32_t first = (uint32_t)piece->first_vertex;
+    for (uint32_t k = 1; k + 1 < (uint32_t)ss_face_size(own, piece->face); k++, ++*next)
+        (**next)[0] = first, (**next)[1] = first + k, (**next)[2] = first + k + 1;
+}
+
+static void list_grid(const ss_piece *piece, uint32_t (**next)[3]) {
+    uint32_t row = (uint32_t)piece->side + 1;
+    for (uint32_t y = 0; y < (uint32_t)piece->side; y++)
+        for (uint32_t x = 0; x < (uint32_t)piece->side; x++) {
+            uint32_t a = (uint32_t)piece->first_vertex + y * row + x;
+            (**next)[0] = a, (**next)[1] = a + 1, (**next)[2] = a + row + 1, ++*next;
+            (**next)[0] = a, (**next)[1] = a + row + 1, (**next)[2] = a + row, ++*next;
+        }
+}
+
+/* Where the vertices of a grid are in their face. */
+static void place_grid(skinslide_tessellation *own, const ss_piece *piece) {
+    ss_parameter *next = own->at + piece->first_vertex;
+    for (int32_t y = 0; y <= piece->side; y++)
+        for (int32_t x = 0; x <= piece->side; x++) {
+            double s = (double)x / piece->side, t = (double)y / piece->side;
+            *next++ = piece->corner < 0 ? (ss_parameter){-1, {s, t}}
+                                        : ss_limit_parameter(own->surfaces, piece->surface, piece->corner, s, t);
+        }
+}
+
+static void list_triangles(skinslide_tessellation *own) {
+    uint32_t(*next)[3] = own->triangles;
+    for (int32_t p = 0; p < own->piece_count; p++) {
+        if (own->pieces[p].side) {
+            list_grid(&own->pieces[p], &next);
+            place_grid(own, &own->pieces[p]);
+        } else {
+            list_fan(own, &own->pieces[p], &next);
+        }
+    }
+}
+
+/* ---- The outline ---- */
+
+static void add_side(skinslide_tessellation *own, const ss_piece *piece, int side) {
+    for (int32_t step = 0; step < piece->side; step++, own->segment_count++) {
+        own->segments[own->segment_count][0] = ss_on_side(piece, side, step);
+        own->segments[own->segment_count][1] = ss_on_side(piece, side, step + 1);
+    }
+}
+
+/* The part of side k of the face, which is on the outline, that the piece has. */
+static void outline_side(skinslide_tessellation *own, const ss_piece *piece, int32_t k) {
+    int32_t n = ss_face_size(own, piece->face);
+    if (!piece->side) {
+        own->segments[own->segment_count][0] = (uint32_t)(piece->first_vertex + k);
+        own->segments[own->segment_count++][1] = (uint32_t)(piece->first_vertex + (k + 1) % n);
+    } else if (piece->corner < 0) {
+        add_side(own, piece, k);
+    } else if (piece->corner == k) {
+        add_side(own, piece, 0);
+    } else if (piece->corner == (k + 1) % n) {
+        add_side(own, piece, 3);
+    }
+}
+
+static void list_outline(skinslide_tessellation *own, const uint8_t *border) {
+    for (int32_t p = 0; p < own->piece_count; p++)
+        for (int32_t k = 0; k < ss_face_size(own, own->pieces[p].face); k++)
+            if (border[own->face_start[own->pieces[p].face] + k])
+                outline_side(own, &own->pieces[p], k);
+}
+
+/* Sides of the patch's faces with no other face of it beyond; and which faces are inside. */
+static skinslide_status find_border(const skinslide_tessellation *own, const skinslide_mesh *mesh, const int32_t *faces,
+                                    int32_t count, blueprint *plan, skinslide_error *error) {
+    ss_memory scratch = {0};
+    ss_faces taken;
+    skinslide_status status = ss_take_faces(mesh, faces, count, "picture", &scratch, &taken, error);
+    for (int32_t f = 0; f < count && !status; f++) {
+        plan->inside[faces[f]] = 1;
+        for (int32_t c = taken.face_start[f]; c < taken.face_start[f + 1]; c++)
+            plan->border[own->face_start[faces[f]] + c - taken.face_start[f]] = taken.corner_twin[c] < 0;
+    }
+    ss_free(&scratch);
+    return status;
+}
+
+/* ---- What never changes ---- */
+
+static void fix_st(skinslide_tessellation *own, const float *st, const uint8_t *inside, double *weights) {
+    for (int32_t p = 0; p < own->piece_count; p++) {
+        const ss_piece *piece = &own->pieces[p];
+        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++) {
+            own->fixed[v].inside = inside[piece->face];
+            if (st)
+                ss_blend(own, piece, v, st, 2, true, weights, own->fixed[v].coordinates);
+        }
+    }
+}
+
+static skinslide_status fix_vertices(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st,
+                                     const uint8_t *inside, skinslide_error *error) {
+    const double nowhere[3] = {0, 0, 0};
+    ss_tessellation_work work = {0};
+    bool allocated = ss_tessellation_work_allocate(own, &work);
+    if (allocated) {
+        fix_st(own, st, inside, work.weights);
+        if (!st)
+            ss_tessellate(own, mesh->rest_points, NULL, nowhere, &work);
+        for (int32_t v = 0; v < own->vertex_count && !st; v++)
+            for (int i = 0; i < 3; i++)
+                own->fixed[v].coordinates[i] = work.vertices[v].place[i];
+    }
+    ss_free(&work.memory);
+    return allocated ? SKINSLIDE_OK : ss_out_of_memory(error);
+}
+
+/* ---- Creation ---- */
+
+static skinslide_status check(const skinslide_mesh *mesh, const float *st, const int32_t *faces, int32_t face_count,
+                              skinslide_error *error) {
+    skinslide_status status = ss_check_mesh(mesh, error);
+    if (!status && ss_is_subdivided(mesh))
+        status = ss_check_subdivision(mesh, error);
+    if (!status && mesh->index_count > MOST_CORNERS)
+        status = ss_fail(error, SKINSLIDE_UNSUPPORTED, "%d face indices are too many to be drawn", mesh->index_count);
+    if (!status && !st)
+        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+    if (!status && (face_count < 0 || (face_count && !faces)))
+        status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces");
+    for (int32_t i = 0; !status && i < face_count; i++)
+        if (faces[i] < 0 || faces[i] >= mesh->face_count)
+            status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", faces[i], mesh->face_count);
+    for (int32_t f = 0, c = 0; !status && st && f < mesh->face_count; c += mesh->face_counts[f++])
+        for (int32_t k = 2 * c; k < 2 * (c + mesh->face_counts[f]) && !status; k++)
+            if (!isfinite(st[k]))
+                status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", f, st[k & ~1], st[k | 1]);
+    return status;
+}
+
+static bool copy_faces(skinslide_tessellation *own, const skinslide_mesh *mesh) {
+    own->mesh_vertex_count = mesh->vertex_count, own->mesh_face_count = mesh->face_count;
+    own->face_start = SS_NEW(&own->memory, int32_t, (int64_t)mesh->face_count + 1);
+    own->corner_vertex = SS_NEW(&own->memory, int32_t, mesh->index_count);
+    own->pieces = SS_NEW(&own->memory, ss_piece, (int64_t)mesh->index_count + mesh->face_count);
+    if (own->memory.failed)
+        return false;
+    for (int32_t f = 0; f < mesh->face_count; f++) {
+        own->face_start[f + 1] = own->face_start[f] + mesh->face_counts[f];
+        own->largest_face = ss_face_size(own, f) > own->largest_face ? ss_face_size(own, f) : own->largest_face;
+    }
+    for (int32_t c = 0; c < mesh->index_count; c++)
+        own->corner_vertex[c] = mesh->face_indices[c];
+    return true;
+}
+
+static bool allocate_pieces(skinslide_tessellation *own) {
+    int64_t segments = 0;
+    for (int32_t p = 0; p < own->piece_count; p++)
+        segments += own->pieces[p].side ? 4 * own->pieces[p].side : ss_face_size(own, own->pieces[p].face);
+    own->at = SS_NEW(&own->memory, ss_parameter, own->vertex_count);
+    own->fixed = SS_NEW(&own->memory, ss_fixed_vertex, own->vertex_count);
+    own->triangles = ss_new(&own->memory, own->triangle_count, sizeof *own->triangles);
+    own->segments = ss_new(&own->memory, segments, sizeof *own->segments);
+    return !own->memory.failed;
+}
+
+static bool allocate_plan(const skinslide_mesh *mesh, ss_memory *memory, blueprint *plan) {
+    plan->surface_of = SS_NEW(memory, int32_t, mesh->face_count);
+    plan->drawn = SS_NEW(memory, uint8_t, mesh->face_count);
+    plan->inside = SS_NEW(memory, uint8_t, mesh->face_count);
+    plan->fine = SS_NEW(memory, uint8_t, mesh->face_count);
+    plan->border = SS_NEW(memory, uint8_t, mesh->index_count);
+    plan->coarse = SS_NEW(memory, uint8_t, mesh->index_count);
+    return !memory->failed;
+}
+
+static skinslide_status build(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st, const int32_t *faces,
+                              int32_t face_count, blueprint *plan, skinslide_error *error) {
+    own->in_space = !st;
+    skinslide_status status = copy_faces(own, mesh) ? SKINSLIDE_OK : ss_out_of_memory(error);
+    if (!status)
+        status = take_surfaces(own, mesh, plan, error);
+    if (!status)
+        status = find_border(own, mesh, faces, face_count, plan, error);
+    if (!status)
+        status = plan_grids(own, plan, error);
+    if (status)
+        return status;
+    list_pieces(own, plan);
+    if (!allocate_pieces(own))
+        return ss_out_of_memory(error);
+    list_triangles(own);
+    list_outline(own, plan->border);
+    return fix_vertices(own, mesh, st, plan->inside, error);
+}
+
+skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const float *st, const int32_t *faces,
+                                               int32_t face_count, skinslide_tessellation **out, skinslide_error *error) {
+    if (!out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the tessellation");
+    skinslide_status status = check(mesh, st, faces, face_count, error);
+    if (status)
+        return status;
+    skinslide_tessellation *own = calloc(1, sizeof *own);
+    if (!own)
+        return ss_out_of_memory(error);
+    ss_memory scratch = {0};
+    blueprint plan;
+    bool allocated = allocate_plan(mesh, &scratch, &plan);
+    status = allocated ? build(own, mesh, st, faces, face_count, &plan, error) : ss_out_of_memory(error);
+    ss_free(&scratch);
+    if (status)
+        skinslide_tessellation_destroy(own);
+    else
+        *out = own;
+    return status;
+}
+
+void skinslide_tessellation_destroy(skinslide_tessellation *own) {
+    if (!own)
+        return;
+    ss_surfaces_destroy(own->surfaces);
+    ss_free(&own->memory);
+    free(own);
+}
+
+skinslide_status skinslide_tessellation_describe(const skinslide_tessellation *own, skinslide_tessellation_info *info,
+                                                 skinslide_error *error) {
+    if (!own || !info)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tessellation, or no place for the answer");
+    *info = (skinslide_tessellation_info){own->vertex_count, own->triangle_count, own->flat_faces};
+    return SKINSLIDE_OK;
+}
