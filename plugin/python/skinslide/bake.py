@@ -12,25 +12,25 @@ put the layer in place                         or author it all into the stage's
 """
 
 import os
-from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.derived import Derived, Solved
+from skinslide.derived import Derived
 from skinslide.earlier import replacing_earlier_bake
 from skinslide.files import check_not_input, check_output
 from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.options import BakeOptions, Frames
+from skinslide.options import Frames, Limits, SlideOptions
 from skinslide.output import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
-from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, core_problem, errors
+from skinslide.problems import FrameProblem, Problem, StageProblems, errors
 from skinslide.progress import Progress
 from skinslide.report import BakeReport, MeshReport
-from skinslide.slider import Lookup, Slider, SliderError
+from skinslide.slider import Lookup, Slider
+from skinslide.solving import Solved, Solver, build_sliders, frame_of, times_of
 from skinslide.stage import open_stage
 
 
@@ -57,11 +57,11 @@ def bake_to_file(
     Raises UsageError, StageProblems, FrameProblem (also where max_folded or max_clamped is exceeded), StageError.
     """
     output = Path(output_path)
-    options = BakeOptions.checked(prims, frames, lookup, jobs, max_folded, max_clamped)
+    options, limits = SlideOptions.checked(prims, frames, lookup, jobs), Limits.checked(max_folded, max_clamped)
     stage = open_stage(stage_path)
     check_output(output, EXTENSIONS)
     check_not_input(output, stage, stage_path)
-    plan = _Plan.read(stage, options)
+    plan = _Plan.read(stage, options, limits)
     with layer_in_place(output, stage) as overs:
         return plan.run(overs, progress)
 
@@ -82,13 +82,13 @@ def bake(
     Takes the place of an earlier bake there, of the same prims. Where the layer holds the cache too, the cache's values
     move to attributes skinSlide:cached:*, from which the next bake into it starts.
     """
-    options = BakeOptions.checked(prims, frames, lookup, jobs, max_folded, max_clamped)
+    options, limits = SlideOptions.checked(prims, frames, lookup, jobs), Limits.checked(max_folded, max_clamped)
     target = stage.GetEditTarget().GetLayer()
     if not target.permissionToEdit or stage.IsLayerMuted(target.identifier):
         fault = "not editable" if not target.permissionToEdit else "muted"
         raise UsageError(f"the edit target {target.identifier} is {fault}")
     with replacing_earlier_bake(stage, options.prims) as earlier:
-        plan = _Plan.read(stage, options)
+        plan = _Plan.read(stage, options, limits)
         _check_target(stage.GetEditTarget(), plan)
         overs = OverLayer(Sdf.Layer.CreateAnonymous())
         report = plan.run(overs, progress)
@@ -103,16 +103,17 @@ class _Plan:
 
     meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]]
     problems: list[Problem]
-    options: BakeOptions
+    options: SlideOptions
+    limits: Limits
 
     @classmethod
-    def read(cls, stage: Usd.Stage, options: BakeOptions) -> "_Plan":
+    def read(cls, stage: Usd.Stage, options: SlideOptions, limits: Limits) -> "_Plan":
         meshes, problems = read_meshes(stage, options.prims)
-        sliders = _build_sliders(meshes, options.lookup, problems)
+        sliders = build_sliders(meshes, options.lookup, problems)
         if errors(problems):
             raise StageProblems(problems)
-        times = [_times(mesh, options.frames) for mesh in meshes]
-        return cls(list(zip(meshes, sliders, times, strict=True)), problems, options)
+        times = [times_of(mesh, options.frames) for mesh in meshes]
+        return cls(list(zip(meshes, sliders, times, strict=True)), problems, options, limits)
 
     def run(self, overs: OverLayer, progress: Progress | None) -> BakeReport:
         """Authors every mesh into overs."""
@@ -121,7 +122,7 @@ class _Plan:
         pool = ThreadPoolExecutor(min(self.options.jobs, total), "skinslide")
         try:
             for mesh, slider, times in self.meshes:
-                work = _MeshBake(mesh, slider, pool, self.options)
+                work = _MeshBake(mesh, slider, Solver(mesh, slider, pool, self.options.jobs), self.limits)
                 report.meshes.append(work.report)
                 for _ in work.run(times, overs):
                     if progress:
@@ -135,18 +136,17 @@ class _Plan:
 class _MeshBake:
     """Bakes one mesh."""
 
-    def __init__(self, mesh: SlidMesh, slider: Slider, pool: ThreadPoolExecutor, options: BakeOptions):
+    def __init__(self, mesh: SlidMesh, slider: Slider, solver: Solver, limits: Limits):
         self.derived = Derived(mesh)
         self.report = MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, slider.patches)
-        self._mesh, self._slider, self._pool = mesh, slider, pool
-        self._limits = {"folded_faces": options.max_folded, "clamped_vertices": options.max_clamped}
-        self._in_flight = options.jobs + 1  # one is read while the others are slid
+        self._mesh, self._slider, self._solver = mesh, slider, solver
+        self._limits = {"folded_faces": limits.max_folded, "clamped_vertices": limits.max_clamped}
 
     def run(self, times: list[Usd.TimeCode], overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Authors the mesh at `times`, ascending; yields each once it is done."""
         needed = [self.derived.times_needed(time) for time in times]
         last_use = {time: index for index, wanted in enumerate(needed) for time in wanted}
-        solutions = self._solve(sorted(set().union(*needed)))
+        solutions = self._solver.run(sorted(set().union(*needed)), lambda _: lambda solved: solved)
         solved: dict[Usd.TimeCode, Solved] = {}
         for index, (time, wanted) in enumerate(zip(times, needed, strict=True)):
             while not wanted <= solved.keys():
@@ -158,41 +158,6 @@ class _MeshBake:
         for attribute in self.derived.blocked:
             overs.block(attribute)
 
-    def _solve(self, times: Iterable[Usd.TimeCode]) -> Iterator[tuple[Usd.TimeCode, Solved]]:
-        """Slides frames in the pool, a few ahead; gives them in the order of times."""
-        waiting: deque[tuple[Usd.TimeCode, Future[Solved]]] = deque()
-        for time in times:
-            waiting.append((time, self._submit(time)))
-            if len(waiting) > self._in_flight:
-                yield self._take(*waiting.popleft())
-        while waiting:
-            yield self._take(*waiting.popleft())
-
-    def _submit(self, time: Usd.TimeCode) -> Future[Solved]:
-        try:
-            points, controls = self._mesh.points_at(time), self._mesh.controls_at(time)
-        except FrameProblem as problem:
-            # Kept until its turn, so that the first bad frame is the one named, whatever jobs is.
-            failed: Future[Solved] = Future()
-            failed.set_exception(problem)
-            return failed
-
-        def slide() -> Solved:
-            frame = self._slider.slide(points, controls)
-            return Solved(points, frame.points, frame.patches)
-
-        try:
-            return self._pool.submit(slide)
-        except RuntimeError as error:  # the machine gives no more threads
-            raise StageError(f"{error}; ask for fewer jobs") from error
-
-    def _take(self, time: Usd.TimeCode, future: Future[Solved]) -> tuple[Usd.TimeCode, Solved]:
-        try:
-            return time, future.result()
-        except SliderError as error:
-            names = [patch.name for patch in self._mesh.patches]
-            raise FrameProblem(core_problem(self._mesh.path, names, str(error), _frame(time))) from error
-
     def _author(self, time: Usd.TimeCode, solved: dict[Usd.TimeCode, Solved], overs: OverLayer) -> None:
         geometry = UsdGeom.PointBased(self._mesh.prim)
         self._check_limits(time, solved[time])
@@ -201,7 +166,7 @@ class _MeshBake:
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
         for attribute, sample, value in self.derived.values(time, solved):
             overs.set(attribute, value, sample)
-        self.report.add(_frame(time), solved[time].patches)
+        self.report.add(frame_of(time), solved[time].patches)
 
     def _check_limits(self, time: Usd.TimeCode, solved: Solved) -> None:
         for field, most in self._limits.items():
@@ -209,17 +174,7 @@ class _MeshBake:
                 count = getattr(result, field)
                 if most is not None and count > most:
                     message = f"{count} {field.replace('_', ' ')}, where at most {most} are allowed"
-                    raise FrameProblem(Problem("error", self._mesh.path, info.name, _frame(time), message))
-
-
-def _build_sliders(meshes: list[SlidMesh], lookup: str | Lookup, problems: list[Problem]) -> list[Slider]:
-    sliders = []
-    for mesh in meshes:
-        try:
-            sliders.append(mesh.slider(lookup))
-        except StageProblems as error:
-            problems.extend(error.problems)
-    return sliders
+                    raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
 
 
 def _hidden(meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]], target: Sdf.Layer) -> Iterator[Problem]:
@@ -236,14 +191,3 @@ def _check_target(target: Usd.EditTarget, plan: _Plan) -> None:
     for mesh, _, _ in plan.meshes:
         if not target.MapToSpecPath(mesh.prim.GetPath()):
             raise UsageError(f"the edit target {target.GetLayer().identifier} cannot hold opinions on {mesh.path}")
-
-
-def _times(mesh: SlidMesh, asked: list[float] | None) -> list[Usd.TimeCode]:
-    """A mesh that never changes has one value, whatever was asked."""
-    if not mesh.varies:
-        return [Usd.TimeCode.Default()]
-    return [Usd.TimeCode(time) for time in (mesh.sample_times() if asked is None else asked)]
-
-
-def _frame(time: Usd.TimeCode) -> float | None:
-    return None if time.IsDefault() else time.GetValue()

@@ -12,8 +12,9 @@ from skinslide import names
 from skinslide.images import Corners, Image, decode_exr, map_tiles, sample_map
 from skinslide.native import SliderError
 from skinslide.problems import Fault
+from skinslide.texture import has_st, read_st
 from skinslide.topology import Topology
-from skinslide.values import Reading, check_length, flattened, primvar_sources
+from skinslide.values import Reading, primvar_sources
 
 _LARGEST_FILE = 4 << 30  # bytes
 
@@ -156,27 +157,11 @@ def _read_bytes(name: str, path: str) -> bytes:
     raise Fault(f"{name}: {path}: {reason}")
 
 
-# ---- Texture coordinates ----
-
-
 def _read_st(prim: Usd.Prim, patch: str, time: Usd.TimeCode, topology: Topology) -> np.ndarray:
     """Texture coordinates of the mesh's corners, float32 (sum of counts, 2)."""
     wanted = _word(prim, patch, "mapSt")
-    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(wanted)
-    if not primvar or not primvar.HasAuthoredValue():
+    if not has_st(prim, wanted):
         raise Fault(
             f"has a map, but the mesh has no primvars:{wanted}; name one in {names.property_name(patch, 'mapSt')}"
         )
-    name, interpolation = primvar.GetName(), primvar.GetInterpolation()
-    tokens = UsdGeom.Tokens
-    by_corner = interpolation == tokens.faceVarying
-    if not by_corner and interpolation not in (tokens.vertex, tokens.varying):
-        raise Fault(f"{name} has interpolation {interpolation}; a map needs faceVarying, vertex or varying")
-    value = flattened(primvar, time)
-    found = np.asarray([] if value is None else value)
-    if found.size and (found.ndim != 2 or found.shape[1] != 2 or found.dtype.kind != "f"):
-        raise Fault(f"{name} is {primvar.GetTypeName()}; a map needs pairs of floats")
-    expected = (len(topology.face_indices), "face corners") if by_corner else (topology.vertex_count, "points")
-    check_length(name, len(found), *expected)
-    st = found.astype(np.float32)
-    return st if by_corner else st[topology.face_indices]
+    return read_st(prim, wanted, time, topology)

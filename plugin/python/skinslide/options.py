@@ -1,5 +1,6 @@
-"""What a bake is asked for, checked before anything is read."""
+"""What commands are asked for, checked before anything is read."""
 
+import math
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,48 +10,122 @@ from skinslide.slider import Lookup, SliderError, choose_lookup
 
 Frames = Sequence[float] | str | None
 
+VIEWS = ("chequer", "stretch")
+FORMATS = ("png", "exr")
+
 
 @dataclass(frozen=True)
-class BakeOptions:
-    """The arguments of `skinslide.bake`. Limits are what a patch may have at one frame; None is any number."""
+class SlideOptions:
+    """Which meshes are slid, when and how."""
 
     prims: list[str] | None
     frames: list[float] | None  # ascending
     lookup: Lookup
     jobs: int
-    max_folded: int | None
-    max_clamped: int | None
 
     @classmethod
     def checked(
-        cls,
-        prims: Sequence[str] | str | None,
-        frames: Frames,
-        lookup: str | Lookup,
-        jobs: int,
-        max_folded: int | None,
-        max_clamped: int | None,
-    ) -> "BakeOptions":
+        cls, prims: Sequence[str] | str | None, frames: Frames, lookup: str | Lookup, jobs: int
+    ) -> "SlideOptions":
         """Raises UsageError for what cannot be."""
         try:
             choose_lookup(lookup)
         except SliderError as error:
             raise UsageError(str(error)) from error
         return cls(
-            prims=[prims] if isinstance(prims, str) else None if prims is None else [str(prim) for prim in prims],
+            prims=listed(prims),
             frames=None if frames is None else checked_frames(frames),
             lookup=Lookup.of(lookup),
-            jobs=_whole("jobs", jobs, 1),
-            max_folded=None if max_folded is None else _whole("max_folded", max_folded, 0),
-            max_clamped=None if max_clamped is None else _whole("max_clamped", max_clamped, 0),
+            jobs=whole("jobs", jobs, 1),
         )
 
 
-def _whole(name: str, number: int, least: int) -> int:
+@dataclass(frozen=True)
+class Limits:
+    """What a patch may have at one frame; None is any number."""
+
+    max_folded: int | None
+    max_clamped: int | None
+
+    @classmethod
+    def checked(cls, max_folded: int | None, max_clamped: int | None) -> "Limits":
+        return cls(
+            max_folded=None if max_folded is None else whole("max_folded", max_folded, 0),
+            max_clamped=None if max_clamped is None else whole("max_clamped", max_clamped, 0),
+        )
+
+
+@dataclass(frozen=True)
+class PictureOptions:
+    """What pictures are drawn."""
+
+    patches: list[str] | None
+    views: list[str]
+    camera: str | None
+    follow: bool
+    width: int
+    height: int
+    form: str
+    st: str | None
+    squares: float | None
+    most_stretch: float
+
+    @classmethod
+    def checked(
+        cls,
+        patches: Sequence[str] | str | None,
+        views: Sequence[str] | str,
+        camera: str | None,
+        follow: bool,
+        size: tuple[int, int],
+        form: str,
+        st: str | None,
+        squares: float | None,
+        most_stretch: float,
+    ) -> "PictureOptions":
+        """Raises UsageError for what cannot be."""
+        if camera is not None and follow:
+            raise UsageError("a camera of the stage does not follow a patch: give one or the other")
+        width, height = size
+        return cls(
+            patches=listed(patches),
+            views=[_one_of("view", view, VIEWS) for view in dict.fromkeys(listed(views) or ())],
+            camera=camera,
+            follow=bool(follow),
+            width=whole("width", width, 2),
+            height=whole("height", height, 1),
+            form=_one_of("format", form, FORMATS),
+            st=st,
+            squares=None if squares is None else _positive("squares", squares),
+            most_stretch=_positive("most_stretch", most_stretch),
+        )
+
+
+def listed(words: Sequence[str] | str | None) -> list[str] | None:
+    return [words] if isinstance(words, str) else None if words is None else [str(word) for word in words]
+
+
+def whole(name: str, number: int, least: int) -> int:
     try:
-        whole = operator.index(number)
+        found = operator.index(number)
     except TypeError as error:
         raise UsageError(f"{name} is {number!r}; it must be a whole number") from error
-    if whole < least:
-        raise UsageError(f"{name} is {whole}; it must be at least {least}")
-    return whole
+    if found < least:
+        raise UsageError(f"{name} is {found}; it must be at least {least}")
+    return found
+
+
+def _positive(name: str, number: float) -> float:
+    try:
+        found = float(number)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {number!r}; it must be a number") from error
+    if not (found > 0 and math.isfinite(found)):
+        raise UsageError(f"{name} is {found:g}; it must be above 0")
+    return found
+
+
+def _one_of(name: str, word: str, words: Sequence[str]) -> str:
+    if word not in words:
+        raise UsageError(f"{name} {word!r} is not one of {', '.join(words)}")
+    return word

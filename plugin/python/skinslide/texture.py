@@ -1,0 +1,34 @@
+"""Texture coordinates of a mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from skinslide.problems import Fault
+from skinslide.topology import Topology
+from skinslide.values import check_length, flattened
+
+
+def has_st(prim: Usd.Prim, name: str) -> bool:
+    """Whether a mesh has the primvar."""
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
+    return bool(primvar) and primvar.HasAuthoredValue()
+
+
+def read_st(prim: Usd.Prim, name: str, time: Usd.TimeCode, topology: Topology) -> np.ndarray:
+    """The primvar, which the mesh has, at the mesh's corners: float32 (sum of counts, 2)."""
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
+    name, interpolation = primvar.GetName(), primvar.GetInterpolation()
+    tokens = UsdGeom.Tokens
+    by_corner = interpolation == tokens.faceVarying
+    if not by_corner and interpolation not in (tokens.vertex, tokens.varying):
+        raise Fault(f"{name} has interpolation {interpolation}; a map needs faceVarying, vertex or varying")
+    value = flattened(primvar, time)
+    found = np.asarray([] if value is None else value)
+    if found.size and (found.ndim != 2 or found.shape[1] != 2 or found.dtype.kind != "f"):
+        raise Fault(f"{name} is {primvar.GetTypeName()}; a map needs pairs of floats")
+    expected = (len(topology.face_indices), "face corners") if by_corner else (topology.vertex_count, "points")
+    check_length(name, len(found), *expected)
+    st = found.astype(np.float32)
+    return st if by_corner else st[topology.face_indices]
