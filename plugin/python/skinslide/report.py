@@ -48,6 +48,17 @@ class PatchReport:
         return int(np.argmax(self.column("stretch_before")))
 
     @property
+    def change(self) -> float | None:
+        """Of stretch by sliding, at the worst frame, as a share of the cache's; None where the cache has none."""
+        worst = self.results[self.worst]
+        return worst.stretch_after / worst.stretch_before - 1 if worst.stretch_before > _NO_STRETCH else None
+
+    def milliseconds(self) -> dict[str, np.ndarray]:
+        """Time by stage and in total, frame by frame."""
+        stages = {stage: 1e3 * self.column(f"{stage}_seconds") for stage in STAGES}
+        return {**stages, "total": sum(stages.values())}
+
+    @property
     def label(self) -> str:
         info = self.info
         return info.name if info.piece_count == 1 else f"{info.name} ({info.piece + 1} of {info.piece_count})"
@@ -81,15 +92,28 @@ class PatchReport:
         if not (added > _NO_STRETCH).any():
             return []
         worst = added.argmax()
-        before, after = self.results[worst].stretch_before, self.results[worst].stretch_after
+        before = stretch_text(self.results[worst].stretch_before)
+        after = stretch_text(self.results[worst].stretch_after)
         where = f" ({np.count_nonzero(added > _NO_STRETCH)} of {len(added)} frames have such; this one most)"
-        message = f"sliding adds stretch: {before:.4f} in the cache, {after:.4f} slid{where if len(added) > 1 else ''}"
+        message = f"sliding adds stretch: {before} in the cache, {after} slid{where if len(added) > 1 else ''}"
         return [Problem("warning", prim, self.label, self.frames[worst], message)]
 
     def _most(self, name: str, text: str) -> tuple[float | None, int, str]:
         counts = self.column(name)
         where = f" ({np.count_nonzero(counts)} of {len(counts)} frames have such; this one most)"
         return self.frames[counts.argmax()], counts.max().item(), text + (where if len(counts) > 1 else "")
+
+
+def stretch_text(stretch: float) -> str:
+    return f"{stretch:.4f}"
+
+
+def milliseconds_text(milliseconds: float) -> str:
+    return f"{milliseconds:.2f}"
+
+
+def time_text(frame: float | None) -> str:
+    return "default" if frame is None else frame_text(frame)
 
 
 _OF_A_FRAME = ("stretch_before", "stretch_after", "slid_vertices", "largest_slide", "clamped_vertices", "folded_faces")
@@ -172,16 +196,15 @@ _HEADINGS = ["patch", "vertices", "edges", *STAGES, "ms/frame", "stretch", "slid
 
 def _row(patch: PatchReport) -> list[str]:
     """Mean ms a frame by stage; stretch in the cache and slid, at the worst frame; the most folds and clamps."""
-    seconds = [patch.column(f"{stage}_seconds").mean() for stage in STAGES]
-    worst, frame = patch.results[patch.worst], patch.frames[patch.worst]
+    worst = patch.results[patch.worst]
     return [
         f"  {patch.label}",
         str(patch.info.vertex_count),
         str(patch.info.edge_count),
-        *(f"{1e3 * value:.2f}" for value in [*seconds, sum(seconds)]),
-        f"{worst.stretch_before:.4f}",
-        f"{worst.stretch_after:.4f}",
-        "default" if frame is None else frame_text(frame),
+        *(milliseconds_text(values.mean()) for values in patch.milliseconds().values()),
+        stretch_text(worst.stretch_before),
+        stretch_text(worst.stretch_after),
+        time_text(patch.frames[patch.worst]),
         str(patch.column("folded_faces").max()),
         str(patch.column("clamped_vertices").max()),
     ]
