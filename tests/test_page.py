@@ -1,0 +1,655 @@
+"""The report page in a real browser, headless Chromium: what it shows, what it does, and that it loads nothing."""
+
+import base64
+import io
+import json
+import math
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from selenium import webdriver
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.wait import WebDriverWait
+
+import stages
+from skinslide import BakeReport, bake
+from skinslide.page import Strip, compressed, page
+from skinslide.problems import Problem
+from skinslide.report import PatchReport
+
+SHEET, RING, STILL = "/World/char/sheet_GEO", "/World/char/ring_GEO", "/World/char/still_GEO"
+FRAMES = [1001.0, 1002.0, 1003.0, 1004.0, 1004.5, 1005.0]
+RING_FRAMES = [1002.0, 1004.0]
+SETTINGS = {"force density rule": "unit", "holes": "pinned"}
+FACTS = {"stage": "shot/patches.skinslide", "lookup": "exact"}
+RATE = 24.0
+ODD = """<b>"é' & 肘 </script><!--"""
+SECONDS = 20  # until what does not happen counts as a failure
+
+
+# ---- A baked shot, and pictures of it ----
+
+
+@pytest.fixture(scope="module")
+def report() -> BakeReport:
+    """Three meshes baked: at all frames, at two of them, and with but a default value."""
+    stage = stages.new_stage()
+    for path, frames, faces in ((SHEET, FRAMES, None), (RING, RING_FRAMES, stages.annulus()), (STILL, [], None)):
+        shape = stages.grid()
+        mesh = stages.add_mesh(stage, shape, path, frames, rest="" if not frames else "points")
+        if not frames:
+            stages.set_primvar(mesh, "rest", mesh.GetPointsAttr().GetTypeName(), "vertex", stages.vectors(shape.points))
+            mesh.GetPointsAttr().Set(stages.vectors(shape.moved(FRAMES[2])))
+        stages.add_patch(mesh, shape.all_faces if faces is None else faces)
+    baked = bake(stage)
+    assert [mesh.patches[0].frames for mesh in baked.meshes] == [FRAMES, RING_FRAMES, [None]]
+    return baked
+
+
+def picture(number: int, kind: str = "PNG") -> bytes:
+    """A small picture unlike that of any other number."""
+    pixels = np.random.default_rng(number).integers(0, 256, (6, 16, 3), np.uint8)
+    with io.BytesIO() as out:
+        Image.fromarray(pixels).save(out, kind)
+        return out.getvalue()
+
+
+def strip(prim: str, patch: PatchReport, first: int = 0, **changes) -> Strip:
+    """A patch with a picture a frame in two views, one of PNGs and one of JPEGs."""
+    numbers = range(first, first + len(patch.frames))
+    pictures = {"chequer": [picture(i) for i in numbers], "stretch": [picture(i + 1000, "JPEG") for i in numbers]}
+    return replace(Strip(prim, patch, pictures, SETTINGS), **changes)
+
+
+def strips_of(report: BakeReport) -> list[Strip]:
+    return [strip(mesh.path, mesh.patches[0], 100 * i) for i, mesh in enumerate(report.meshes)]
+
+
+def longer(patch: PatchReport, frames: list[float | None]) -> PatchReport:
+    """A patch with its results over and over."""
+    return PatchReport(patch.info, frames, [patch.results[i % len(patch.results)] for i in range(len(frames))])
+
+
+# ---- The browser ----
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory):
+    programs = {name: shutil.which(name) for name in ("chromium", "chromedriver")}
+    assert all(programs.values()), f"the Debian packages chromium and chromium-driver are needed: {programs}"
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs["chromium"]
+    for argument in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-quic",
+        "--no-first-run",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+        "--disable-dev-shm-usage",
+        "--window-size=1280,900",
+        f"--user-data-dir={tmp_path_factory.mktemp('chromium')}",
+    ):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(programs["chromedriver"]))
+    yield driver
+    driver.quit()
+
+
+class Shown:
+    """A page that is open in the browser."""
+
+    def __init__(self, driver: webdriver.Chrome, path: Path):
+        self.driver, self.url = driver, path.as_uri()
+        self.requests()
+        driver.get_log("browser")
+        driver.get(self.url)
+
+    def all(self, selector: str, within=None) -> list:
+        return (within or self.driver).find_elements(By.CSS_SELECTOR, selector)
+
+    def one(self, selector: str, within=None):
+        (found,) = self.all(selector, within)
+        return found
+
+    def run(self, script: str, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def press(self, *keys: str) -> None:
+        ActionChains(self.driver).send_keys(*keys).perform()
+
+    def next_paint(self) -> None:
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()))"
+        )
+
+    def wait(self, condition) -> None:
+        WebDriverWait(self.driver, SECONDS, 0.02).until(lambda _: condition())
+
+    @property
+    def frame(self) -> str:
+        return self.one("#number").text
+
+    @property
+    def sections(self) -> list:
+        return self.all(".strip")
+
+    def pictures(self) -> list[bytes]:
+        """The bytes of every picture to be seen, which the browser could decode."""
+        images = [image for image in self.all(".strip img") if image.is_displayed()]
+        for image in images:
+            self.wait(lambda image=image: image.get_property("complete") and image.get_property("naturalWidth") == 16)
+        return [base64.b64decode(image.get_property("src").partition("base64,")[2], validate=True) for image in images]
+
+    def legend(self, chart) -> dict[str, str]:
+        pairs = self.all(".legend div", chart)
+        return {self.one("dt", pair).text: self.one("dd", pair).text for pair in pairs}
+
+    def go_to(self, index: int) -> None:
+        self.run(
+            "const s = document.getElementById('frame'); s.value = arguments[0]; s.dispatchEvent(new Event('input'))",
+            index,
+        )
+
+    def messages(self) -> list[str]:
+        """What the page's console says since it was last asked."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def requests(self) -> set[str]:
+        """Every address asked for since this was last asked, but what the page and the browser hold themselves."""
+        events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        sent = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
+        return {url for url in sent if not url.startswith(("data:", "chrome:"))}
+
+
+@pytest.fixture
+def show(driver, tmp_path):
+    """Opens a page of strips; the console stays empty and nothing is requested, whatever a test does with it."""
+    opened = []
+
+    def open_page(strips, report=None, title="Shot", facts=FACTS, rate=RATE) -> Shown:
+        path = tmp_path / "page.html"
+        path.write_text(page(title, strips, report or BakeReport([]), facts, rate), encoding="utf-8")
+        opened.append(Shown(driver, path))
+        return opened[-1]
+
+    yield open_page
+    for shown in opened[-1:]:
+        assert shown.messages() == []
+        assert shown.requests() <= {shown.url}
+
+
+@pytest.fixture
+def shot(show, report) -> Shown:
+    return show(strips_of(report), report)
+
+
+# ---- The file ----
+
+
+def test_the_same_arguments_give_the_same_page(report):
+    pages = {page("Shot", strips_of(report), report, FACTS, RATE) for _ in range(2)}
+    assert len(pages) == 1
+
+
+def test_the_policy_stops_what_the_page_does_not_hold(show, report, driver):
+    shown = show(strips_of(report), report)
+    refused = driver.execute_async_script(
+        """const done = arguments[0], refused = [];
+        document.addEventListener("securitypolicyviolation", (event) => {
+          if (refused.push(event.effectiveDirective) === 3) done(refused.sort());
+        });
+        for (const [tag, name, value] of [["img", "src", "https://example.org/a.png"],
+                                          ["script", "textContent", "window.injected = true"],
+                                          ["style", "textContent", "body { display: none }"]]) {
+          const element = document.createElement(tag);
+          element[name] = value;
+          document.body.append(element);
+        }"""
+    )
+    assert refused == ["img-src", "script-src-elem", "style-src-elem"]
+    assert shown.run("return window.injected") is None
+    # What the other tests look for is there to be found: the attempt, and a message for each refusal.
+    assert shown.requests() == {shown.url, "https://example.org/a.png"}
+    assert len(shown.messages()) == 3
+
+
+# ---- Pictures under the scrubber ----
+
+
+def at(frames: list[float | None], frame: float) -> int:
+    """Which of a patch's frames is shown at a frame: itself, else the last before, else the first."""
+    return max([i for i, known in enumerate(frames) if known is not None and known <= frame], default=0)
+
+
+def test_each_frame_shows_its_pictures(shot, report):
+    slider, strips = shot.one("#frame"), strips_of(report)
+    slider.send_keys(Keys.HOME)
+    for i, frame in enumerate(FRAMES):
+        if i:
+            slider.send_keys(Keys.ARROW_RIGHT)
+        assert shot.frame == f"{frame:g}" and slider.get_attribute("aria-valuetext") == f"frame {frame:g}"
+        assert shot.pictures() == [each.pictures["chequer"][at(each.patch.frames, frame)] for each in strips]
+    slider.send_keys(Keys.ARROW_RIGHT)
+    assert shot.frame == "1005"
+
+
+def test_a_patch_without_the_frame_says_what_it_shows(shot):
+    def told():
+        captions = [shot.one(".picture:not([hidden]) .at", section).text for section in shot.sections]
+        return captions, [shot.one(".held", section).text for section in shot.sections]
+
+    assert told() == (["frame 1001", "frame 1002", "default value"], ["", "has no frame 1001", ""])
+    shot.go_to(3)
+    assert told() == (["frame 1004", "frame 1004", "default value"], ["", "", ""])
+    shot.go_to(5)
+    assert told() == (["frame 1005", "frame 1004", "default value"], ["", "has no frame 1005", ""])
+
+
+def test_arrow_keys_step_anywhere(shot):
+    shot.press(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+    assert shot.frame == "1003"
+    shot.press(Keys.ARROW_LEFT, Keys.ARROW_LEFT, Keys.ARROW_LEFT)
+    assert shot.frame == "1001"
+
+
+def test_the_view_is_switched_by_pointer_and_by_key(shot, report):
+    strips = strips_of(report)
+    shot.go_to(2)
+    shot.one(".views label:nth-of-type(2)").click()
+    stretch = [each.pictures["stretch"][at(each.patch.frames, FRAMES[2])] for each in strips]
+    assert shot.pictures() == stretch
+    shot.press(Keys.ARROW_LEFT)  # in the group, where it chooses
+    assert shot.pictures() == [each.pictures["chequer"][at(each.patch.frames, FRAMES[2])] for each in strips]
+    assert shot.frame == "1003"
+
+
+def test_a_patch_without_the_view_shows_another(show, report):
+    first, second, _ = strips_of(report)
+    second = replace(second, pictures={"weight": [picture(7), picture(8)]})
+    shown = show([first, second], report)
+    shown.one(".views label:nth-of-type(2)").click()
+    assert shown.pictures() == [first.pictures["stretch"][0], picture(7)]
+    shown.one(".views label:nth-of-type(3)").click()
+    assert shown.pictures() == [first.pictures["chequer"][0], picture(7)]
+
+
+# ---- Playing ----
+
+
+@pytest.mark.parametrize("start", ["key", "button"])
+def test_it_plays_and_pauses(shot, start):
+    def toggle():
+        if start == "key":
+            shot.press(Keys.SPACE)
+        else:
+            shot.one("#play").click()
+
+    toggle()
+    assert shot.one("#play").get_attribute("aria-pressed") == "true"
+    seen = set()
+    shot.wait(lambda: seen.add(shot.frame) or seen >= {"1001", "1003", "1005"})  # it starts again at the end
+    toggle()
+    assert shot.one("#play").get_attribute("aria-pressed") == "false"
+    stopped = shot.frame
+    shot.next_paint()
+    assert shot.frame == stopped
+
+
+def test_it_plays_no_faster_than_the_stage(show, report):
+    """At 10 time codes a second, 1003 comes 0.2 s after 1001, and 1005 0.4 s after."""
+    shown = show(strips_of(report), report, rate=10.0)
+    times = shown.driver.execute_async_script(
+        """const done = arguments[0], number = document.getElementById("number"), times = {};
+        const start = performance.now();
+        new MutationObserver((_, observer) => {
+          times[number.textContent] ??= performance.now() - start;
+          if (number.textContent === "1005") { observer.disconnect(); done(times); }
+        }).observe(number, { childList: true });
+        document.getElementById("play").click();"""
+    )
+    for frame, time in times.items():
+        assert time >= 100 * (float(frame) - FRAMES[0]) - 1
+
+
+# ---- Curves ----
+
+
+def read_axis(shown: Shown, chart, axis: str) -> tuple[np.ndarray, np.ndarray]:
+    """Where the ticks of a chart are, in the drawing's units, and the numbers at them."""
+    end = f"{axis}1"
+    ticks = shown.all(f".{axis}.tick", chart)
+    places = [float(shown.one("line", tick).get_attribute(end)) for tick in ticks]
+    return np.array(places), np.array([float(shown.one("text", tick).text) for tick in ticks])
+
+
+def read_line(shown: Shown, chart, style: str) -> np.ndarray:
+    """A curve as one reads it: (frames, 2) numbers by the ticks of both axes."""
+    pairs = [pair.split(",") for pair in shown.one(f"polyline.{style}", chart).get_attribute("points").split()]
+    drawn = np.array(pairs, np.float64)
+    for i, axis in enumerate("xy"):
+        places, numbers = read_axis(shown, chart, axis)
+        slope, start = np.polyfit(places, numbers, 1)
+        drawn[:, i] = slope * drawn[:, i] + start
+    return drawn
+
+
+def expected_curves(patch: PatchReport) -> list[dict[str, np.ndarray]]:
+    """By chart and line, straight from the results."""
+    stretch = {when: [getattr(r, f"stretch_{when}") for r in patch.results] for when in ("before", "after")}
+    slide = {"after": [r.largest_slide for r in patch.results]}
+    counts = {"folded": [r.folded_faces for r in patch.results], "clamped": [r.clamped_vertices for r in patch.results]}
+    stages = ("density", "embed", "locate", "interpolate")
+    times = {stage: [1e3 * getattr(r, f"{stage}_seconds") for r in patch.results] for stage in stages}
+    times["total"] = [sum(each) for each in zip(*times.values(), strict=True)]
+    return [{name: np.array(line) for name, line in chart.items()} for chart in (stretch, slide, counts, times)]
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_curves_are_at_their_values(shot, report, which):
+    patch = report.meshes[which].patches[0]
+    charts = shot.all(".chart", shot.sections[which])
+    for chart, lines in zip(charts, expected_curves(patch), strict=True):
+        assert {line.get_attribute("class") for line in shot.all("polyline", chart)} == set(lines)
+        for style, values in lines.items():
+            read = read_line(shot, chart, style)
+            highest = read_axis(shot, chart, "y")[1].max()
+            # Coordinates have two decimals, on some 110 units of height and 260 of width.
+            np.testing.assert_allclose(read[:, 1], values, rtol=0, atol=1e-4 * highest)
+            np.testing.assert_allclose(read[:, 0], patch.frames, rtol=0, atol=1e-4 * np.ptp(patch.frames))
+            assert values.max() <= highest
+
+
+def test_marks_and_values_follow_the_scrubber(shot, report):
+    for index, frame in enumerate(FRAMES):
+        shot.go_to(index)
+        for section, mesh in zip(shot.sections, report.meshes, strict=True):
+            sample = at(mesh.patches[0].frames, frame)
+            result = mesh.patches[0].results[sample]
+            stretch, slide, counts, times = shot.all(".chart", section)
+            before, after = f"{result.stretch_before:.4f}", f"{result.stretch_after:.4f}"
+            assert shot.legend(stretch) == {"before": before, "after": after}
+            assert float(shot.legend(slide)["slide"]) == pytest.approx(result.largest_slide, rel=2e-3, abs=1e-3)
+            assert shot.legend(counts) == {"folded faces": "0", "clamped vertices": "0"}
+            assert shot.legend(times)["embed"] == f"{1e3 * result.embed_seconds:.2f}"
+            assert_marked(shot, stretch, sample)
+
+
+def assert_marked(shown: Shown, chart, sample: int) -> None:
+    """The cursor and the marks are at a sample of every line."""
+    for style in ("before", "after"):
+        point = shown.one(f"polyline.{style}", chart).get_attribute("points").split()[sample].split(",")
+        mark = shown.one(f"circle.{style}", chart)
+        marked = [float(mark.get_attribute(name)) for name in ("cx", "cy")]
+        assert marked == pytest.approx([float(number) for number in point], abs=1e-3)
+    cursor = shown.one(".cursor", chart)
+    assert float(cursor.get_attribute("x1")) == float(cursor.get_attribute("x2")) == pytest.approx(marked[0], abs=1e-3)
+
+
+def move_over(shown: Shown, chart, sample: int, style: str = "after") -> ActionChains:
+    """The pointer above a sample of a curve."""
+    x, y, middle_x, middle_y = shown.run(
+        """const svg = arguments[0].querySelector("svg"), box = svg.getBoundingClientRect();
+        svg.scrollIntoView({ block: "center" });
+        const { x, y } = arguments[0].querySelector(`polyline.${arguments[1]}`).points[arguments[2]];
+        return [x, y, 300, 140].map((units) => units * box.width / 300);""",
+        chart,
+        style,
+        sample,
+    )
+    offset = round(x - middle_x / 2), round(y - middle_y / 2) - 3
+    return ActionChains(shown.driver).move_to_element_with_offset(shown.one("svg", chart), *offset)
+
+
+def test_over_a_curve_its_values_show(shot, report):
+    chart = shot.all(".chart", shot.sections[0])[0]
+    move_over(shot, chart, 2).perform()
+    shot.wait(lambda: shot.one(".at", chart).text == "frame 1003")
+    result = report.meshes[0].patches[0].results[2]
+    assert shot.legend(chart)["before"] == f"{result.stretch_before:.4f}"
+    assert_marked(shot, chart, 2)
+    assert shot.frame == "1001"
+    ActionChains(shot.driver).move_to_element(shot.one("h1")).perform()
+    shot.wait(lambda: shot.one(".at", chart).text == "frame 1001")
+    assert shot.legend(chart)["before"] == "0.0000"
+
+
+def test_a_click_in_a_curve_goes_there(shot, report):
+    chart = shot.all(".chart", shot.sections[1])[0]
+    move_over(shot, chart, 1).click().perform()
+    shot.wait(lambda: shot.frame == "1004")
+    assert shot.pictures()[:2] == [
+        each.pictures["chequer"][i] for each, i in zip(strips_of(report), (3, 1), strict=False)
+    ]
+
+
+# ---- Words and tables ----
+
+
+def test_every_patch_is_summed_up(shot, report):
+    rows = [row.text.split() for row in shot.all(".summary tbody tr")]
+    for cells, mesh, section in zip(rows, report.meshes, shot.sections, strict=True):
+        patch = mesh.patches[0]
+        worst = max(patch.results, key=lambda result: result.stretch_before)
+        frame = patch.frames[patch.results.index(worst)]
+        assert cells[:2] == [stages.PATCH, mesh.path]
+        assert cells[2] == ("default" if frame is None else f"{frame:g}")
+        before, after = f"{worst.stretch_before:.4f}", f"{worst.stretch_after:.4f}"
+        change = f"{100 * (worst.stretch_after / worst.stretch_before - 1):+.0f} %".replace("-", "\N{MINUS SIGN}")
+        assert cells[3:5] == [before, after] and " ".join(cells[5:7]) == change
+        lead = shot.one(".lead", section).text
+        assert lead.startswith(f"{before} → {after}") and change in lead
+
+
+def test_a_worst_frame_is_one_click_away(shot):
+    shot.one(".summary tbody tr:nth-child(2) button").click()
+    assert shot.frame == "1004"
+
+
+def test_problems_are_listed(show, report):
+    problems = [
+        Problem("warning", SHEET, stages.PATCH, 1003.0, "3 vertices looked up outside every face"),
+        Problem("note", "", None, None, "a note on the stage as a whole"),
+    ]
+    warned = BakeReport(problems, report.meshes)
+    shown = show(strips_of(report), warned)
+    rows = shown.all(".problems tbody tr")
+    assert len(rows) == len(warned.problems) >= 2
+    for text in ("warning", SHEET, "1003", problems[0].message):
+        assert text in rows[0].text
+    assert problems[1].message in rows[1].text
+    shown.one("button", rows[0]).click()
+    assert shown.frame == "1003"
+
+
+def test_settings_and_facts_are_shown(shot):
+    assert [text for pair in FACTS.items() for text in pair] == shot.one(".facts").text.split("\n")
+    for section in shot.sections:
+        assert [text for pair in SETTINGS.items() for text in pair] == shot.one(".settings", section).text.split("\n")
+
+
+def test_names_are_shown_as_they_are(show, report):
+    patch = report.meshes[0].patches[0]
+    odd = PatchReport(patch.info._replace(name=ODD), patch.frames, patch.results)
+    pictures = {ODD: [picture(i) for i in range(len(FRAMES))]}
+    warned = BakeReport([Problem("warning", ODD, ODD, None, ODD)])
+    shown = show([strip(ODD, odd, pictures=pictures, settings={ODD: ODD})], warned, ODD, {ODD: ODD})
+    assert shown.driver.title == ODD
+    for selector in ("h1", "h2", ".facts dt", ".facts dd", ".settings dt", ".settings dd", ".summary a"):
+        assert shown.one(selector).text == ODD, selector
+    assert shown.one(".strip p.path").text.strip() == ODD
+    assert shown.one(".problems td:last-child").text == ODD
+    assert shown.one("img").get_attribute("alt").startswith(f"{ODD}, {ODD}, before and after")
+    assert shown.one(".views input").get_attribute("value") == ODD
+    assert shown.all("b") == []
+    shown.press(Keys.ARROW_RIGHT)
+    assert shown.pictures() == [picture(1)]
+
+
+def test_names_that_are_no_text_are_shown_by_number(show, report):
+    """As Python has the bytes of a file's name that are no UTF-8."""
+    shown = show(strips_of(report), facts={"stage": b"a\xff.usda".decode("utf-8", "surrogateescape")})
+    assert shown.one(".facts dd").text == "a\\udcff.usda"
+
+
+# ---- What may be missing ----
+
+
+def test_a_still_has_no_scrubber(show, report):
+    patch = report.meshes[2].patches[0]
+    shown = show([strip(STILL, patch)], report)
+    assert not shown.one(".frames").is_displayed() and shown.one(".views").is_displayed()
+    assert [tick.text for tick in shown.all(".chart:first-child .x.tick")] == ["default"]
+    assert shown.pictures() == [picture(0)]
+    shown.press(Keys.ARROW_RIGHT, Keys.SPACE)
+    move_over(shown, shown.all(".chart")[0], 0).click().perform()
+    assert {at.text for at in shown.all(".chart .at")} == {"default value"}
+
+
+def test_one_frame(show, report):
+    patch = report.meshes[0].patches[0]
+    single = PatchReport(patch.info, [1003.25], patch.results[2:3])
+    shown = show([strip(SHEET, single, pictures={"chequer": [picture(3)]})], report)
+    assert not shown.one(".player").is_displayed()
+    assert [tick.text for tick in shown.all(".chart:first-child .x.tick")] == ["1003.25"]
+    assert shown.pictures() == [picture(3)]
+
+
+def test_no_stretch_is_no_change(show, report):
+    """The first frame is the rest pose."""
+    patch = report.meshes[0].patches[0]
+    still = PatchReport(patch.info, FRAMES[:1], patch.results[:1])
+    assert still.change is None
+    shown = show([strip(SHEET, still)], report)
+    assert shown.one(".lead").text == "0.0000 → 0.0000 stretch at frame 1001, the worst"
+    for chart in shown.all(".chart")[:3]:
+        assert read_axis(shown, chart, "y")[1][[0, -1]].tolist() == [0, 1]
+
+
+def test_no_patches(show):
+    warned = BakeReport([Problem("warning", "", None, None, "there is no mesh with a patch")])
+    shown = show([], warned)
+    assert "There is no patch." in shown.one("main").text and "no mesh with a patch" in shown.one("main").text
+    assert not shown.one(".player").is_displayed()
+    shown.press(Keys.ARROW_RIGHT, Keys.SPACE)
+
+
+def test_no_pictures(show, report):
+    shown = show([strip(SHEET, report.meshes[0].patches[0], pictures={})], report)
+    assert not shown.one(".views").is_displayed()
+    shown.press(Keys.ARROW_RIGHT)
+    assert shown.one(".chart:first-child .at").text == "frame 1002"
+
+
+def test_hundreds_of_frames(show, report):
+    frames = [1.0 + i for i in range(600)]
+    shown = show([strip(SHEET, longer(report.meshes[0].patches[0], frames))], report)
+    shown.one("#frame").send_keys(Keys.END)
+    assert shown.frame == "600" and shown.pictures() == [picture(599)]
+    assert len(shown.all(".chart:first-child .x.tick")) <= 7
+    move_over(shown, shown.all(".chart")[0], 300).click().perform()
+    # A pixel is some two frames.
+    shown.wait(lambda: abs(float(shown.frame) - frames[300]) <= 2)
+
+
+def test_without_the_script_the_first_frame_is_there(show, report, driver):
+    driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+    try:
+        shown = show(strips_of(report), report)
+        expected = [pictures[0] for each in strips_of(report) for pictures in each.pictures.values()]
+        assert shown.pictures() == expected
+        assert all(svg.is_displayed() for svg in shown.all(".chart svg")) and len(shown.all(".chart svg")) == 12
+        assert not shown.one(".player").is_displayed() and shown.all("button") == shown.all(".player button")
+        assert shown.legend(shown.all(".chart")[0])["before"] == "0.0000"
+        shown.one(".strip:first-of-type summary").click()
+        assert [row.text.split()[0] for row in shown.all(".strip:first-of-type tbody tr")] == [f"{f:g}" for f in FRAMES]
+    finally:
+        driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+
+def test_bad_pictures(report):
+    patch = report.meshes[0].patches[0]
+    few = strip(SHEET, patch, pictures={"chequer": [picture(0)]})
+    text = strip(SHEET, patch, pictures={"chequer": [picture(0), b"GIF89a", *map(picture, range(4))]})
+    none = strip(SHEET, PatchReport(patch.info), pictures={})
+    for bad, message in (
+        (few, f"{SHEET}: patch {stages.PATCH}: 1 pictures of chequer for 6 frames"),
+        (text, f"{SHEET}: patch {stages.PATCH}: frame 1002: the picture of chequer is neither PNG nor JPEG"),
+        (none, f"{SHEET}: patch {stages.PATCH}: no frames"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            page("Shot", [bad], report, FACTS)
+
+
+@pytest.mark.parametrize("rate", [0.0, -24.0, math.nan, math.inf])
+def test_a_rate_that_cannot_be_played(report, rate):
+    with pytest.raises(ValueError, match="time codes per second"):
+        page("Shot", strips_of(report), report, FACTS, rate)
+
+
+# ---- On a phone, on paper, by ear ----
+
+
+@pytest.mark.parametrize("width", [1280, 800, 400])
+def test_it_fits_the_screen(shot, driver, width):
+    metrics = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": width < 500}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    try:
+        assert shot.run("return [innerWidth, document.documentElement.scrollWidth]")[1] <= width
+        texts = shot.run(
+            "return [...document.querySelectorAll('.chart text')].map((t) => t.getBoundingClientRect().height)"
+        )
+        assert 9 <= min(texts) <= max(texts) <= 20  # pixels
+    finally:
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_it_is_light_dark_and_on_paper_light(shot, driver):
+    def ink(media: str, scheme: str) -> float:
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media, "features": features})
+        return sum(shot.run("return getComputedStyle(document.body).color.match(/[0-9]+/g).map(Number)")) / 3
+
+    try:
+        assert ink("screen", "light") < 60 < 200 < ink("screen", "dark")
+        a4 = {"width": 703, "height": 1032, "deviceScaleFactor": 1, "mobile": False}  # within the margins
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", a4)
+        assert ink("print", "dark") < 60
+        assert not shot.one(".player").is_displayed()
+        assert len(shot.pictures()) == 3
+        cut = "return [...document.querySelectorAll('.scroll')].some((box) => box.scrollWidth > box.clientWidth)"
+        assert not shot.run(cut)
+    finally:
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
+
+
+def test_everything_has_a_name_to_be_read_out(shot):
+    for selector in ("button", "input", "img", ".chart svg", "section", "fieldset", "a"):
+        elements = [element for element in shot.all(selector) if element.is_displayed()]
+        assert elements and all(element.accessible_name for element in elements), selector
+    assert "before at most" in shot.one("#patch-0 .chart:first-child svg").accessible_name
+
+
+# ---- Smaller pictures ----
+
+
+def test_compressed_pictures_are_small_and_alike(show, report):
+    """A smooth picture wider than a page: its JPEG is within a few steps of 255 of it, scaled."""
+    across, down = np.meshgrid(np.linspace(0, 1, 3840), np.linspace(0, 1, 540))
+    pixels = (255 * np.stack([across, down, across * down], axis=2)).astype(np.uint8)
+    small = compressed(pixels)
+    image = Image.open(io.BytesIO(small))
+    assert (image.format, image.size) == ("JPEG", (1920, 270))
+    scaled = pixels.reshape(270, 2, 1920, 2, 3).mean(axis=(1, 3))
+    assert np.abs(np.asarray(image) - scaled).max() < 6
+    assert len(small) < pixels.size / 50
