@@ -60,6 +60,15 @@ class Frame(NamedTuple):
     embeddings: tuple[np.ndarray, ...] | None  # float64 (patch vertices, 2) each, where asked for
 
 
+class Diagnostics(NamedTuple):
+    """What a slide did, by mesh vertex, float32 (V,): see `skinslide_diagnostics`."""
+
+    stretch_before: np.ndarray
+    stretch_after: np.ndarray
+    slide: np.ndarray
+    force_density: np.ndarray
+
+
 def version() -> str:
     """The library's version, "major.minor.patch"."""
     return text(lib.skinslide_version())
@@ -116,6 +125,16 @@ class Slider:
         finally:
             self._give_back(workspace)
         return Frame(slid, tuple(read(PatchResult, result) for result in results), planes)
+
+    def diagnose(self, cached: np.ndarray, slid: np.ndarray, controls: Sequence[Controls] | None = None) -> Diagnostics:
+        """Measures a frame by vertex: points (V, 3) before and after; controls as given to `slide`."""
+        native = Arguments()
+        before, after = (native.points(points, self._sizes.vertices, "points") for points in (cached, slid))
+        given = native.frame_controls(controls, self._names, self._sizes)
+        found = Diagnostics(*(np.empty(self._sizes.vertices, np.float32) for _ in Diagnostics._fields))
+        wanted = ffi.new("skinslide_diagnostics *", [writable("float[]", array) for array in found])
+        call(lib.skinslide_diagnose, self._slider, given, ffi.NULL, before, after, wanted)
+        return found
 
     def vertices(self, patch: int) -> np.ndarray:
         """Mesh vertices of a patch, int32, ascending."""
