@@ -19,6 +19,7 @@ from selenium.webdriver.support.wait import WebDriverWait
 
 import stages
 from skinslide import BakeReport, bake
+from skinslide.cli import main
 from skinslide.page import Strip, compressed, page
 from skinslide.problems import Problem
 from skinslide.report import PatchReport
@@ -172,13 +173,11 @@ class Shown:
 
 
 @pytest.fixture
-def show(driver, tmp_path):
-    """Opens a page of strips; the console stays empty and nothing is requested, whatever a test does with it."""
+def open_file(driver):
+    """Opens a page from a file; the console stays empty and nothing else is requested."""
     opened = []
 
-    def open_page(strips, report=None, title="Shot", facts=FACTS, rate=RATE) -> Shown:
-        path = tmp_path / "page.html"
-        path.write_text(page(title, strips, report or BakeReport([]), facts, rate), encoding="utf-8")
+    def open_page(path: Path) -> Shown:
         opened.append(Shown(driver, path))
         return opened[-1]
 
@@ -189,8 +188,43 @@ def show(driver, tmp_path):
 
 
 @pytest.fixture
+def show(open_file, tmp_path):
+    """Opens a page of strips."""
+
+    def open_page(strips, report=None, title="Shot", facts=FACTS, rate=RATE) -> Shown:
+        path = tmp_path / "page.html"
+        path.write_text(page(title, strips, report or BakeReport([]), facts, rate), encoding="utf-8")
+        return open_file(path)
+
+    return open_page
+
+
+@pytest.fixture
 def shot(show, report) -> Shown:
     return show(strips_of(report), report)
+
+
+# ---- The command's ----
+
+
+def test_the_command_makes_a_page(open_file, tmp_path):
+    """With no folder of pictures; its frames are the stage's, and each has another picture."""
+    stage, _mesh = stages.patched_stage()
+    path = stages.save(stage, tmp_path / "shot.usda")
+    html = tmp_path / "report.html"
+    assert main(["preview", str(path), "--html", str(html), "--size", "64x32", "--quiet"]) == 0
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["report.html", "shot.usda"]
+    shown, seen = open_file(html), set()
+    for index, frame in enumerate(stages.FRAMES):
+        shown.go_to(index)
+        assert shown.frame == f"{frame:g}"
+        (image,) = (image for image in shown.all(".strip img") if image.is_displayed())
+        shown.wait(lambda image=image: image.get_property("naturalWidth") == 64)
+        seen.add(image.get_property("src"))
+    assert len(seen) == len(stages.FRAMES)
+    text = shown.one("body").text
+    for words in ("shot.usda", "unit", "pinned", "points (default)", stages.PATCH):
+        assert words in text
 
 
 # ---- The file ----

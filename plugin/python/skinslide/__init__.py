@@ -1,7 +1,8 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `setup` writes a
-patch, `paint` its edges, `mirror` its counterpart on a mesh's other side; `Slider` is the same on numpy arrays.
+`bake` corrects a stage, `stitch` puts chunks of a bake together, `preview` draws before and after, `check` says what
+would be slid, `setup` writes a patch, `paint` its edges, `mirror` its counterpart on a mesh's other side; `Slider` is
+the same on numpy arrays.
 """
 
 from pathlib import Path
@@ -14,6 +15,7 @@ from skinslide.check import check
 from skinslide.frames import FrameSpecError, UsageError, parse_frames
 from skinslide.mirror import mirror
 from skinslide.paint import PaintReport, paint
+from skinslide.preview import PreviewReport, preview
 from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
 from skinslide.report import BakeReport
 from skinslide.setup import setup
@@ -60,6 +62,7 @@ __all__ = [
     "LookupInfo",
     "PaintReport",
     "PatchSetup",
+    "PreviewReport",
     "Problem",
     "Slider",
     "SliderError",
@@ -77,6 +80,7 @@ __all__ = [
     "paint",
     "parse_frames",
     "plugin_dir",
+    "preview",
     "setup",
     "stitch",
 ]

@@ -12,6 +12,7 @@ from typing import NoReturn
 
 from skinslide import __version__
 from skinslide.frames import UsageError
+from skinslide.options import FORMATS, VIEWS
 from skinslide.outcome import DONE, EXIT_CODES, EXPECTED, PROBLEMS, as_json, failed, prepare_streams, say, tell
 from skinslide.slider import Lookup
 
@@ -98,6 +99,36 @@ def _bake(arguments: argparse.Namespace) -> Result:
     return "" if arguments.quiet else _written(report.text(), arguments), DONE
 
 
+def _preview(arguments: argparse.Namespace) -> Result:
+    from skinslide.preview import preview
+    from skinslide.progress import reporter
+
+    with reporter(quiet=arguments.quiet) as progress:
+        report = preview(
+            arguments.stage,
+            arguments.folder,
+            html=arguments.html,
+            prims=arguments.prim,
+            patches=arguments.patch,
+            frames=arguments.frames,
+            views=arguments.view or VIEWS,
+            camera=arguments.camera,
+            follow=arguments.follow,
+            size=arguments.size,
+            form=arguments.format,
+            st=arguments.st,
+            squares=arguments.squares,
+            most_stretch=arguments.most_stretch,
+            lookup=_lookup(arguments),
+            jobs=arguments.jobs,
+            progress=progress,
+        )
+    if arguments.json:
+        return as_json({"stage": arguments.stage, **report.as_dict()}), DONE
+    written = "\n".join(f"{place}: written" for place in (arguments.folder, arguments.html) if place)
+    return "" if arguments.quiet else f"{report.text()}\n{written}", DONE
+
+
 def _check(arguments: argparse.Namespace) -> Result:
     from skinslide.check import check
 
@@ -179,6 +210,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_bake(_add_command(commands, "bake", _bake, "slide every frame and write a layer of corrected points"))
     _add_check(_add_command(commands, "check", _check, "say what would be slid, and every problem"))
+    _add_preview(_add_command(commands, "preview", _preview, "draw pictures of every patch, before and after sliding"))
     _add_setup(_add_command(commands, "setup", _setup, "write a layer that makes a patch of some faces of a mesh"))
     _add_paint(_add_command(commands, "paint", _paint, "write a layer that gives edges of a patch a force density"))
     _add_mirror(_add_command(commands, "mirror", _mirror, "write a layer that copies a patch to a mesh's other side"))
@@ -245,6 +277,22 @@ def _lookup(arguments: argparse.Namespace) -> Lookup:
     return Lookup(arguments.lookup, device, arguments.egl_resolution)
 
 
+def _add_frames(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--frames",
+        metavar="SPEC",
+        help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
+        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
+    )
+    command.add_argument(
+        "--jobs",
+        type=_positive,
+        default=_processors(),
+        metavar="N",
+        help="frames in hand at once; the result is the same (default: the processors, here %(default)s)",
+    )
+
+
 def _add_bake(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
     command.add_argument(
@@ -257,20 +305,8 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
         "leaves a partial file beside it, which the next bake of OUT removes when it is a day old",
     )
     _add_prims(command)
-    command.add_argument(
-        "--frames",
-        metavar="SPEC",
-        help="frames to write, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
-        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
-    )
+    _add_frames(command)
     _add_lookup(command)
-    command.add_argument(
-        "--jobs",
-        type=_positive,
-        default=_processors(),
-        metavar="N",
-        help="frames slid at once; the result is the same (default: the processors, here %(default)s)",
-    )
     limits = {"folded": "faces turned over in its embedding", "clamped": "vertices looked up outside every face"}
     for option, what in limits.items():
         command.add_argument(
@@ -279,8 +315,70 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
             metavar="N",
             help=f"fail, and write nothing, where a patch has more than N {what} at a frame",
         )
+    _add_printing(command)
+
+
+def _add_printing(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="print nothing but errors")
     command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+
+
+def _add_preview(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
+    command.add_argument(
+        "-o",
+        "--output",
+        dest="folder",
+        metavar="DIR",
+        help="folder for MESH.PATCH.VIEW.FRAME.png and contact_sheet.png, made where there is none; each file is "
+        "replaced in one step",
+    )
+    command.add_argument(
+        "--html",
+        metavar="FILE",
+        help="a page of all pictures, to be scrubbed through, with curves of stretch, slides, folds and time and the "
+        "settings used: one file, which loads no other",
+    )
+    _add_prims(command)
+    command.add_argument(
+        "--patch", action="append", metavar="NAME", help="only this patch; may be given again (default: all)"
+    )
+    _add_frames(command)
+    command.add_argument(
+        "--view",
+        action="append",
+        choices=VIEWS,
+        help="chequer: on the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
+        "false colours; may be given again (default: both)",
+    )
+    command.add_argument(
+        "--camera",
+        metavar="PATH",
+        help="a Camera of the stage (default: one that stands still and has the patch in sight all through the shot)",
+    )
+    command.add_argument("--follow", action="store_true", help="frame the patch anew in each frame")
+    command.add_argument("--size", type=_size, default=(1920, 1080), metavar="WxH", help="pixels (default: 1920x1080)")
+    command.add_argument("--format", default="png", choices=FORMATS, help="of the pictures; exr is linear light")
+    command.add_argument(
+        "--st",
+        metavar="NAME",
+        help="the primvar that the chequer follows (default: st, and on a mesh without it places at rest)",
+    )
+    command.add_argument(
+        "--squares",
+        type=float,
+        metavar="N",
+        help="of the chequer, for each unit of it (default: 16 across the patch)",
+    )
+    command.add_argument(
+        "--most-stretch",
+        type=float,
+        default=0.5,
+        metavar="X",
+        help="what the end of the scale of colours stands for (default: 0.5)",
+    )
+    _add_lookup(command)
+    _add_printing(command)
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:
@@ -366,6 +464,13 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
         metavar="OUT",
         help="layer of overs to write, the same as one bake of all the frames; replaced in one step at the end",
     )
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,9})[xX](\d{1,9})", text, re.ASCII)
+    if not found:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1920x1080")
+    return int(found[1]), int(found[2])
 
 
 def _processors() -> int:

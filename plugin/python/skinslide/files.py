@@ -16,7 +16,7 @@ from typing import Any
 from pxr import Tf, Usd, UsdUtils
 
 from skinslide.frames import UsageError
-from skinslide.problems import StageError, usd_message
+from skinslide.problems import StageError, frame_text, usd_message
 
 _ABANDONED = 24 * 60 * 60  # seconds
 
@@ -96,6 +96,38 @@ def _clips(template: UsdUtils.DependencyInfo) -> list[str]:
     """The files that a template of value clips stands for; USD gives those with anything in place of the number."""
     wanted = re.compile("-?[0-9]+".join(map(re.escape, re.split("#+", template.assetPath))))
     return [file for file in template.dependencies if wanted.fullmatch(file)]
+
+
+def check_folder(folder: Path) -> Path:
+    """A folder to write into, made where there is none; UsageError where it cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        fault = None if os.access(folder, os.W_OK | os.X_OK) else "is not writable"
+    except FileExistsError:
+        fault = "is not a folder"
+    except (OSError, ValueError) as error:
+        fault = getattr(error, "strerror", None) or str(error)
+    if fault:
+        raise UsageError(f"output {folder}: {fault}")
+    return folder.resolve()
+
+
+def frame_suffix(frame: float | None) -> str:
+    """What the name of a file of a frame has of it: .0012, .-0005, .1012.25; nothing for the default time."""
+    if frame is None:
+        return ""
+    words = frame_text(frame)
+    whole, dot, rest = words.lstrip("-").partition(".")
+    return f".{'-' * words.startswith('-')}{whole.zfill(4)}{dot}{rest}"
+
+
+def unique_names(paths: Sequence[str]) -> list[str]:
+    """A name for files of each prim: its own, and where others have the same one its whole path's."""
+    own = [path.rpartition("/")[2] for path in paths]
+    return [
+        name if own.count(name) == 1 else path.strip("/").replace("/", "_")
+        for name, path in zip(own, paths, strict=True)
+    ]
 
 
 @contextmanager

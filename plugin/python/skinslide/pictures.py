@@ -76,10 +76,11 @@ class Canvas:
     """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light)."""
 
     def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None):
-        if not (1 <= width <= MOST_SIDE and 1 <= height <= MOST_SIDE):
-            width, height = min(max(width, 0), MOST_SIDE + 1), min(max(height, 0), MOST_SIDE + 1)  # the core says so
         out, wanted = ffi.new("skinslide_canvas **"), -1 if device is None else device
-        options = ffi.new("skinslide_canvas_options *", (width, height, enum_value("pixels", pixels, ""), wanted))
+        options = ffi.new(
+            "skinslide_canvas_options *",
+            (*(min(side, 2**31 - 1) for side in (width, height)), enum_value("pixels", pixels, ""), wanted),
+        )
         call(lib.skinslide_canvas_create, options, out)
         self._handle = ffi.gc(out[0], lib.skinslide_canvas_destroy)
         self.width, self.height = width, height
@@ -106,6 +107,8 @@ class Canvas:
         to_world: np.ndarray | None = None,
         squares: float = 1.0,
         scale: Scale | None = None,
+        double_sided: bool = False,
+        left_handed: bool = False,
     ) -> None:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale."""
         native, figure = Arguments(), ffi.new("skinslide_figure *")
@@ -113,6 +116,7 @@ class Canvas:
         figure.points = native.points(points, tessellation.vertex_count, "points")
         world = ffi.NULL if to_world is None else _matrix(to_world)
         figure.to_world, figure.squares = world, squares
+        figure.double_sided, figure.left_handed = double_sided, left_handed
         if scale:
             figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
             figure.lowest, figure.highest = scale.lowest, scale.highest

@@ -1,0 +1,74 @@
+"""From where a patch is seen: a camera that frames it, or a camera of the stage."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from pxr import Gf, Usd, UsdGeom
+
+from skinslide.frames import UsageError
+from skinslide.meshes import SlidMesh
+from skinslide.pictures import Camera, Shape, frame_faces
+
+_MOST_POSES = 24  # that a camera of a whole shot is framed by
+
+
+class Eye(Protocol):
+    """Gives the camera of a time."""
+
+    def camera(self, time: Usd.TimeCode) -> Camera: ...
+
+
+class StageCamera:
+    """A UsdGeomCamera, whatever it does over time; what the picture is wider or taller by is added around its view."""
+
+    def __init__(self, stage: Usd.Stage, path: str, aspect: float):
+        prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
+        if not prim or not prim.IsA(UsdGeom.Camera):
+            kind = prim.GetTypeName() or "prim without a type" if prim else ""
+            raise UsageError(f"camera {path}: {f'is a {kind}, no Camera' if prim else 'there is no such prim'}")
+        self._camera, self._aspect = UsdGeom.Camera(prim), aspect
+
+    def camera(self, time: Usd.TimeCode) -> Camera:
+        frustum = self._camera.GetCamera(time).frustum
+        window, seen = frustum.GetWindow(), frustum.ComputeAspectRatio()
+        wider, taller = max(1.0, self._aspect / seen), max(1.0, seen / self._aspect)
+        half = Gf.CompMult(window.GetSize() / 2, Gf.Vec2d(wider, taller))
+        frustum.SetWindow(Gf.Range2d(window.GetMidpoint() - half, window.GetMidpoint() + half))
+        return Camera(np.array(frustum.ComputeViewMatrix()), np.array(frustum.ComputeProjectionMatrix()))
+
+
+class ShotCamera:
+    """Stands still, with a patch in sight all through the shot: the same camera whichever frames are drawn."""
+
+    def __init__(self, mesh: SlidMesh, faces: np.ndarray, aspect: float):
+        times = [Usd.TimeCode(time) for time in mesh.sample_times()] or [Usd.TimeCode.Default()]
+        chosen = np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))
+        self._camera = _framed(mesh, faces, [times[i] for i in chosen], aspect)
+
+    def camera(self, time: Usd.TimeCode) -> Camera:
+        return self._camera
+
+
+class FollowingCamera:
+    """Frames a patch anew in each frame."""
+
+    def __init__(self, mesh: SlidMesh, faces: np.ndarray, aspect: float):
+        self._mesh, self._faces, self._aspect = mesh, faces, aspect
+
+    def camera(self, time: Usd.TimeCode) -> Camera:
+        return _framed(self._mesh, self._faces, [time], self._aspect)
+
+
+def to_world(mesh: SlidMesh, time: Usd.TimeCode) -> np.ndarray:
+    """The way of a mesh to the world, (4, 4)."""
+    return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
+
+
+def _framed(mesh: SlidMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:
+    up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
+    poses = [mesh.points_at(time) for time in times]
+    matrices = np.array([to_world(mesh, time) for time in times])
+    return frame_faces(Shape(mesh.face_counts, mesh.face_indices), faces, poses, matrices, up, aspect)

@@ -1,0 +1,124 @@
+"""The pictures of one piece of a patch: the same triangles, chequer and camera all through a shot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from skinslide import panels
+from skinslide.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
+from skinslide.meshes import SlidMesh
+from skinslide.options import PictureOptions
+from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation
+from skinslide.problems import Fault, frame_text
+from skinslide.report import PatchReport
+from skinslide.slider import Slider
+from skinslide.solving import frame_of
+from skinslide.subdivision import read_subdivision
+from skinslide.texture import has_st, read_st
+
+_SQUARES = 16  # of the chequer, across a patch
+
+
+class Column(NamedTuple):
+    """One of the poses that stand side by side on a picture."""
+
+    title: str
+    points: np.ndarray  # (V, 3)
+    stretch: np.ndarray  # (V,)
+    measure: float  # stretch of the patch
+
+
+class Moment(NamedTuple):
+    """What a picture needs to know of a time."""
+
+    title: str  # "frame 1012", or nothing for the default time
+    camera: Camera
+    to_world: np.ndarray  # (4, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Immutable: any number of threads may draw it, each on its own canvas."""
+
+    mesh: SlidMesh
+    place: int  # among the slider's patches
+    label: str
+    tessellation: Tessellation
+    eye: Eye
+    squares: float
+    double_sided: bool
+
+    @classmethod
+    def of(cls, mesh: SlidMesh, slider: Slider, place: int, options: PictureOptions, columns: int = 2) -> Series:
+        """Raises Fault, SliderError and UsageError for what cannot be drawn."""
+        faces = slider.faces(place)
+        st = _st_of(mesh, options.st)
+        shape = Shape(mesh.face_counts, mesh.face_indices)
+        subdivision = read_subdivision(UsdGeom.Mesh(mesh.prim))
+        return cls(
+            mesh,
+            place,
+            PatchReport(slider.patches[place]).label,
+            Tessellation(shape, mesh.rest_points, st, faces, subdivision),
+            _eye(mesh, faces, options, columns),
+            options.squares or _suitable_squares(mesh, faces, st),
+            bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get()),
+        )
+
+    def moment(self, time: Usd.TimeCode) -> Moment:
+        frame = frame_of(time)
+        title = "" if frame is None else f"frame {frame_text(frame)}"
+        return Moment(title, self.eye.camera(time), to_world(self.mesh, time))
+
+    def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
+        """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
+        canvas.clear(panels.BACKGROUND)
+        places = panels.columns(canvas.width, canvas.height, len(columns))
+        for column, place in zip(columns, places, strict=True):
+            scale = Scale(column.stretch, 0.0, most_stretch) if view == "stretch" else None
+            canvas.draw(
+                self.tessellation,
+                column.points,
+                at.camera,
+                place,
+                to_world=at.to_world,
+                squares=self.squares,
+                scale=scale,
+                double_sided=self.double_sided,
+                left_handed=self.mesh.left_handed,
+            )
+        pixels = canvas.read()
+        for column, place in zip(columns, places, strict=True):
+            panels.write_text(pixels, [column.title, f"stretch {column.measure:.3f}"], place)
+        panels.write_text(pixels, [f"{self.label}   {at.title}".rstrip()], places[-1], at_foot=True)
+        if view == "stretch":
+            panels.write_scale(pixels, most_stretch, places[0])
+        return pixels
+
+
+def _st_of(mesh: SlidMesh, asked: str | None) -> np.ndarray | None:
+    """Texture coordinates for the chequer; None where there are none and none were asked for."""
+    if not has_st(mesh.prim, asked or "st"):
+        if asked:
+            raise Fault(f"there is no primvars:{asked} to draw a chequer on")
+        return None
+    return read_st(mesh.prim, asked or "st", Usd.TimeCode.EarliestTime(), mesh.topology)
+
+
+def _suitable_squares(mesh: SlidMesh, faces: np.ndarray, st: np.ndarray | None) -> float:
+    inside = np.repeat(np.isin(np.arange(mesh.topology.face_count), faces), mesh.face_counts)
+    places = mesh.rest_points[mesh.face_indices[inside]] if st is None else st[inside]
+    extent = float(np.ptp(places, axis=0).max())
+    return _SQUARES / extent if extent > 0 else 1.0
+
+
+def _eye(mesh: SlidMesh, faces: np.ndarray, options: PictureOptions, columns: int) -> Eye:
+    aspect = options.width / columns / options.height
+    if options.camera is not None:
+        return StageCamera(mesh.stage, options.camera, aspect)
+    return (FollowingCamera if options.follow else ShotCamera)(mesh, faces, aspect)

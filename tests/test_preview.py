@@ -1,0 +1,391 @@
+"""Pictures of a shot: what is on them, where they go, and what cannot be drawn."""
+
+import io
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+from pxr import Gf, Sdf, Usd, UsdGeom, Vt
+from scipy import ndimage
+
+import skinslide
+import stages
+from skinslide.cli import main
+from skinslide.images import decode_exr
+from stages import FRAMES, PATCH
+
+SIZE = (480, 270)
+NAME = f"skin_GEO.{PATCH}"
+
+
+def sheet(columns=24, faces=None, st=True):
+    """A flat sheet that is stretched in its plane, so that every square of it can be seen; its middle is the patch."""
+    shape = stages.grid(columns, columns)
+    shape.points[:, 2] = 0
+    margin = range(3, columns - 3)
+    stage, mesh = stages.patched_stage(shape, stages.block(columns, margin, margin) if faces is None else faces)
+    for frame in FRAMES:
+        moved = shape.points.copy()
+        x, y = moved[:, 0], moved[:, 1]
+        inside = np.maximum(0, 0.375**2 - x**2) * np.maximum(0, 0.375**2 - y**2) / 0.375**4
+        moved[:, 0] += 0.08 * (frame - FRAMES[0]) * inside * (1 + x)
+        mesh.GetPointsAttr().Set(stages.vectors(moved), frame)
+    if st:
+        add_st(mesh, shape)
+    return stage, mesh
+
+
+def add_st(mesh, shape, name="st"):
+    corners = shape.points[shape.indices][:, :2] + 0.5
+    stages.set_primvar(
+        mesh,
+        name,
+        Sdf.ValueTypeNames.TexCoord2fArray,
+        "faceVarying",
+        Vt.Vec2fArray.FromNumpy(corners.astype(np.float32)),
+    )
+
+
+@pytest.fixture
+def shot(tmp_path):
+    return stages.save(sheet()[0], tmp_path / "shot.usda")
+
+
+def draw(stage, folder, **options):
+    options = {"size": SIZE, "views": "chequer", "squares": 16, **options}
+    return skinslide.preview(stage if isinstance(stage, Usd.Stage) else str(stage), folder, **options)
+
+
+def picture(folder, view="chequer", frame="1003", name=NAME):
+    with Image.open(folder / f"{name}.{view}.{frame}.png") as image:
+        return np.array(image)
+
+
+def halves(pixels):
+    """Before and after, without the titles that stand in their corners."""
+    width = pixels.shape[1] // 2
+    clear = slice(pixels.shape[0] // 5, -pixels.shape[0] // 5)
+    return pixels[clear, :width].astype(int), pixels[clear, width:].astype(int)
+
+
+def contrast(pixels):
+    return int(np.ptp(pixels, axis=(0, 1)).max())
+
+
+def projected(stage, vertices, points, size):
+    """Where points are on one half of a picture by the camera that the tool finds: by hand, with USD's own matrices."""
+    from skinslide.cameras import ShotCamera
+    from skinslide.meshes import read_meshes
+
+    mesh = read_meshes(stage)[0][0]
+    camera = ShotCamera(mesh, mesh.patches[0].faces, size[0] / 2 / size[1]).camera(Usd.TimeCode(FRAMES[-1]))
+    matrix = Gf.Matrix4d(camera.to_camera) * Gf.Matrix4d(camera.to_screen)
+    seen = np.array([matrix.Transform(Gf.Vec3d(*map(float, points[vertex])))[:2] for vertex in vertices])
+    return (seen * [0.5, -0.5] + 0.5) * [size[0] / 2, size[1]]
+
+
+# ---- What is drawn ----
+
+
+def test_files_are_named_by_mesh_patch_view_and_frame(shot, tmp_path):
+    report = draw(shot, tmp_path / "out" / "deep", views=("chequer", "stretch"), frames="1001-1003x0.5")
+    names = {f"{NAME}.{view}.{frame}.png" for view in ("chequer", "stretch") for frame in
+             ("1001", "1001.5", "1002", "1002.5", "1003")}  # fmt: skip
+    made = {path.name for path in (tmp_path / "out" / "deep").iterdir()}
+    assert made == {*names, "contact_sheet.png"} == {os.path.basename(file) for file in report.files}
+    for view in ("chequer", "stretch"):
+        assert picture(tmp_path / "out" / "deep", view, "1001.5").shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_at_rest_both_halves_are_the_same(shot, tmp_path):
+    draw(shot, tmp_path, frames="1001")
+    before, after = halves(picture(tmp_path, frame="1001"))
+    assert contrast(before) > 100
+    assert np.mean(before != after) < 1e-3  # rounding by where on the canvas an edge is
+
+
+def test_only_the_patch_changes(tmp_path):
+    """Pixels that differ lie within the projection of the patch, and far from all of it stays."""
+    stage, mesh = sheet()
+    draw(stage, tmp_path)
+    changed = np.abs(np.subtract(*halves(picture(tmp_path)))).sum(axis=2) > 8
+    points = np.array(mesh.GetPointsAttr().Get(FRAMES[-1]))
+    patch = np.flatnonzero((np.abs(np.array(mesh.GetPointsAttr().Get())[:, :2]) <= 0.375 + 1e-6).all(axis=1))
+    corners = projected(stage, patch, points, SIZE) - [0, SIZE[1] // 5]
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    rows, columns = np.nonzero(changed)
+    assert len(rows) > 200
+    assert columns.min() >= low[0] - 1 and columns.max() <= high[0] + 1
+    assert rows.min() >= low[1] - 1 and rows.max() <= high[1] + 1
+
+
+def cell_areas(half):
+    """Areas of the chequer's whole cells in the patch, which is drawn with more contrast than what is outside."""
+    light, dark = half.min(axis=2) > 140, half.max(axis=2) < 90
+    height, width = light.shape
+    areas = []
+    for cells in (light, dark):
+        labels, count = ndimage.label(ndimage.binary_erosion(cells))
+        for number, box in enumerate(ndimage.find_objects(labels), start=1):
+            whole = box[0].start > 1 and box[1].start > 1 and box[0].stop < height - 1 and box[1].stop < width - 1
+            areas += [np.count_nonzero(labels[box] == number)] if whole else []
+        assert count
+    return np.array([area for area in areas if area > 20])
+
+
+def test_cells_of_the_chequer_become_more_alike(tmp_path):
+    stage, _mesh = sheet()
+    draw(stage, tmp_path, size=(1920, 1080), squares=24)
+    before, after = (cell_areas(half) for half in halves(picture(tmp_path)))
+    assert len(before) > 30 and len(after) > 30
+    spread = [np.std(areas) / np.mean(areas) for areas in (before, after)]
+    assert spread[1] < 0.8 * spread[0]
+
+
+def test_stretch_is_shown_by_colour(tmp_path):
+    """The frame at rest has one colour in all of the patch, that of no stretch; a stretched one has many."""
+    stage, _mesh = sheet()
+    draw(stage, tmp_path, views="stretch", most_stretch=0.2)
+    hues = [np.ptp(half[..., 0] - half[..., 2]) for frame in ("1001", "1003")
+            for half in halves(picture(tmp_path, "stretch", frame))]  # fmt: skip
+    assert max(hues[:2]) + 60 < hues[2]
+
+
+def test_a_subdivided_mesh_is_drawn_as_its_limit_surface(tmp_path):
+    """A cube's limit surface is well inside the cube: fewer pixels are drawn of it."""
+    drawn = []
+    for scheme in ("none", "catmullClark"):
+        stage, mesh = stages.patched_stage(stages.box(), np.array([1]))
+        mesh.GetSubdivisionSchemeAttr().Set(scheme)
+        (tmp_path / scheme).mkdir()
+        draw(stage, tmp_path / scheme, frames="1001")
+        before, _after = halves(picture(tmp_path / scheme, frame="1001"))
+        drawn.append(np.count_nonzero(np.abs(before - before[0, 0]).sum(axis=2) > 6))
+    assert 0 < drawn[1] < 0.9 * drawn[0]
+
+
+def test_pieces_and_meshes_of_one_name_have_pictures_of_their_own(tmp_path):
+    stage, _mesh = stages.patched_stage(faces=stages.two_pieces())
+    other = stages.add_mesh(stage, stages.grid(), "/World/other/geo/skin_GEO")
+    stages.add_patch(other, stages.grid().all_faces)
+    report = draw(stage, tmp_path, frames="1002")
+    names = {os.path.basename(file) for file in report.files}
+    assert {"World_char_geo_skin_GEO.elbow_L.1.chequer.1002.png", "World_char_geo_skin_GEO.elbow_L.2.chequer.1002.png",
+            "World_other_geo_skin_GEO.elbow_L.chequer.1002.png", "contact_sheet.png"} == names  # fmt: skip
+
+
+def test_a_cache_without_samples_has_one_picture(tmp_path):
+    stage, mesh = sheet()
+    for frame in FRAMES:
+        mesh.GetPointsAttr().ClearAtTime(frame)
+    report = draw(stage, tmp_path)
+    assert [os.path.basename(file) for file in report.files] == [f"{NAME}.chequer.png", "contact_sheet.png"]
+
+
+def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
+    for folder, options in {"all": {"jobs": 3}, "one": {"jobs": 1}, "alone": {"frames": "1003"}}.items():
+        draw(shot, tmp_path / folder, views=("chequer", "stretch"), **options)
+    for view in ("chequer", "stretch"):
+        files = [(tmp_path / folder / f"{NAME}.{view}.1003.png").read_bytes() for folder in ("all", "one", "alone")]
+        assert len(set(files)) == 1
+
+
+def test_exr_is_the_same_picture_in_linear_light(shot, tmp_path):
+    """A level of sRGB is at most 0.6 % of full light, half floats are finer, and the edges of cells blend otherwise."""
+    draw(shot, tmp_path, frames="1003")
+    draw(shot, tmp_path, frames="1003", form="exr")
+    data = (tmp_path / f"{NAME}.chequer.1003.exr").read_bytes()
+    linear = np.stack([decode_exr(data, channel).pixels for channel in "RGB"], axis=2)
+    encoded = picture(tmp_path) / 255
+    decoded = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    off = np.abs(halves(decoded * 1000)[0] - halves(linear * 1000)[0]).max(axis=2)
+    assert np.median(off) <= 6 and np.mean(off > 12) < 0.12
+
+
+def test_nothing_else_is_written(shot, tmp_path):
+    stage = skinslide.preview  # the function, on an open stage
+    opened = Usd.Stage.Open(str(shot))
+    before = opened.GetRootLayer().ExportToString(), shot.read_bytes()
+    stage(opened, tmp_path / "out", size=SIZE, frames="1003")
+    assert (opened.GetRootLayer().ExportToString(), shot.read_bytes()) == before
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".png"}
+
+
+# ---- From where ----
+
+
+def test_a_camera_of_the_stage_is_used(tmp_path):
+    """A camera that looks past the mesh sees nothing of it; one that looks at it does; its animation counts."""
+    stage, _mesh = sheet()
+    camera = UsdGeom.Camera.Define(stage, "/World/cam")
+    translate = camera.AddTranslateOp()
+    translate.Set((0, 0, 2), 1001)
+    translate.Set((50, 0, 2), 1003)
+    camera.CreateFocalLengthAttr(35)
+    draw(stage, tmp_path, camera="/World/cam")
+    seen = [contrast(halves(picture(tmp_path, frame=frame))[0]) for frame in ("1001", "1003")]
+    assert seen[0] > 100 and seen[1] == 0
+
+
+@pytest.mark.parametrize("size", [(400, 300), (800, 300), (300, 400)])
+def test_a_camera_shows_its_own_view_in_every_picture(size, tmp_path):
+    """A sheet as wide and high as the camera's view is seen to its edges, on the shorter side of each half."""
+    stage, _mesh = sheet()
+    own = Gf.Camera(Gf.Matrix4d().SetTranslate((0, 0, 10)))
+    own.SetOrthographicFromAspectRatioAndSize(1.0, 1.0, Gf.Camera.FOVHorizontal)
+    UsdGeom.Camera.Define(stage, "/World/cam").SetFromCamera(own, Usd.TimeCode.Default())
+    draw(stage, tmp_path, camera="/World/cam", size=size, frames="1001")
+    left = picture(tmp_path, frame="1001")[:, : size[0] // 2].astype(int)
+    drawn = np.abs(left - [59, 59, 63]).sum(axis=2) > 12  # the background
+    side = min(size[0] // 2, size[1])
+    across = np.count_nonzero(drawn[size[1] // 2]), np.count_nonzero(drawn[:, size[0] // 4])  # past the titles
+    assert max(abs(count - side) for count in across) <= 3
+
+
+def test_following_frames_the_patch_anew(tmp_path):
+    """A mesh that flies away stays in the middle of the picture."""
+    stage, mesh = sheet()
+    UsdGeom.Xformable(mesh).AddTranslateOp().Set((30, 0, 0), 1003)
+    UsdGeom.Xformable(mesh).GetOrderedXformOps()[0].Set((0, 0, 0), 1001)
+    draw(stage, tmp_path, follow=True)
+    follow = [contrast(halves(picture(tmp_path, frame=frame))[0]) for frame in ("1001", "1003")]
+    draw(stage, tmp_path / "still")
+    still = np.mean(np.abs(np.diff(halves(picture(tmp_path / "still", frame="1001"))[0], axis=1)))
+    moved = np.mean(np.abs(np.diff(halves(picture(tmp_path, frame="1001"))[0], axis=1)))
+    assert min(follow) > 100 and moved > 2 * still
+
+
+def test_the_camera_does_not_depend_on_the_frames_drawn(shot, tmp_path):
+    draw(shot, tmp_path / "a", frames="1001-1002")
+    draw(shot, tmp_path / "b", frames="1002")
+    name = f"{NAME}.chequer.1002.png"
+    assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+# ---- What the chequer follows ----
+
+
+def test_without_st_the_chequer_is_at_rest_in_space(tmp_path):
+    stage, _mesh = sheet(st=False)
+    draw(stage, tmp_path, squares=16)
+    before, after = halves(picture(tmp_path))
+    assert contrast(before) > 100 and not np.array_equal(before, after)
+
+
+def test_a_named_primvar_must_be_there(tmp_path, capfd):
+    stage, _mesh = sheet()
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--st", "uv2", "--size", "64x64"]) == 3
+    assert f"{stages.MESH}: patch {PATCH}: there is no primvars:uv2" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize("fault", ["short", "index", "nan"])
+def test_bad_texture_coordinates(fault, tmp_path, capfd):
+    stage, mesh = sheet()
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st")
+    values = np.array(primvar.Get())
+    if fault == "short":
+        primvar.Set(Vt.Vec2fArray.FromNumpy(values[:-1]))
+    elif fault == "nan":
+        values[7] = np.nan
+        primvar.Set(Vt.Vec2fArray.FromNumpy(values))
+    else:
+        primvar.SetIndices(Vt.IntArray.FromNumpy(np.full(len(values), len(values), np.int32)))
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x64"]) == 3
+    said = capfd.readouterr().err
+    assert f"error: {stages.MESH}: patch {PATCH}: " in said and "st" in said
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+# ---- What cannot be ----
+
+
+def test_the_command_reports(shot, tmp_path, capfd):
+    out = str(tmp_path / "out")
+    assert main(["preview", str(shot), "-o", out, "--frames", "1003", "--size", "64x32", "--json", "--quiet"]) == 0
+    told = json.loads(capfd.readouterr().out)
+    assert sorted(os.listdir(out)) == sorted(os.path.basename(file) for file in told["files"])
+    assert told["device"] and told["meshes"][0]["patches"][0]["frames"][0]["frame"] == 1003
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--camera", "/World/none"], "camera /World/none: there is no such prim"),
+        (["--camera", "World"], "camera World: there is no such prim"),
+        (["--camera", "/World/char"], "camera /World/char: is a Xform, no Camera"),
+        (["--camera", "/World/char", "--follow"], "does not follow"),
+        (["--patch", "knee"], f"there is no patch knee; there are {PATCH}"),
+        (["--size", "0x10"], "width is 0"),
+        (["--size", "20000x20000"], "20000 by 20000 pixels"),
+        (["--size", "ten"], "not a size such as 1920x1080"),
+        (["--squares", "-1"], "squares is -1"),
+        (["--most-stretch", "nan"], "most_stretch is nan"),
+        (["--view", "wire"], "invalid choice"),
+    ],
+)
+def test_usage(words, message, shot, tmp_path, capfd):
+    assert main(["preview", str(shot), "-o", str(tmp_path / "out"), *words]) == 2
+    assert message in capfd.readouterr().err
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+def test_neither_folder_nor_page(shot, capfd):
+    assert main(["preview", str(shot)]) == 2
+    assert "no folder for pictures, and no page" in capfd.readouterr().err
+
+
+def test_a_page_that_cannot_be(shot, tmp_path, capfd):
+    for page in (tmp_path / "page.txt", tmp_path / "none" / "page.html", shot.with_suffix(".html") / "page.html"):
+        assert main(["preview", str(shot), "--html", str(page), "--size", "64x32"]) == 2
+        assert f"output {page}: " in capfd.readouterr().err
+
+
+def test_a_folder_that_cannot_be(shot, tmp_path, capfd):
+    (tmp_path / "file").write_text("")
+    for folder in (tmp_path / "file", tmp_path / "file" / "below", "/proc/none"):
+        assert main(["preview", str(shot), "-o", str(folder)]) == 2
+        assert f"output {folder}: " in capfd.readouterr().err
+
+
+def test_an_unwritable_folder(public_folder, capfd):
+    path = str(stages.save(sheet()[0], public_folder / "shot.usda"))
+    closed = public_folder / "closed"
+    closed.mkdir(mode=0o555)
+    with stages.as_nobody():
+        assert main(["preview", path, "-o", str(closed)]) == 2
+    assert f"output {closed}: is not writable" in capfd.readouterr().err
+
+
+def test_a_bad_frame_leaves_the_others_whole(tmp_path, capfd):
+    stage, mesh = sheet()
+    points = np.array(mesh.GetPointsAttr().Get(1003.0))
+    points[5] = np.nan
+    mesh.GetPointsAttr().Set(stages.vectors(points), 1003.0)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    out = tmp_path / "out"
+    camera = UsdGeom.Camera.Define(stage, "/World/cam")
+    camera.AddTranslateOp().Set((0, 0, 2))
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(out), "--size", "64x32", "--camera", "/World/cam"]) == 1
+    assert f"{stages.MESH}: frame 1003: " in capfd.readouterr().err
+    for file in out.iterdir():
+        Image.open(io.BytesIO(file.read_bytes())).load()
+
+
+def test_no_egl(shot, tmp_path):
+    """A machine whose EGL has no vendor at all."""
+    empty = tmp_path / "vendors"
+    empty.mkdir()
+    environment = {**os.environ, "__EGL_VENDOR_LIBRARY_DIRS": str(empty)}
+    command = [sys.executable, "-m", "skinslide", "preview", str(shot), "-o", str(tmp_path / "out")]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "no pictures can be drawn: no EGL device with OpenGL ES 3" in done.stderr
+    assert not (tmp_path / "out").exists()
