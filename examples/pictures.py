@@ -1,0 +1,59 @@
+"""Draws what rules do to a patch: the cache, then the slid skin by each rule, side by side, a row a view.
+
+usage: pictures.py PICTURE STAGE RULE[,RULE] VIEW[,VIEW]
+At the frame where the cache has most stretch. Pictures are JPEG, or PNG, by their name.
+"""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from pxr import Usd
+
+from skinslide.meshes import SlidMesh, read_meshes
+from skinslide.options import PictureOptions
+from skinslide.pictures import Canvas
+from skinslide.series import Column, Series
+
+COLUMN, HEIGHT = 480, 480
+MOST_STRETCH = 0.5
+
+
+def columns(mesh: SlidMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list[Column]:
+    """The cache, and what each rule makes of it."""
+    cached, controls, found = mesh.points_at(time), mesh.controls_at(time), []
+    for rule in rules:
+        slider = mesh.build([replace(mesh.patches[0], rule=rule)])
+        frame = slider.slide(cached, controls)
+        result, by_vertex = frame.patches[0], slider.diagnose(cached, frame.points, controls)
+        if not found:
+            found.append(Column("cache", cached, by_vertex.stretch_before, result.stretch_before))
+        found.append(Column(rule, frame.points, by_vertex.stretch_after, result.stretch_after))
+    return found
+
+
+def draw(path: Path, rules: Sequence[str], views: Sequence[str]) -> np.ndarray:
+    """The picture of a stage: uint8 (height, width, 3)."""
+    stage = Usd.Stage.Open(str(path))
+    mesh = read_meshes(stage)[0][0]
+    slider, size = mesh.slider(), (COLUMN * (1 + len(rules)), HEIGHT)
+    times = [Usd.TimeCode(time) for time in mesh.sample_times()]
+    worst = max(times, key=lambda time: slider.slide(mesh.points_at(time)).patches[0].stretch_before)
+    options = PictureOptions.checked(None, views, None, True, size, "png", None, None, MOST_STRETCH)
+    series = Series.of(mesh, slider, 0, options, columns=1 + len(rules))
+    canvas, shown = Canvas(*size), columns(mesh, worst, rules)
+    rows = [series.draw(canvas, view, series.moment(worst), shown, MOST_STRETCH) for view in views]
+    return np.concatenate(rows)[..., :3]
+
+
+def main() -> None:
+    picture, path, rules, views = sys.argv[1:]
+    Image.fromarray(draw(Path(path), rules.split(","), views.split(","))).save(picture, optimize=True, quality=88)
+    print(f"{picture}: the cache, {', '.join(rules.split(','))}")
+
+
+if __name__ == "__main__":
+    main()
