@@ -1,12 +1,14 @@
 /* Interpolation LIMIT: moves the cage so that the limit surface keeps its shape and only its parameters slide.
  *
- *     d = linear displacement;  twice:  r = (t - L Md) - L d,   d += argmin | L y - n (n.r) |
- *                                                                     y
- * A row of L has the weights with which free vertices make one sample of the limit surface: the limit points of the free
- * vertices, and the middles of the patch's faces, which keep the surface from ringing in between. t is the point of the limit
- * surface of Md at which the sample is looked up, a middle at the mean of its corners' queries, and n the normal there. L
- * depends on the mesh alone: it is factored once a shot. Taking the whole of r in place of its part along n would slide the
- * samples by exactly what was looked up, but rings where the slide changes within a few faces, and bunches the texture up.
+ * Samples of the limit surface are the limit points of the free vertices, and the middles of the patch's faces, which keep the
+ * surface from ringing in between. From the linear result, each is taken to the plane that touches the limit surface of Md where
+ * the sample is looked up, a middle at the mean of its corners' queries, while edges keep the length that linear gave them:
+ *
+ *     d = argmin  sum (n.(L d - (t - L Md)))^2 + E(edges)      in fit.c
+ *
+ * A row of L has the weights with which free vertices make a sample; t is the point looked up, and n the normal there. To take
+ * samples to t itself would slide them by exactly what was looked up, but rings where the slide changes within a few faces, and
+ * bunches the texture up. L depends on the mesh alone, and what is factored of it is so once a shot.
  *
  * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near each sample,
  * so that where the mesh is does not matter. */
@@ -29,21 +31,21 @@ struct ss_cage {
     const ss_patch *patch;
     bool loop; /* the scheme is */
     ss_surfaces *surfaces;
-    ss_sparse *factor;
+    ss_fit *fit;
     int32_t sample_count; /* free_count limit points, then face_count middles */
     sample *samples;
     int32_t *free_index; /* [vertex_count] place in free_vertex, -1 where held */
     ss_rows stencils;    /* [sample_count] columns are mesh vertices */
+    ss_rows free_rows;   /* [sample_count] L: of them those that are free, by place in free_vertex */
 };
 
 struct ss_cage_work {
     ss_memory memory;
     const ss_cage *cage;
-    ss_sparse_work *factor;
+    ss_fit_work *fit;
     ss_face_tree *tree;
-    double (*residual)[3]; /* [sample_count] r */
+    double (*residual)[3]; /* [sample_count] t - L Md */
     double (*normal)[3];   /* [sample_count] n */
-    double (*along)[3];    /* [sample_count] n (n.r) */
     double (*solution)[3]; /* [free_count] d */
     double *scratch;       /* [ss_surfaces_scratch] */
 };
@@ -130,8 +132,15 @@ static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
 }
 
 /* Drops the columns of held vertices, whose p - Md is 0. */
-static void restrict_to_free(const ss_cage *cage, ss_rows *rows) {
+static skinslide_status restrict_to_free(ss_cage *cage, skinslide_error *error) {
     const ss_rows *all = &cage->stencils;
+    ss_rows *rows = &cage->free_rows;
+    rows->row_count = all->row_count, rows->column_count = cage->patch->free_count;
+    rows->start = SS_NEW(&cage->memory, int32_t, (int64_t)all->row_count + 1);
+    rows->column = SS_NEW(&cage->memory, int32_t, all->start[all->row_count]);
+    rows->value = SS_NEW(&cage->memory, double, all->start[all->row_count]);
+    if (cage->memory.failed)
+        return ss_out_of_memory(error);
     for (int32_t s = 0, end = 0; s < all->row_count; s++) {
         for (int32_t k = all->start[s]; k < all->start[s + 1]; k++) {
             int32_t vertex = ss_patch_vertex(cage->patch, all->column[k]);
@@ -140,22 +149,7 @@ static void restrict_to_free(const ss_cage *cage, ss_rows *rows) {
         }
         rows->start[s + 1] = end;
     }
-}
-
-static skinslide_status factor(ss_cage *cage, skinslide_error *error) {
-    const ss_rows *all = &cage->stencils;
-    ss_memory scratch = {0};
-    ss_rows rows = {.row_count = all->row_count, .column_count = cage->patch->free_count};
-    rows.start = SS_NEW(&scratch, int32_t, (int64_t)all->row_count + 1);
-    rows.column = SS_NEW(&scratch, int32_t, all->start[all->row_count]);
-    rows.value = SS_NEW(&scratch, double, all->start[all->row_count]);
-    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    if (!status) {
-        restrict_to_free(cage, &rows);
-        status = ss_sparse_create(&rows, cage->patch->label, &cage->factor, error);
-    }
-    ss_free(&scratch);
-    return status;
+    return SKINSLIDE_OK;
 }
 
 /* ---- Creation ---- */
@@ -168,7 +162,9 @@ static skinslide_status build(ss_cage *cage, skinslide_error *error) {
         return ss_out_of_memory(error);
     list_samples(cage);
     skinslide_status status = list_stencils(cage, error);
-    return status ? status : factor(cage, error);
+    if (!status)
+        status = restrict_to_free(cage, error);
+    return status ? status : ss_fit_create(cage->patch, cage->free_index, &cage->free_rows, &cage->fit, error);
 }
 
 skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
@@ -191,7 +187,7 @@ skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *pat
 void ss_cage_destroy(ss_cage *cage) {
     if (!cage)
         return;
-    ss_sparse_destroy(cage->factor);
+    ss_fit_destroy(cage->fit);
     ss_surfaces_destroy(cage->surfaces);
     ss_free(&cage->memory);
     free(cage);
@@ -204,12 +200,11 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     work->cage = cage;
     work->residual = ss_new(&work->memory, cage->sample_count, sizeof *work->residual);
     work->normal = ss_new(&work->memory, cage->sample_count, sizeof *work->normal);
-    work->along = ss_new(&work->memory, cage->sample_count, sizeof *work->along);
     work->solution = ss_new(&work->memory, cage->patch->free_count, sizeof *work->solution);
     work->scratch = SS_NEW(&work->memory, double, ss_surfaces_scratch(cage->surfaces));
     skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_sparse_work_create(cage->factor, &work->factor, error);
+        status = ss_fit_work_create(cage->fit, &work->fit, error);
     if (!status)
         status = ss_face_tree_create(&cage->patch->faces, &work->tree, error);
     if (status)
@@ -223,7 +218,7 @@ void ss_cage_work_destroy(ss_cage_work *work) {
     if (!work)
         return;
     ss_face_tree_destroy(work->tree);
-    ss_sparse_work_destroy(work->factor);
+    ss_fit_work_destroy(work->fit);
     ss_free(&work->memory);
     free(work);
 }
@@ -281,30 +276,6 @@ static void list_targets(const ss_cage_work *work, const ss_pose *pose) {
         list_target(work, pose, s);
 }
 
-/* ---- The solve ---- */
-
-enum { PASSES = 2 }; /* more come nearer by little, and move vertices along the surface to do so */
-
-/* n (n.r); all of r where the surface has no normal. */
-static void list_along(const ss_cage_work *work) {
-    for (int32_t s = 0; s < work->cage->sample_count; s++) {
-        const double *n = work->normal[s], *r = work->residual[s];
-        double height = n[0] * r[0] + n[1] * r[1] + n[2] * r[2];
-        bool none = n[0] == 0 && n[1] == 0 && n[2] == 0;
-        for (int axis = 0; axis < 3; axis++)
-            work->along[s][axis] = none ? r[axis] : height * n[axis];
-    }
-}
-
-/* From the linear displacement, in solution. */
-static void solve(const ss_cage_work *work) {
-    ss_sparse_subtract(work->cage->factor, (const double(*)[3])work->solution, work->residual);
-    for (int pass = 0; pass < PASSES; pass++) {
-        list_along(work);
-        ss_sparse_correct(work->factor, (const double(*)[3])work->along, work->solution, work->residual);
-    }
-}
-
 /* ---- Damping ---- */
 
 static const double most_deviation = 0.5; /* of the mean edge of the face, between LIMIT and LINEAR */
@@ -351,7 +322,8 @@ int32_t ss_move_cage(ss_cage_work *work, const ss_pose *pose, double (*displacem
         return 0;
     memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
     list_targets(work, pose);
-    solve(work);
+    ss_fit_samples(work->fit, pose->points, (const double(*)[3])work->residual, (const double(*)[3])work->normal,
+                   work->solution);
     for (int32_t i = 0; i < count; i++)
         damped += take_damped(work->solution[i], bound(work->cage, pose, i), displacement[i]);
     return damped;

@@ -350,22 +350,37 @@ typedef struct ss_rows {
     double *value;
 } ss_rows;
 
-typedef struct ss_sparse ss_sparse;           /* A with A'A factored: immutable */
+typedef struct ss_sparse ss_sparse;           /* A'A, factored: immutable */
 typedef struct ss_sparse_work ss_sparse_work; /* one a thread */
 
-/* SINGULAR where the condition of A'A leaves too few digits. rows are copied; label begins messages. */
+/* SINGULAR where the condition of A'A leaves too few digits. rows are only read; label begins messages. */
 skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_sparse **out, skinslide_error *error);
 void ss_sparse_destroy(ss_sparse *sparse);
 skinslide_status ss_sparse_work_create(const ss_sparse *sparse, ss_sparse_work **out, skinslide_error *error);
 void ss_sparse_work_destroy(ss_sparse_work *work);
-/* Adds to x [column_count][3] the y of least |A y - b|, for b [row_count][3], and takes A y away from r [row_count][3]. */
-void ss_sparse_correct(ss_sparse_work *work, const double (*b)[3], double (*x)[3], double (*r)[3]);
-/* Takes A x away from r. */
-void ss_sparse_subtract(const ss_sparse *sparse, const double (*x)[3], double (*r)[3]);
+/* Puts x with A'A x = b in the place of each b of right: [count][column_count]. */
+void ss_sparse_solve(ss_sparse_work *work, double *right, int32_t count);
+
+/* ---- fit.c: the least squares of interpolation LIMIT ---- */
+
+typedef struct ss_fit ss_fit;           /* samples, edges and factors of a patch: immutable */
+typedef struct ss_fit_work ss_fit_work; /* one a thread */
+
+/* samples has a row for each sample of a surface, of the weights with which free vertices, its columns, make it: first, in the
+ * order of free_vertex, one near each free vertex. It is kept. free_index [vertex_count] is the place in free_vertex, or -1. */
+skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index, const ss_rows *samples, ss_fit **out,
+                               skinslide_error *error);
+void ss_fit_destroy(ss_fit *fit);
+skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinslide_error *error);
+void ss_fit_work_destroy(ss_fit_work *work);
+/* displacement [free_count]: in the linear one, out the one that brings each sample nearer to where it is to move by residual,
+ * along normal: unit, or 0 for in every direction. Both are [row_count]. points is the whole mesh's. */
+void ss_fit_samples(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*normal)[3],
+                    double (*displacement)[3]);
 
 /* ---- cage.c: interpolation LIMIT ---- */
 
-typedef struct ss_cage ss_cage;           /* limit surfaces and factor of a patch: immutable */
+typedef struct ss_cage ss_cage;           /* limit surfaces and samples of a patch: immutable */
 typedef struct ss_cage_work ss_cage_work; /* one a thread */
 
 /* One patch in one frame. */

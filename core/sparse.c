@@ -1,8 +1,8 @@
-/* Least squares with a sparse A that is factored once:
+/* The normal equations of a sparse A, factored once:
  *
- *     (A'A) x = A'b
+ *     (A'A) x = b
  *
- * for three right sides at a time. The only file that knows the solver: KLU (Davis and Palamadai Natarajan 2010). */
+ * The only file that knows the solver: KLU (Davis and Palamadai Natarajan 2010). */
 #include "internal.h"
 
 #include <klu.h>
@@ -10,8 +10,7 @@
 #include <string.h>
 
 struct ss_sparse {
-    ss_memory memory;
-    ss_rows rows; /* A */
+    int32_t column_count;
     klu_common common;
     klu_symbolic *symbolic;
     klu_numeric *numeric;
@@ -25,8 +24,6 @@ struct ss_sparse_work {
     const ss_sparse *sparse;
     klu_common common;
     klu_numeric numeric;
-    double *right;     /* [3][columns] */
-    double (*step)[3]; /* [columns] */
 };
 
 static const double worst_condition = 1e10; /* leaves six digits of a double, as many as a float has */
@@ -134,16 +131,6 @@ static skinslide_status factor(ss_sparse *sparse, const ss_rows *square, const c
     return common->condest < worst_condition ? SKINSLIDE_OK : refuse(sparse, label, error);
 }
 
-static void copy_rows(ss_memory *memory, const ss_rows *rows, ss_rows *out) {
-    size_t entries = (size_t)rows->start[rows->row_count];
-    new_rows(memory, rows->row_count, rows->column_count, rows->start[rows->row_count], out);
-    if (memory->failed)
-        return;
-    memcpy(out->start, rows->start, ((size_t)rows->row_count + 1) * sizeof *rows->start);
-    memcpy(out->column, rows->column, entries * sizeof *rows->column);
-    memcpy(out->value, rows->value, entries * sizeof *rows->value);
-}
-
 skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_sparse **out, skinslide_error *error) {
     ss_sparse *sparse = calloc(1, sizeof *sparse);
     if (!sparse)
@@ -151,9 +138,9 @@ skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_spa
     product square = {0};
     klu_defaults(&sparse->common);
     sparse->common.btf = 0; /* it permutes rows alone, and off the diagonal of A'A pivots are small */
-    copy_rows(&sparse->memory, rows, &sparse->rows);
-    skinslide_status status = sparse->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    if (!status && rows->column_count > 0)
+    sparse->column_count = rows->column_count;
+    skinslide_status status = SKINSLIDE_OK;
+    if (rows->column_count > 0)
         status = multiply(rows, label, &square, error);
     if (!status && rows->column_count > 0)
         status = factor(sparse, &square.square, label, error);
@@ -170,7 +157,6 @@ void ss_sparse_destroy(ss_sparse *sparse) {
         return;
     klu_free_numeric(&sparse->numeric, &sparse->common); /* both take NULL */
     klu_free_symbolic(&sparse->symbolic, &sparse->common);
-    ss_free(&sparse->memory);
     free(sparse);
 }
 
@@ -180,11 +166,9 @@ skinslide_status ss_sparse_work_create(const ss_sparse *sparse, ss_sparse_work *
         return ss_out_of_memory(error);
     work->sparse = sparse;
     work->common = sparse->common;
-    work->right = SS_NEW(&work->memory, double, 3 * (int64_t)sparse->rows.column_count);
-    work->step = ss_new(&work->memory, sparse->rows.column_count, sizeof *work->step);
     if (sparse->numeric) {
         work->numeric = *sparse->numeric;
-        work->numeric.Xwork = SS_NEW(&work->memory, double, 4 * (int64_t)sparse->rows.column_count);
+        work->numeric.Xwork = SS_NEW(&work->memory, double, 4 * (int64_t)sparse->column_count);
     }
     if (work->memory.failed) {
         ss_sparse_work_destroy(work);
@@ -201,35 +185,8 @@ void ss_sparse_work_destroy(ss_sparse_work *work) {
     free(work);
 }
 
-void ss_sparse_subtract(const ss_sparse *sparse, const double (*x)[3], double (*r)[3]) {
-    const ss_rows *rows = &sparse->rows;
-    for (int32_t i = 0; i < rows->row_count; i++)
-        for (int32_t k = rows->start[i]; k < rows->start[i + 1]; k++)
-            for (int axis = 0; axis < 3; axis++)
-                r[i][axis] -= rows->value[k] * x[rows->column[k]][axis];
-}
-
-/* right [3][columns] = A'b */
-static void multiply_transposed(const ss_rows *rows, const double (*b)[3], double *right) {
-    int64_t n = rows->column_count;
-    for (int64_t i = 0; i < 3 * n; i++)
-        right[i] = 0;
-    for (int32_t i = 0; i < rows->row_count; i++)
-        for (int32_t k = rows->start[i]; k < rows->start[i + 1]; k++)
-            for (int axis = 0; axis < 3; axis++)
-                right[axis * n + rows->column[k]] += rows->value[k] * b[i][axis];
-}
-
-void ss_sparse_correct(ss_sparse_work *work, const double (*b)[3], double (*x)[3], double (*r)[3]) {
-    int32_t n = work->sparse->rows.column_count;
-    if (n == 0)
-        return;
-    multiply_transposed(&work->sparse->rows, b, work->right);
-    klu_solve(work->sparse->symbolic, &work->numeric, n, 3, work->right, &work->common);
-    for (int32_t j = 0; j < n; j++)
-        for (int axis = 0; axis < 3; axis++) {
-            work->step[j][axis] = work->right[(int64_t)axis * n + j];
-            x[j][axis] += work->step[j][axis];
-        }
-    ss_sparse_subtract(work->sparse, (const double(*)[3])work->step, r);
+void ss_sparse_solve(ss_sparse_work *work, double *right, int32_t count) {
+    int32_t n = work->sparse->column_count;
+    if (n > 0)
+        klu_solve(work->sparse->symbolic, &work->numeric, n, count, right, &work->common);
 }

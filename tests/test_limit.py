@@ -246,7 +246,7 @@ def test_damped_vertices_are_reported(tmp_path):
 # ---- the examples ----
 
 
-@pytest.mark.parametrize("example", ["bump", "fine_elbow"])
+@pytest.mark.parametrize("example", ["bump", "elbow", "fine_elbow"])
 def test_the_limit_surface_keeps_its_shape(tmp_path, example):
     """Five times as well as with linear, at its largest and on average, and with no more than 5 % more stretch."""
     measure = load("limit_distance.py")
