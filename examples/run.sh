@@ -19,6 +19,14 @@ say "What they show"
 "$python" "$root/examples/table.py" "$out"
 printf '\n%s: %s\n' "$out/shot/shot.usda, played live" "$(tail -n 2 "$out/shot/play.txt" | head -n 1)"
 
+say "Pictures"
+"$venv/bin/skinslide" preview "$out/elbow/stage.usda" -o "$out/elbow/pictures" --html "$out/elbow/report.html" --quiet
+"$venv/bin/skinslide" preview "$out/elbow/stage.usda" -o "$out/elbow/pictures" --view chequer 2>/dev/null | tail -n 2
+"$python" "$root/examples/pictures.py" "$out/elbow.jpg" "$out/elbow/stage.usda" unit chequer
+for example in sleeve face; do
+    "$python" "$root/examples/pictures.py" "$out/$example.jpg" "$out/$example/stage.usda" unit,relaxed chequer,stretch
+done
+
 say "Lookup by colour-ID rendering"
 "$python" "$root/examples/lookup.py" "$out"
 
