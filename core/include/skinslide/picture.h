@@ -152,8 +152,8 @@ typedef struct skinslide_map_canvas skinslide_map_canvas;
 /* Makes a canvas for maps. Its context is current only within calls, as a workspace's is (see skinslide_workspace_create).
  *   side    texels along each side, 1 to 16384 and within the device's limit
  *   device  as in skinslide_workspace_options
- * Fails with BAD_ARGUMENT (no such side or device, above the device's limit), NO_DEVICE (names all that was tried), DEVICE_FAILED,
- * OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (no such side or device, above the device's limit), NO_DEVICE (names all that was tried),
+ * DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_map_canvas_create(int32_t side, int32_t device, skinslide_map_canvas **out,
                                                            skinslide_error *error);
 
@@ -161,9 +161,9 @@ SKINSLIDE_API skinslide_status skinslide_map_canvas_create(int32_t side, int32_t
 SKINSLIDE_API void skinslide_map_canvas_destroy(skinslide_map_canvas *canvas);
 
 /* Draws values of a mesh's vertices over one tile of its texture: linearly over the triangles of each face's fan. A texel is
- * covered where its centre is in a triangle. Then four times each texel that is not covered but touches covered ones, at a corner
- * too, takes their mean and counts as covered, so that bilinear samples at the border of a chart find its values. What is left is
- * 0. Faces with corners in several tiles are drawn in each of these.
+ * covered where its centre is in a triangle. Then four times each texel that is not covered but touches covered ones, at a
+ * corner too, takes their mean and counts as covered, so that bilinear samples at the border of a chart find its values. What
+ * is left is 0. Faces with corners in several tiles are drawn in each of these.
  *   tile          1001 + u + 10 v; 1001 where the texture is no UDIM
  *   values        in  [vertex_count] of the mesh
  *   texels        out [side][side] from the top row on, with (0, 0) of the tile at the lower left corner
