@@ -79,7 +79,7 @@ typedef struct scene {
     skinslide_patch_setup setups[2];
     skinslide_controls controls[2];
     painted paint;
-    float *points, *slid, *normals;
+    float *points, *slid, *slide, *normals;
 } scene;
 
 /* Two set-ups, of two pieces and holes, painted by the frame, with edges. */
@@ -94,14 +94,14 @@ static void make_scene(scene *s) {
     s->controls[0] = s->controls[1] = s->paint.controls;
     s->controls[0].edges = edges, s->controls[0].edge_density = factors, s->controls[0].edge_count = 1;
     s->points = random_pose(&s->mesh, 1);
-    s->slid = malloc(POINT_BYTES(&s->mesh));
+    s->slid = malloc(POINT_BYTES(&s->mesh)), s->slide = malloc(POINT_BYTES(&s->mesh));
     s->normals = calloc((size_t)s->mesh.index_count, sizeof(float[3]));
     memcpy(s->slid, s->points, POINT_BYTES(&s->mesh));
     free_mesh(&sheet), free_mesh(&holed);
 }
 
 static void free_scene(scene *s) {
-    free(s->faces), free(s->points), free(s->slid), free(s->normals);
+    free(s->faces), free(s->points), free(s->slid), free(s->slide), free(s->normals);
     free_painted(&s->paint);
     free_mesh(&s->mesh);
 }
@@ -120,12 +120,15 @@ static skinslide_status run_all(scene *s, skinslide_error *error) {
     skinslide_workspace *workspace = NULL;
     const skinslide_limit_place place = {5, 0.5f, 0.5f};
     float point[3];
+    const skinslide_diagnostics diagnostics = {.slide = s->slide};
     skinslide_mesh view = view_of_scene(s);
     skinslide_status status = skinslide_slider_create(&view, s->setups, 2, &slider, error);
     if (!status)
         status = skinslide_workspace_create(slider, &options, &workspace, error);
     if (!status)
         status = skinslide_slide(workspace, s->points, s->controls, s->slid, NULL, error);
+    if (!status)
+        status = skinslide_diagnose(slider, s->controls, NULL, s->points, s->slid, &diagnostics, error);
     if (!status)
         status = skinslide_normals(&view, s->points, s->slid, SKINSLIDE_NORMALS_FACE_VARYING, 0, s->normals, error);
     if (!status)

@@ -365,6 +365,28 @@ SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_wor
 SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
                                                              uint32_t *texels, skinslide_error *error);
 
+/* ---- What a slide did, by vertex ------------------------------------------------------------------------------------------ */
+
+/* For pictures and maps. Edges count that are of a patch, each once. Any of the arrays may be NULL: it is not wanted. */
+typedef struct skinslide_diagnostics {
+    float *stretch_before; /* out [vertex_count] RMS over the edges at the vertex of log(length / rest length), in the cache */
+    float *stretch_after;  /* out [vertex_count] and in the result; 0 at vertices of no patch */
+    float *slide;          /* out [vertex_count] distance of slid from cached, object units */
+    float *force_density;  /* out [vertex_count] the painted one: mean over the edges of a patch at the vertex, and over the
+                              patches where they overlap; 1 at vertices of none */
+} skinslide_diagnostics;
+
+/* Measures one frame.
+ *   controls     in  [setup_count] as for skinslide_slide; NULL: the set-ups' own
+ *   chosen       in  [setup_count] 0 for set-ups whose patches do not count; NULL: all do
+ *   cached       in  [vertex_count][3] the points before sliding
+ *   slid         in  [vertex_count][3] after
+ *   diagnostics  in, its arrays out
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite: names the vertex), BAD_CONTROL, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinslide_controls *controls,
+                                                  const uint8_t *chosen, const float *cached, const float *slid,
+                                                  const skinslide_diagnostics *diagnostics, skinslide_error *error);
+
 /* ---- The limit surface ---------------------------------------------------------------------------------------------------- */
 
 /* A place on a limit surface. Every face of n vertices is n quads, one a corner, that meet at its middle: s goes from the

@@ -1,0 +1,151 @@
+/* What a slide did, vertex by vertex, for maps and primvars that artists look at. With e over the edges at vertex v that are of a
+ * patch, each once whatever patches it is in, and paint k_e:
+ *
+ *     stretch(v) = sqrt(mean of log^2(length_e / rest length_e))     the report's measure, about one vertex
+ *     slide(v)   = |slid(v) - cached(v)|
+ *     density(v) = mean of k_e over the edges of a patch; where patches overlap, the mean of theirs
+ */
+#include "slider.h"
+
+#include <math.h>
+
+/* Sums of one mesh vertex. */
+typedef struct tally {
+    double before, after; /* of log^2 over its edges */
+    double density;       /* of its means over patches */
+    int32_t edge_count, patch_count;
+} tally;
+
+typedef struct diagnosis {
+    ss_memory memory;
+    const skinslide_slider *slider;
+    const skinslide_controls *controls;
+    const uint8_t *chosen;
+    tally *tallies;         /* [vertex_count] */
+    double *before, *after; /* [most edges of a patch] lengths */
+    double *own_paint;      /* [most edges] */
+    double *paint_sum;      /* [most vertices] over the edges of one patch */
+    int32_t *degree;        /* [most vertices] those edges */
+} diagnosis;
+
+static bool counts(const diagnosis *d, int32_t part) {
+    return !d->chosen || d->chosen[d->slider->parts[part].patch->setup_index];
+}
+
+static skinslide_status allocate(diagnosis *d, skinslide_error *error) {
+    int32_t most_edges = 0, most_vertices = 0;
+    for (int32_t p = 0; p < d->slider->part_count; p++) {
+        const ss_patch *patch = d->slider->parts[p].patch;
+        most_edges = patch->faces.edge_count > most_edges ? patch->faces.edge_count : most_edges;
+        most_vertices = patch->vertex_count > most_vertices ? patch->vertex_count : most_vertices;
+    }
+    d->tallies = SS_NEW(&d->memory, tally, d->slider->vertex_count);
+    d->before = SS_NEW(&d->memory, double, most_edges);
+    d->after = SS_NEW(&d->memory, double, most_edges);
+    d->own_paint = SS_NEW(&d->memory, double, most_edges);
+    d->paint_sum = SS_NEW(&d->memory, double, most_vertices);
+    d->degree = SS_NEW(&d->memory, int32_t, most_vertices);
+    return d->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+}
+
+static void count_patches(diagnosis *d) {
+    for (int32_t p = 0; p < d->slider->part_count; p++) {
+        const ss_patch *patch = d->slider->parts[p].patch;
+        for (int32_t v = 0; counts(d, p) && v < patch->vertex_count; v++)
+            d->tallies[patch->mesh_vertex[v]].patch_count++;
+    }
+}
+
+/* Whether a patch before this one has the edge between two mesh vertices, too. */
+static bool counted_before(const diagnosis *d, int32_t part, int32_t first, int32_t second) {
+    if (d->tallies[first].patch_count < 2 || d->tallies[second].patch_count < 2)
+        return false;
+    for (int32_t p = 0; p < part; p++) {
+        const ss_patch *patch = d->slider->parts[p].patch;
+        int32_t a = ss_patch_vertex(patch, first), b = ss_patch_vertex(patch, second);
+        if (counts(d, p) && a >= 0 && b >= 0 && ss_patch_edge(patch, a, b) >= 0)
+            return true;
+    }
+    return false;
+}
+
+static double squared_stretch(double length, double rest) {
+    double stretch = log(length / rest);
+    return stretch * stretch;
+}
+
+static void add_stretch(diagnosis *d, int32_t part, const float *cached, const float *slid) {
+    const ss_patch *patch = d->slider->parts[part].patch;
+    ss_edge_lengths(patch, cached, d->before);
+    ss_edge_lengths(patch, slid, d->after);
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        int32_t ends[2] = {patch->mesh_vertex[patch->edge_vertex[e][0]], patch->mesh_vertex[patch->edge_vertex[e][1]]};
+        if (counted_before(d, part, ends[0], ends[1]))
+            continue;
+        for (int k = 0; k < 2; k++) {
+            tally *at = &d->tallies[ends[k]];
+            at->before += squared_stretch(d->before[e], patch->rest_length[e]);
+            at->after += squared_stretch(d->after[e], patch->rest_length[e]);
+            at->edge_count++;
+        }
+    }
+}
+
+static void add_density(diagnosis *d, int32_t part) {
+    const ss_patch *patch = d->slider->parts[part].patch;
+    const double *paint = d->slider->parts[part].paint;
+    if (d->controls) {
+        ss_paint(patch, &d->controls[patch->setup_index], d->own_paint);
+        paint = d->own_paint;
+    }
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        d->paint_sum[v] = 0, d->degree[v] = 0;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        for (int k = 0; k < 2; k++) {
+            d->paint_sum[patch->edge_vertex[e][k]] += paint[e];
+            d->degree[patch->edge_vertex[e][k]]++;
+        }
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        d->tallies[patch->mesh_vertex[v]].density += d->paint_sum[v] / d->degree[v];
+}
+
+static void write_vertex(const tally *at, const float *cached, const float *slid, int32_t v, const skinslide_diagnostics *out) {
+    double edges = at->edge_count > 0 ? at->edge_count : 1, way[3];
+    for (int k = 0; k < 3; k++)
+        way[k] = (double)slid[3 * (int64_t)v + k] - cached[3 * (int64_t)v + k];
+    if (out->stretch_before)
+        out->stretch_before[v] = (float)sqrt(at->before / edges);
+    if (out->stretch_after)
+        out->stretch_after[v] = (float)sqrt(at->after / edges);
+    if (out->slide)
+        out->slide[v] = (float)ss_length(way);
+    if (out->force_density)
+        out->force_density[v] = at->patch_count > 0 ? (float)(at->density / at->patch_count) : 1;
+}
+
+skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinslide_controls *controls, const uint8_t *chosen,
+                                    const float *cached, const float *slid, const skinslide_diagnostics *diagnostics,
+                                    skinslide_error *error) {
+    if (!slider || !cached || !slid || !diagnostics)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, points, or place for the diagnostics");
+    skinslide_status status = ss_check_points(cached, slider->vertex_count, "cached points", error);
+    if (!status)
+        status = ss_check_points(slid, slider->vertex_count, "slid points", error);
+    if (!status && controls)
+        status = ss_check_frame_controls(slider, controls, error);
+    if (status)
+        return status;
+    diagnosis d = {.slider = slider, .controls = controls, .chosen = chosen};
+    status = allocate(&d, error);
+    if (!status)
+        count_patches(&d);
+    for (int32_t p = 0; !status && p < slider->part_count; p++)
+        if (counts(&d, p)) {
+            add_stretch(&d, p, cached, slid);
+            add_density(&d, p);
+        }
+    for (int32_t v = 0; !status && v < slider->vertex_count; v++)
+        write_vertex(&d.tallies[v], cached, slid, v, diagnostics);
+    ss_free(&d.memory);
+    return status;
+}
