@@ -9,22 +9,6 @@
 
 enum { MOST_SIDE = 16384, MOST_PIXELS = 1 << 26, SAMPLES = 4 };
 
-/* ---- Entering and leaving ---- */
-
-skinslide_status ss_canvas_enter(const skinslide_canvas *canvas, ss_egl_before *before, skinslide_error *error) {
-    if (ss_egl_enter(canvas->egl, before))
-        return SKINSLIDE_OK;
-    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "eglMakeCurrent: %s", ss_egl_error_name(before->failure));
-}
-
-skinslide_status ss_canvas_leave(const skinslide_canvas *canvas, const ss_egl_before *before, const char *what,
-                                 skinslide_error *error) {
-    char failure[64];
-    bool did = ss_gl_did(&canvas->egl->api, failure, sizeof failure);
-    ss_egl_leave(canvas->egl, before);
-    return did ? SKINSLIDE_OK : ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s: %s", what, failure);
-}
-
 /* ---- Colours ---- */
 
 void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]) {
@@ -95,7 +79,7 @@ static skinslide_status make_framebuffers(skinslide_canvas *canvas, skinslide_er
 
 static skinslide_status make_objects(skinslide_canvas *canvas, skinslide_error *error) {
     ss_egl_before before;
-    skinslide_status status = ss_canvas_enter(canvas, &before, error);
+    skinslide_status status = ss_gl_enter(canvas->egl, &before, error);
     if (status)
         return status;
     status = check_limits(canvas, error);
@@ -103,7 +87,7 @@ static skinslide_status make_objects(skinslide_canvas *canvas, skinslide_error *
         status = make_framebuffers(canvas, error);
     if (!status)
         status = ss_figure_objects_create(&canvas->egl->api, &canvas->objects, error);
-    skinslide_status left = ss_canvas_leave(canvas, &before, "making a canvas", status ? NULL : error);
+    skinslide_status left = ss_gl_leave(canvas->egl, &before, "making a canvas", status ? NULL : error);
     return status ? status : left;
 }
 
@@ -155,7 +139,7 @@ skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float co
     ss_egl_before before;
     if (!canvas || !colour)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no colour");
-    skinslide_status status = ss_canvas_enter(canvas, &before, error);
+    skinslide_status status = ss_gl_enter(canvas->egl, &before, error);
     if (status)
         return status;
     const ss_egl_api *gl = &canvas->egl->api;
@@ -165,7 +149,7 @@ skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float co
     gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
     gl->glClearBufferfv(GL_COLOR, 0, all);
     gl->glClearBufferfv(GL_DEPTH, 0, &farthest);
-    return ss_canvas_leave(canvas, &before, "clearing a canvas", error);
+    return ss_gl_leave(canvas->egl, &before, "clearing a canvas", error);
 }
 
 /* OpenGL has the lowest row first. */
@@ -183,7 +167,7 @@ skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, s
     int32_t width = canvas->width, height = canvas->height;
     size_t row_size = (size_t)width * 4 * (floats ? sizeof(float) : 1);
     uint8_t *rows = ss_new(&scratch, height, row_size);
-    skinslide_status status = rows ? ss_canvas_enter(canvas, &before, error) : ss_out_of_memory(error);
+    skinslide_status status = rows ? ss_gl_enter(canvas->egl, &before, error) : ss_out_of_memory(error);
     if (!status) {
         const ss_egl_api *gl = &canvas->egl->api;
         gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->drawn);
@@ -191,7 +175,7 @@ skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, s
         gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
         gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->resolved);
         gl->glReadPixels(0, 0, width, height, GL_RGBA, floats ? GL_FLOAT : GL_UNSIGNED_BYTE, rows);
-        status = ss_canvas_leave(canvas, &before, "reading a canvas", error);
+        status = ss_gl_leave(canvas->egl, &before, "reading a canvas", error);
     }
     if (!status)
         turn_over(rows, height, row_size, pixels);

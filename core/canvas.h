@@ -25,11 +25,6 @@ struct skinslide_canvas {
 /* The context is current. */
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);
 
-/* Makes the canvas's context current; DEVICE_FAILED where it cannot. */
-skinslide_status ss_canvas_enter(const skinslide_canvas *canvas, ss_egl_before *before, skinslide_error *error);
-/* What was current is again. Fails with DEVICE_FAILED where the device did since the enter. */
-skinslide_status ss_canvas_leave(const skinslide_canvas *canvas, const ss_egl_before *before, const char *what,
-                                 skinslide_error *error);
 /* What a colour of linear light is in the canvas's pixels. */
 void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]);
 /* Tests give loaders that fail. */

@@ -1,5 +1,5 @@
 /* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, program.c, what
- * draws (idbuffer.c, canvas.c) and their tests. */
+ * draws (idbuffer.c, canvas.c, mapdraw.c) and their tests. */
 #ifndef SKINSLIDE_EGL_H
 #define SKINSLIDE_EGL_H
 
@@ -137,6 +137,10 @@ void ss_egl_leave(const ss_egl *egl, const ss_egl_before *before);
 const char *ss_egl_error_name(EGLint code);
 /* Whether the device did all that it was asked for since the context was entered; else says what it did not. */
 bool ss_gl_did(const ss_egl_api *gl, char *failure, size_t size);
+/* ss_egl_enter; DEVICE_FAILED where it fails. */
+skinslide_status ss_gl_enter(const ss_egl *egl, ss_egl_before *before, skinslide_error *error);
+/* What was current is again. DEVICE_FAILED where the device did not do all since the enter: what begins the message. */
+skinslide_status ss_gl_leave(const ss_egl *egl, const ss_egl_before *before, const char *what, skinslide_error *error);
 /* Whether the context, which is current, has an extension. */
 bool ss_gl_has(const ss_egl_api *gl, const char *extension);
 /* Links a program, capturing the outputs [captured_count] of its vertex shader where there are any. */

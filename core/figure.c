@@ -274,7 +274,7 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
     status = ss_tessellation_work_allocate(figure->tessellation, &work) ? SKINSLIDE_OK : ss_out_of_memory(error);
     if (!status) {
         ss_tessellate(figure->tessellation, figure->points, figure->values, origin, &work);
-        status = ss_canvas_enter(canvas, &before, error);
+        status = ss_gl_enter(canvas->egl, &before, error);
     }
     if (!status) {
         const ss_egl_api *gl = &canvas->egl->api;
@@ -282,7 +282,7 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
         gl->glViewport(viewport->x, viewport->y, viewport->width, viewport->height);
         draw_surface(canvas, figure, &view, &work);
         draw_outline(canvas, viewport, figure->tessellation, &view, &work, ends);
-        status = ss_canvas_leave(canvas, &before, "drawing a figure", error);
+        status = ss_gl_leave(canvas->egl, &before, "drawing a figure", error);
     }
     ss_free(&work.memory);
     return status;

@@ -232,6 +232,11 @@ void ss_locator_destroy(ss_locator *locator);
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
                      const ss_candidates *candidates, ss_location *locations);
 
+/* ---- map.c ---- */
+
+/* UDIM tiles, numbered by rows of ten; the rows that have room in four digits and the one after. */
+enum { SS_FIRST_TILE = 1001, SS_TILE_COLUMNS = 10, SS_TILE_ROWS = 900 };
+
 /* ---- egl.c: the only file that knows EGL ---- */
 
 /* Fills the table of EGL's and OpenGL ES's functions (egl.h); where it cannot, says why. Tests give tables that fail. */

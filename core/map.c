@@ -3,10 +3,6 @@
 
 #include <math.h>
 
-#define FIRST_TILE   1001
-#define TILE_COLUMNS 10
-#define TILE_ROWS    900 /* the numbers of UDIM tiles have four digits */
-
 /* Faces of a mesh, and where their corners begin. */
 typedef struct corners {
     const skinslide_mesh *mesh;
@@ -58,10 +54,10 @@ static skinslide_status face_tiles(const corners *c, int32_t face, int32_t *tile
     for (int32_t i = begin; i < end; i++) {
         const float *st = c->st + 2 * (int64_t)i;
         double column = tile_of(st[0], middle[0]), row = tile_of(st[1], middle[1]);
-        if (column < 0 || column >= TILE_COLUMNS || row < 0 || row >= TILE_ROWS)
+        if (column < 0 || column >= SS_TILE_COLUMNS || row < 0 || row >= SS_TILE_ROWS)
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g), which is in no UDIM tile", face, st[0],
                            st[1]);
-        tiles[i] = FIRST_TILE + (int32_t)column + TILE_COLUMNS * (int32_t)row;
+        tiles[i] = SS_FIRST_TILE + (int32_t)column + SS_TILE_COLUMNS * (int32_t)row;
     }
     return SKINSLIDE_OK;
 }
@@ -134,8 +130,8 @@ static double sample_tile(const skinslide_map_tile *tile, const float st[2]) {
         return sample(tile->image, st[0], st[1]);
     skinslide_image image = *tile->image;
     image.wrap_s = image.wrap_t = SKINSLIDE_WRAP_CLAMP;
-    int32_t place = tile->number - FIRST_TILE;
-    return sample(&image, st[0] - (double)(place % TILE_COLUMNS), st[1] - (double)(place / TILE_COLUMNS));
+    int32_t place = tile->number - SS_FIRST_TILE;
+    return sample(&image, st[0] - (double)(place % SS_TILE_COLUMNS), st[1] - (double)(place / SS_TILE_COLUMNS));
 }
 
 /* Adds the samples of a face's corners to their vertices: sum and count. */
@@ -164,7 +160,7 @@ static skinslide_status check_tiles(const skinslide_map_tile *tiles, int32_t til
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tiles");
     for (int32_t k = 0; k < tile_count; k++) {
         const skinslide_image *image = tiles[k].image;
-        bool numbered = tiles[k].number >= FIRST_TILE && tiles[k].number < FIRST_TILE + TILE_COLUMNS * TILE_ROWS;
+        bool numbered = tiles[k].number >= SS_FIRST_TILE && tiles[k].number < SS_FIRST_TILE + SS_TILE_COLUMNS * SS_TILE_ROWS;
         if (!numbered && (tiles[k].number != 0 || tile_count != 1))
             return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has the number %d", k, tiles[k].number);
         if (!image || image->width < 1 || image->height < 1 || !image->pixels ||

@@ -10,6 +10,19 @@ bool ss_gl_did(const ss_egl_api *gl, char *failure, size_t size) {
     return !code && !reset;
 }
 
+skinslide_status ss_gl_enter(const ss_egl *egl, ss_egl_before *before, skinslide_error *error) {
+    if (ss_egl_enter(egl, before))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "eglMakeCurrent: %s", ss_egl_error_name(before->failure));
+}
+
+skinslide_status ss_gl_leave(const ss_egl *egl, const ss_egl_before *before, const char *what, skinslide_error *error) {
+    char failure[64];
+    bool did = ss_gl_did(&egl->api, failure, sizeof failure);
+    ss_egl_leave(egl, before);
+    return did ? SKINSLIDE_OK : ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s: %s", what, failure);
+}
+
 static void attach_shader(const ss_egl_api *gl, GLuint program, GLenum kind, const char *source) {
     GLuint shader = gl->glCreateShader(kind);
     gl->glShaderSource(shader, 1, &source, NULL);

@@ -1,5 +1,6 @@
 /* Each allocation fails in turn: OUT_OF_MEMORY, nothing written, nothing lost. The linker sends the core's calloc and free here
  * (--wrap); the solver's ordering takes its functions from SuiteSparse_config. */
+#include "skinslide/picture.h"
 #include "support.h"
 
 #include <SuiteSparse_config.h>
@@ -167,7 +168,9 @@ static skinslide_status run_images(const float *pixels, skinslide_error *error) 
     skinslide_bytes *made = NULL;
     skinslide_image *image = NULL;
     int32_t tiles[3];
-    float values[3];
+    float values[3], texels[16];
+    const skinslide_charts charts = {&mesh, faces, 1, st};
+    skinslide_map_canvas *canvas = NULL;
     skinslide_status status = skinslide_exr_encode(channels, 2, SIDE, SIDE, SKINSLIDE_WRAP_CLAMP, &made, error);
     if (!status)
         status = skinslide_exr_decode(made->data, made->size, "G", &image, error);
@@ -176,6 +179,11 @@ static skinslide_status run_images(const float *pixels, skinslide_error *error) 
     const skinslide_map_tile tile = {image, 0};
     if (!status)
         status = skinslide_map_sample(&mesh, faces, 1, st, &tile, 1, values, error);
+    if (!status)
+        status = skinslide_map_canvas_create(4, SKINSLIDE_ANY_DEVICE, &canvas, error);
+    if (!status)
+        status = skinslide_map_draw(canvas, &charts, 1001, values, texels, NULL, error);
+    skinslide_map_canvas_destroy(canvas);
     skinslide_image_destroy(image);
     skinslide_bytes_destroy(made);
     return status;

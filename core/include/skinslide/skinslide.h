@@ -382,7 +382,8 @@ typedef struct skinslide_diagnostics {
  *   cached       in  [vertex_count][3] the points before sliding
  *   slid         in  [vertex_count][3] after
  *   diagnostics  in, its arrays out
- * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite: names the vertex), BAD_CONTROL, OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite: names the vertex), BAD_CONTROL,
+ * OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinslide_controls *controls,
                                                   const uint8_t *chosen, const float *cached, const float *slid,
                                                   const skinslide_diagnostics *diagnostics, skinslide_error *error);
