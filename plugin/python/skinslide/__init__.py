@@ -19,6 +19,7 @@ from skinslide.report import BakeReport
 from skinslide.setup import setup
 from skinslide.slider import (
     Controls,
+    Diagnostics,
     Frame,
     Lookup,
     LookupInfo,
@@ -53,6 +54,7 @@ def plugin_dir() -> str:
 __all__ = [
     "BakeReport",
     "Controls",
+    "Diagnostics",
     "Frame",
     "FrameProblem",
     "FrameSpecError",

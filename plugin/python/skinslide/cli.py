@@ -92,6 +92,7 @@ def _bake(arguments: argparse.Namespace) -> Result:
             progress=progress,
             max_folded=arguments.max_folded,
             max_clamped=arguments.max_clamped,
+            diagnostics=arguments.diagnostics,
         )
     if arguments.json:
         return as_json({"stage": arguments.stage, "output": arguments.output, **report.as_dict()}), DONE
@@ -245,6 +246,30 @@ def _lookup(arguments: argparse.Namespace) -> Lookup:
     return Lookup(arguments.lookup, device, arguments.egl_resolution)
 
 
+def _add_frames(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--frames",
+        metavar="SPEC",
+        help="frames to write, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
+        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
+    )
+
+
+def _add_jobs(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--jobs",
+        type=_positive,
+        default=_processors(),
+        metavar="N",
+        help="frames slid at once; the result is the same (default: the processors, here %(default)s)",
+    )
+
+
+def _add_printing(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+
+
 def _add_bake(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
     command.add_argument(
@@ -257,20 +282,9 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
         "leaves a partial file beside it, which the next bake of OUT removes when it is a day old",
     )
     _add_prims(command)
-    command.add_argument(
-        "--frames",
-        metavar="SPEC",
-        help="frames to write, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
-        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
-    )
+    _add_frames(command)
     _add_lookup(command)
-    command.add_argument(
-        "--jobs",
-        type=_positive,
-        default=_processors(),
-        metavar="N",
-        help="frames slid at once; the result is the same (default: the processors, here %(default)s)",
-    )
+    _add_jobs(command)
     limits = {"folded": "faces turned over in its embedding", "clamped": "vertices looked up outside every face"}
     for option, what in limits.items():
         command.add_argument(
@@ -279,8 +293,13 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
             metavar="N",
             help=f"fail, and write nothing, where a patch has more than N {what} at a frame",
         )
-    command.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+    command.add_argument(
+        "--diagnostics",
+        action="store_true",
+        help="write two primvars by vertex beside the points: primvars:skinSlide:stretch, the RMS of log(length / rest "
+        "length) over the edges of patches at the vertex, slid; and primvars:skinSlide:slide, how far it slid",
+    )
+    _add_printing(command)
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:

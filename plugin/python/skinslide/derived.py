@@ -21,6 +21,7 @@ class Solved(NamedTuple):
     cached: np.ndarray
     slid: np.ndarray
     patches: tuple[slider.PatchResult, ...]
+    diagnostics: slider.Diagnostics | None  # where they are asked for
 
 
 Solutions = Mapping[Usd.TimeCode, Solved]

@@ -20,6 +20,7 @@ class BakeOptions:
     jobs: int
     max_folded: int | None
     max_clamped: int | None
+    diagnostics: bool
 
     @classmethod
     def checked(
@@ -28,8 +29,9 @@ class BakeOptions:
         frames: Frames,
         lookup: str | Lookup,
         jobs: int,
-        max_folded: int | None,
-        max_clamped: int | None,
+        max_folded: int | None = None,
+        max_clamped: int | None = None,
+        diagnostics: bool = False,
     ) -> "BakeOptions":
         """Raises UsageError for what cannot be."""
         try:
@@ -40,13 +42,14 @@ class BakeOptions:
             prims=[prims] if isinstance(prims, str) else None if prims is None else [str(prim) for prim in prims],
             frames=None if frames is None else checked_frames(frames),
             lookup=Lookup.of(lookup),
-            jobs=_whole("jobs", jobs, 1),
-            max_folded=None if max_folded is None else _whole("max_folded", max_folded, 0),
-            max_clamped=None if max_clamped is None else _whole("max_clamped", max_clamped, 0),
+            jobs=whole_number("jobs", jobs, 1),
+            max_folded=None if max_folded is None else whole_number("max_folded", max_folded, 0),
+            max_clamped=None if max_clamped is None else whole_number("max_clamped", max_clamped, 0),
+            diagnostics=bool(diagnostics),
         )
 
 
-def _whole(name: str, number: int, least: int) -> int:
+def whole_number(name: str, number: int, least: int) -> int:
     try:
         whole = operator.index(number)
     except TypeError as error:
