@@ -4,8 +4,8 @@
  * a pattern that no number has. So coverage costs no memory of its own, and no device lacks what it takes.
  *
  * A triangle's three corners and values go to the fragment shader as they are, relative to a texel near them, and the value at
- * a texel's centre comes from barycentric coordinates found there: the device's own interpolation loses digits with the distance
- * from the texture's corner and with the triangle's thinness.
+ * a texel's centre comes from barycentric coordinates found there: the device's own interpolation loses digits with the
+ * distance from the texture's corner and with the triangle's thinness.
  *
  * Then DILATION passes from one texture into the other: each uncovered texel that touches covered ones, along a side or at a
  * corner, takes their mean. Only the texels near what was drawn are gone over and read. */

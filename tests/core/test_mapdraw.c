@@ -339,8 +339,8 @@ static void a_face_across_tiles_is_in_both(void **state) {
     free_scene(&s);
 }
 
-/* Faces of 1/3 texel: of nine along a side three have a centre in them. A long face a hundredth of a texel high has none, unless it
- * lies on one. */
+/* Faces of 1/3 texel: of nine along a side three have a centre in them. A long face a hundredth of a texel high has none,
+ * unless it lies on one. */
 static void faces_without_a_texel_are_counted(void **state) {
     (void)state;
     scene s;

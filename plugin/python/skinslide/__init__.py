@@ -1,7 +1,8 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
 `bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `setup` writes a
-patch, `paint` its edges, `mirror` its counterpart on a mesh's other side; `Slider` is the same on numpy arrays.
+patch, `paint` its edges, `mirror` its counterpart on a mesh's other side, `maps` draws what a slide did; `Slider` is
+the same on numpy arrays.
 """
 
 from pathlib import Path
@@ -12,6 +13,7 @@ from skinslide import fileformat
 from skinslide.bake import bake, bake_to_file
 from skinslide.check import check
 from skinslide.frames import FrameSpecError, UsageError, parse_frames
+from skinslide.maps import MapsReport, maps
 from skinslide.mirror import mirror
 from skinslide.paint import PaintReport, paint
 from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
@@ -60,6 +62,7 @@ __all__ = [
     "FrameSpecError",
     "Lookup",
     "LookupInfo",
+    "MapsReport",
     "PaintReport",
     "PatchSetup",
     "Problem",
@@ -75,6 +78,7 @@ __all__ = [
     "check",
     "choose_lookup",
     "cmake_dir",
+    "maps",
     "mirror",
     "paint",
     "parse_frames",

@@ -170,6 +170,28 @@ def _mirror(arguments: argparse.Namespace) -> Result:
     return f"{report.text()}\n{arguments.output}: written", DONE
 
 
+def _maps(arguments: argparse.Namespace) -> Result:
+    from skinslide.maps import maps
+    from skinslide.progress import reporter
+
+    with reporter(quiet=arguments.quiet) as progress:
+        report = maps(
+            arguments.stage,
+            arguments.folder,
+            prims=arguments.prim,
+            patches=arguments.patch,
+            frames=arguments.frames,
+            size=arguments.size,
+            st=arguments.st,
+            lookup=_lookup(arguments),
+            jobs=arguments.jobs,
+            progress=progress,
+        )
+    if arguments.json:
+        return as_json({"stage": arguments.stage, "folder": arguments.folder, **report.as_dict()}), DONE
+    return "" if arguments.quiet else report.text(), DONE
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="skinslide",
@@ -183,6 +205,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_setup(_add_command(commands, "setup", _setup, "write a layer that makes a patch of some faces of a mesh"))
     _add_paint(_add_command(commands, "paint", _paint, "write a layer that gives edges of a patch a force density"))
     _add_mirror(_add_command(commands, "mirror", _mirror, "write a layer that copies a patch to a mesh's other side"))
+    _add_maps(_add_command(commands, "maps", _maps, "draw stretch, slide and force density in texture coordinates"))
     _add_stitch(_add_command(commands, "stitch", _stitch, "put chunks of frames, baked apart, into one layer"))
     return parser
 
@@ -374,6 +397,42 @@ def _add_mirror(command: argparse.ArgumentParser) -> None:
         metavar="D",
         help="how far a point may be from its counterpart's mirror image (default: 1e-4 of the mesh's largest extent)",
     )
+
+
+def _add_maps(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
+    command.add_argument(
+        "-o",
+        "--output",
+        dest="folder",
+        required=True,
+        metavar="DIR",
+        help="folder for the maps, made where it is missing: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where "
+        "faces reach beyond the first tile of a UDIM. KIND is stretchBefore and stretchAfter (the RMS of log(length / "
+        "rest length) over the edges at a point), slide (distance, in the mesh's units) and forceDensity (as painted). "
+        "One channel, Y. A map is replaced in one step, so one that fails or is killed leaves it as it was",
+    )
+    _add_prims(command)
+    command.add_argument(
+        "--patch",
+        action="append",
+        metavar="NAME",
+        help="draw the faces of patch NAME only, though all slide; may be given again (default: every patch)",
+    )
+    _add_frames(command)
+    command.add_argument(
+        "--size", type=_positive, default=1024, metavar="N", help="texels along each side, 1 to 16384 (default: 1024)"
+    )
+    command.add_argument(
+        "--st",
+        default="st",
+        metavar="NAME",
+        help="the primvar with texture coordinates, in which the maps are drawn and carried on for 4 texels beyond; "
+        "where faces overlap in it, as with mirrored halves, the later in the mesh is seen (default: st)",
+    )
+    _add_lookup(command)
+    _add_jobs(command)
+    _add_printing(command)
 
 
 def _add_stitch(command: argparse.ArgumentParser) -> None:

@@ -70,6 +70,30 @@ def check_not_read(output: Path, stage: Usd.Stage) -> None:
     _refuse(output, [layer.realPath for layer in stage.GetUsedLayers()])
 
 
+class Inputs:
+    """The files that a stage may read, in whatever variant and clip, for a folder of outputs."""
+
+    def __init__(self, stage: Usd.Stage, *others: str | os.PathLike):
+        self._stage = stage
+        self._known = _identities([*map(os.fspath, others), *_dependencies(stage)])
+
+    def refuse(self, output: Path) -> None:
+        """Raises UsageError where the output is one of them, or one that the stage has read so far."""
+        found = _identities([str(output)])
+        if found and found & (self._known | _identities([layer.realPath for layer in self._stage.GetUsedLayers()])):
+            raise UsageError(f"output {output}: the stage reads this file; name another folder")
+
+
+def _identities(files: Sequence[str]) -> set[tuple[int, int]]:
+    """Of those that are there: whatever they are called, and through links."""
+    found = set()
+    for file in files:
+        with suppress(OSError, ValueError):
+            status = os.stat(file)
+            found.add((status.st_dev, status.st_ino))
+    return found
+
+
 def _refuse(output: Path, files: Sequence[str]) -> None:
     for file in files:
         with suppress(OSError):  # what cannot be looked at cannot be read either
