@@ -592,3 +592,21 @@ def test_a_folder_that_goes_away(tmp_path, shot):
     with pytest.raises(StageError, match=f"output {tmp_path / 'maps'}: .*File exists"):
         maps(shot, tmp_path / "maps", size=8, progress=replace)
     assert len(files(tmp_path / "moved")) == 4
+
+
+@pytest.mark.parametrize(("number", "code", "word"), [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "ended")])
+def test_an_ended_command_leaves_whole_files(number, code, word, tmp_path, shot):
+    program = f"""
+        import os, signal, sys
+        from skinslide import cli, progress
+        def end(done, total):
+            os.kill(os.getpid(), signal.{number})
+        progress._lines = lambda: end
+        sys.exit(cli.main(["maps", sys.argv[1], "-o", sys.argv[2], "--size", "64", "--jobs", "2"]))
+    """
+    command = [sys.executable, "-c", textwrap.dedent(program), str(shot), str(tmp_path / "maps")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == code and word in done.stderr
+    assert done.stderr.endswith(f"; every map in {tmp_path / 'maps'} is whole\n")
+    assert sorted(files(tmp_path / "maps")) == sorted(f"skin_GEO.{kind}.1001.exr" for kind in KINDS)
+    assert all(decode_exr(data).pixels.shape == (64, 64) for data in files(tmp_path / "maps").values())

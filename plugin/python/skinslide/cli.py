@@ -72,6 +72,8 @@ def _state(arguments: argparse.Namespace) -> tuple | None:
 
 
 def _outcome(arguments: argparse.Namespace, before: tuple | None) -> str:
+    if hasattr(arguments, "folder"):
+        return f"; every map in {arguments.folder} is whole"
     if not hasattr(arguments, "output"):
         return ""
     return "; nothing was written" if _state(arguments) == before else f" after {arguments.output} was written"

@@ -127,7 +127,7 @@ def replacing(output: Path) -> Iterator[Path]:
     """A new file that becomes `output` when the block ends. An exception or a signal leaves `output` as it was."""
     output = output.resolve()
     partial = output.with_name(partial_name(output, secrets.token_hex(4)))
-    with _signals_as_exceptions():
+    with signals_as_exceptions():
         try:
             with writing(output):
                 _remove_abandoned(output)
@@ -173,7 +173,7 @@ def _flush(file: Path) -> None:
 
 
 @contextmanager
-def _signals_as_exceptions() -> Iterator[None]:
+def signals_as_exceptions() -> Iterator[None]:
     """Lets `finally` run when the farm ends the process: SIGTERM and SIGHUP become SystemExit."""
     if threading.current_thread() is not threading.main_thread():
         yield

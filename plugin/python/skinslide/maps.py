@@ -19,6 +19,7 @@ from typing import Any
 
 from pxr import Usd
 
+from skinslide.files import signals_as_exceptions
 from skinslide.frames import UsageError
 from skinslide.mapfiles import MapFolder, check_frames
 from skinslide.meshmaps import KINDS, Canvases, MapOptions, MeshMaps, WrittenMap
@@ -86,16 +87,17 @@ def maps(
     report = MapsReport(list(plan.problems), folder=str(folder), size=options.size)
     frame_count = sum(mesh.frame_count for mesh in meshes)
     pool = ThreadPoolExecutor(min(options.bake.jobs, frame_count), "skinslide")
-    try:
-        for mesh in meshes:
-            report.meshes.append(mesh.report)
-            for written in mesh.run(canvases, pool):
-                report.maps.extend(written)
-                if progress:
-                    progress(report.frame_count, frame_count)
-            report.warnings.extend(mesh.problems())
-    finally:
-        pool.shutdown(cancel_futures=True)
+    with signals_as_exceptions():
+        try:
+            for mesh in meshes:
+                report.meshes.append(mesh.report)
+                for written in mesh.run(canvases, pool):
+                    report.maps.extend(written)
+                    if progress:
+                        progress(report.frame_count, frame_count)
+                report.warnings.extend(mesh.problems())
+        finally:
+            pool.shutdown(cancel_futures=True)
     return report
 
 

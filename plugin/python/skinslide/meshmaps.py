@@ -49,6 +49,9 @@ class MapOptions:
         return self.patches is None or patch.name in self.patches
 
 
+_MOST_TEXELS = 1 << 28  # drawn at once: each takes some twenty bytes
+
+
 class Canvases:
     """A canvas for each thread that draws, made when it is needed; the first at once, so that its faults show."""
 
@@ -56,6 +59,7 @@ class Canvases:
         """Raises UsageError where there is no EGL, or where it has no such size."""
         self._size, self._device = size, device
         self._lock = threading.Lock()
+        self._room = threading.Semaphore(max(1, _MOST_TEXELS // max(size, 1) ** 2))
         try:
             self._idle = [MapCanvas(size, device)]
         except SliderError as error:
@@ -66,14 +70,15 @@ class Canvases:
 
     @contextmanager
     def taken(self) -> Iterator[MapCanvas]:
-        with self._lock:
-            canvas = self._idle.pop() if self._idle else None
-        canvas = canvas or MapCanvas(self._size, self._device)
-        try:
-            yield canvas
-        finally:
+        with self._room:
             with self._lock:
-                self._idle.append(canvas)
+                canvas = self._idle.pop() if self._idle else None
+            canvas = canvas or MapCanvas(self._size, self._device)
+            try:
+                yield canvas
+            finally:
+                with self._lock:
+                    self._idle.append(canvas)
 
 
 class WrittenMap(NamedTuple):
@@ -157,9 +162,7 @@ class MeshMaps:
     def problems(self) -> list[Problem]:
         """What is missing in the maps."""
         most, frame = max(self._missed, key=lambda each: each[0])
-        message = (
-            f"{most} faces are so small or thin that no texel's centre is in them; a larger size draws more"
-        )
+        message = f"{most} faces are so small or thin that no texel's centre is in them; a larger size draws more"
         return [Problem("warning", self._mesh.path, None, frame, message)] if most else []
 
     def _drawn_patches(self) -> list[PatchSetup]:
