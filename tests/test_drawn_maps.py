@@ -459,6 +459,21 @@ def test_texture_coordinates_that_go_bad(tmp_path):
     assert (moved[0] != moved[1]).any()
 
 
+def test_texture_coordinates_that_move_over_a_mesh_that_does_not(tmp_path):
+    """Which has one map, at the first of them."""
+    stage = stages.new_stage()
+    mesh = stages.add_mesh(stage, stages.grid(), frames=[])
+    stages.add_patch(mesh, stages.grid().all_faces)
+    for frame, shift in zip(FRAMES, (0, 0.05, 0.1), strict=True):
+        value = [Gf.Vec2f(*pair) for pair in (sheet_st() + shift).tolist()]
+        stages.set_primvar(mesh, "moving", Types.TexCoord2fArray, "vertex", value, frame)
+    maps(stages.save(stage, tmp_path / "shot.usda"), tmp_path / "maps", size=20, st="moving")
+    assert sorted(files(tmp_path / "maps")) == sorted(f"skin_GEO.{kind}.exr" for kind in KINDS)
+    maps(stages.save(sheet()[0], tmp_path / "still.usda"), tmp_path / "still", size=20, frames=[1001])
+    names = ("maps/skin_GEO.forceDensity.exr", "still/skin_GEO.forceDensity.1001.exr")
+    np.testing.assert_array_equal(*(read(tmp_path / name) for name in names))
+
+
 def test_a_bad_frame(tmp_path):
     stage, mesh = sheet()
     mesh.GetPointsAttr().Set(stages.vectors(np.full((49, 3), np.nan)), FRAMES[1])

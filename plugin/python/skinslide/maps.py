@@ -50,8 +50,13 @@ class MapsReport(BakeReport):
             for kind in KINDS:
                 drawn = [written for written in self.maps if (written.prim, written.kind) == (mesh.path, kind)]
                 low, high = min(each.lowest for each in drawn), max(each.highest for each in drawn)
-                lines.append(f"{mesh.path}: {kind}: {len(drawn)} maps, {low:.4g} to {high:.4g}")
-        return "\n".join([*lines, f"{self.folder}: {len(self.maps)} maps of {self.size} x {self.size} texels written"])
+                lines.append(f"{mesh.path}: {kind}: {_maps(len(drawn))}, {low:.4g} to {high:.4g}")
+        written = f"{self.folder}: {_maps(len(self.maps))} of {self.size} x {self.size} texels written"
+        return "\n".join([*lines, written])
+
+
+def _maps(count: int) -> str:
+    return f"{count} map{'s' * (count != 1)}"
 
 
 def maps(
@@ -68,6 +73,9 @@ def maps(
     progress: Progress | None = None,
 ) -> MapsReport:
     """Writes maps of stretch before and after, slide distance and force density over the faces of patches.
+
+    Each is an OpenEXR file of one channel, Y. Force density is that of paint, maps and edges, without what is constant,
+    which changes nothing; painting by such a map gives the same densities again, but for what an edge blurs.
 
     stage     a path, or a stage; never written
     folder    made where it is missing. Files are MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where the faces reach

@@ -133,7 +133,7 @@ class MeshMaps:
         self.frame_count = len(self._times)
         try:
             self._st = _read_st(mesh, options.st)
-            self._corners_at(FIRST)
+            self._first = self._corners_at(FIRST)
         except Fault as fault:
             raise StageProblems([mesh.problem(str(fault), FIRST)]) from fault
         except FrameProblem as bad:
@@ -141,7 +141,7 @@ class MeshMaps:
 
     def check_files(self) -> None:
         """Raises UsageError for a file that cannot be written."""
-        _, tiles = self._corners_at(FIRST)
+        _, tiles = self._first
         for time in self._times:
             for name in _map_names(tiles, time):
                 self._place.check(self._place.path(self._mesh.prim.GetPath(), name))
@@ -170,7 +170,8 @@ class MeshMaps:
 
     def _read(self, time: Usd.TimeCode) -> _Frame:
         points, controls = self._mesh.points_at(time), self._mesh.controls_at(time)
-        corners, tiles = self._corners_at(time)
+        changes = self._st.varies and not time.IsDefault()
+        corners, tiles = self._corners_at(time) if changes else self._first
         return _Frame(points, controls, corners, _map_names(tiles, time))
 
     def _draw(self, frame: _Frame, canvases: Canvases) -> _Drawn:
