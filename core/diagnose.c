@@ -1,5 +1,5 @@
-/* What a slide did, vertex by vertex, for maps and primvars that artists look at. With e over the edges at vertex v that are of a
- * patch, each once whatever patches it is in, and paint k_e:
+/* What a slide did, vertex by vertex, for maps and primvars that artists look at. With e over the edges at vertex v that are of
+ * a patch, each once whatever patches it is in, and paint k_e:
  *
  *     stretch(v) = sqrt(mean of log^2(length_e / rest length_e))     the report's measure, about one vertex
  *     slide(v)   = |slid(v) - cached(v)|

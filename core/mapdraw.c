@@ -4,8 +4,8 @@
  * a pattern that no number has. So coverage costs no memory of its own, and no device lacks what it takes.
  *
  * A triangle's three corners and values go to the fragment shader as they are, relative to a texel near them, and the value at
- * a texel's centre comes from barycentric coordinates found there: the device's own interpolation loses digits with the distance
- * from the texture's corner and with the triangle's thinness.
+ * a texel's centre comes from barycentric coordinates found there: the device's own interpolation loses digits with the
+ * distance from the texture's corner and with the triangle's thinness.
  *
  * Then DILATION passes from one texture into the other: each uncovered texel that touches covered ones, along a side or at a
  * corner, takes their mean. Only the texels near what was drawn are gone over and read. */
@@ -68,26 +68,25 @@ static const char draw_vertex[] = "#version 300 es\n"
                                   "}\n";
 
 /* A device that takes a centre just outside for inside must not extrapolate. */
-static const char draw_fragment[] =
-    "#version 300 es\n"
-    "precision highp float;\n"
-    "flat in highp vec4 ab;\n"
-    "flat in highp vec4 c_origin;\n"
-    "flat in highp vec3 values;\n"
-    "layout(location = 0) out highp uint texel;\n"
-    "float cross_of(vec2 a, vec2 b) {\n"
-    "    return a.x * b.y - a.y * b.x;\n"
-    "}\n"
-    "void main() {\n"
-    "    vec2 p = gl_FragCoord.xy - c_origin.zw - ab.xy;\n"
-    "    vec2 b = ab.zw - ab.xy, c = c_origin.xy - ab.xy;\n"
-    "    float area = cross_of(b, c), inverse = abs(area) > 1e-30 ? 1.0 / area : 0.0;\n"
-    "    float at_b = cross_of(p, c) * inverse, at_c = cross_of(b, p) * inverse;\n"
-    "    float value = values.x + at_b * (values.y - values.x) + at_c * (values.z - values.x);\n"
-    "    float low = min(values.x, min(values.y, values.z));\n"
-    "    float high = max(values.x, max(values.y, values.z));\n"
-    "    texel = floatBitsToUint(clamp(value, low, high));\n"
-    "}\n";
+static const char draw_fragment[] = "#version 300 es\n"
+                                    "precision highp float;\n"
+                                    "flat in highp vec4 ab;\n"
+                                    "flat in highp vec4 c_origin;\n"
+                                    "flat in highp vec3 values;\n"
+                                    "layout(location = 0) out highp uint texel;\n"
+                                    "float cross_of(vec2 a, vec2 b) {\n"
+                                    "    return a.x * b.y - a.y * b.x;\n"
+                                    "}\n"
+                                    "void main() {\n"
+                                    "    vec2 p = gl_FragCoord.xy - c_origin.zw - ab.xy;\n"
+                                    "    vec2 b = ab.zw - ab.xy, c = c_origin.xy - ab.xy;\n"
+                                    "    float area = cross_of(b, c), inverse = abs(area) > 1e-30 ? 1.0 / area : 0.0;\n"
+                                    "    float at_b = cross_of(p, c) * inverse, at_c = cross_of(b, p) * inverse;\n"
+                                    "    float value = (1.0 - at_b - at_c) * values.x + at_b * values.y + at_c * values.z;\n"
+                                    "    float low = min(values.x, min(values.y, values.z));\n"
+                                    "    float high = max(values.x, max(values.y, values.z));\n"
+                                    "    texel = floatBitsToUint(clamp(value, low, high));\n"
+                                    "}\n";
 
 /* One triangle over everything. */
 static const char dilate_vertex[] =
@@ -96,6 +95,7 @@ static const char dilate_vertex[] =
     "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
     "}\n";
 
+/* Of eighths, so that no sum is too large; and no mean lies outside what it is of, however sums round. */
 static const char dilate_fragment[] = "#version 300 es\n"
                                       "precision highp float;\n"
                                       "precision highp int;\n"
@@ -106,18 +106,21 @@ static const char dilate_fragment[] = "#version 300 es\n"
                                       "    texel = texelFetch(texels, here, 0).r;\n"
                                       "    if (texel != 0xffffffffu)\n"
                                       "        return;\n"
-                                      "    ivec2 low = max(here - 1, 0), high = min(here + 1, last);\n"
-                                      "    float sum = 0.0, count = 0.0;\n"
-                                      "    for (int y = low.y; y <= high.y; y++)\n"
-                                      "        for (int x = low.x; x <= high.x; x++) {\n"
+                                      "    ivec2 from = max(here - 1, 0), to = min(here + 1, last);\n"
+                                      "    float sum = 0.0, count = 0.0, low = 0.0, high = 0.0;\n"
+                                      "    for (int y = from.y; y <= to.y; y++)\n"
+                                      "        for (int x = from.x; x <= to.x; x++) {\n"
                                       "            uint other = texelFetch(texels, ivec2(x, y), 0).r;\n"
                                       "            if (other != 0xffffffffu) {\n"
-                                      "                sum += uintBitsToFloat(other);\n"
-                                      "                count += 1.0;\n"
+                                      "                float value = uintBitsToFloat(other);\n"
+                                      "                low = count > 0.0 ? min(low, value) : value;\n"
+                                      "                high = count > 0.0 ? max(high, value) : value;\n"
+                                      "                sum += 0.125 * value;\n"
+                                      "                count += 0.125;\n"
                                       "            }\n"
                                       "        }\n"
                                       "    if (count > 0.0)\n"
-                                      "        texel = floatBitsToUint(sum / count);\n"
+                                      "        texel = floatBitsToUint(clamp(sum / count, low, high));\n"
                                       "}\n";
 
 /* ---- Creation ---- */

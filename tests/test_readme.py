@@ -41,7 +41,9 @@ def python_snippets():
 
 def shell_commands():
     """The lines of indented blocks, and inline code, that call the tool."""
-    return re.findall(r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|bake|stitch) [^`\n]*)", README, re.MULTILINE)
+    return re.findall(
+        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|bake|maps|stitch) [^`\n]*)", README, re.MULTILINE
+    )
 
 
 def test_readme_is_short():

@@ -53,8 +53,8 @@ static void two_quads_by_hand(void **state) {
     free_mesh(&mesh);
 }
 
-/* A patch of the left quad alone: vertex 1 has 0-1 and 1-4, and 2 and 5 none. Edge 0-1 counts three times: vertices 0 and 1 each
- * take the mean of 3 and 1. */
+/* A patch of the left quad alone: vertex 1 has 0-1 and 1-4, and 2 and 5 none. Edge 0-1 counts three times: vertices 0 and 1
+ * each take the mean of 3 and 1. */
 static void what_is_off_the_patch_by_hand(void **state) {
     (void)state;
     static const int32_t edge[2] = {1, 0};
@@ -171,7 +171,8 @@ static void overlapping_patches(void **state) {
     free_mesh(&mesh);
 }
 
-/* Each edge is at two vertices: twice the edges times the report's square is the sum over vertices of their edges times theirs. */
+/* Each edge is at two vertices: twice the edges times the report's square is the sum over vertices of their edges times theirs.
+ */
 static void adds_up_to_the_report(void **state) {
     (void)state;
     for (int32_t i = 0; i < FIXTURE_COUNT; i++) {

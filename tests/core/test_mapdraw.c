@@ -211,6 +211,38 @@ static void a_constant_is_drawn_bit_for_bit(void **state) {
     free_scene(&s);
 }
 
+/* Faces without area, large ones, small ones, values as large as floats are: nothing comes out that did not go in. */
+static void awkward_faces(void **state) {
+    (void)state;
+    enum { SIDE = 48 };
+    dice d = {17};
+    skinslide_map_canvas *canvas = canvas_of(SIDE);
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        scene s;
+        fill_scene(&s, quad_grid(4, 4), seed);
+        double size = pow(10, roll_between(&d, -9, 0.5)), low = 0;
+        float lowest = INFINITY, highest = -INFINITY;
+        for (int32_t v = 0; v < s.mesh.vertex_count; v++) {
+            for (int k = 0; k < 2; k++)
+                low = floor(roll_share(&d) * SIDE) / SIDE,
+                s.mesh.points[3 * v + k] = (float)(seed % 3 ? low + size * roll_share(&d) : (low + 0.5 / SIDE));
+            s.values[v] = (float)roll_between(&d, -1, 1) * (seed % 2 ? 3.4e38f : 1e-3f);
+            lowest = fminf(lowest, s.values[v]), highest = fmaxf(highest, s.values[v]);
+        }
+        read_points(&s);
+        for (int32_t c = 4; c < 8; c++) /* one face on a line, and one in a point */
+            s.st[2 * c] = 0.5f, s.st[2 * c + 8] = s.st[2 * c + 9] = 0.5f + 0.5f / SIDE;
+        int32_t missed;
+        float *texels = draw_on(canvas, SIDE, &s, 1001, &missed);
+        for (int32_t i = 0; i < SIDE * SIDE; i++)
+            assert_true(texels[i] == 0 || (texels[i] >= lowest && texels[i] <= highest));
+        assert_in_range(missed, 0, s.mesh.face_count);
+        free(texels);
+        free_scene(&s);
+    }
+    skinslide_map_canvas_destroy(canvas);
+}
+
 /* ---- Dilation ---- */
 
 /* The rule on the host: each of four times, texels that touch covered ones take their mean. */
@@ -339,8 +371,8 @@ static void a_face_across_tiles_is_in_both(void **state) {
     free_scene(&s);
 }
 
-/* Faces of 1/3 texel: of nine along a side three have a centre in them. A long face a hundredth of a texel high has none, unless it
- * lies on one. */
+/* Faces of 1/3 texel: of nine along a side three have a centre in them. A long face a hundredth of a texel high has none,
+ * unless it lies on one. */
 static void faces_without_a_texel_are_counted(void **state) {
     (void)state;
     scene s;
@@ -505,6 +537,7 @@ int main(void) {
         cmocka_unit_test(slivers_far_from_the_corner),
         cmocka_unit_test(the_top_row_comes_first),
         cmocka_unit_test(a_constant_is_drawn_bit_for_bit),
+        cmocka_unit_test(awkward_faces),
         cmocka_unit_test(dilation_by_the_rule),
         cmocka_unit_test(four_texels_and_no_further),
         cmocka_unit_test(the_later_face_wins),

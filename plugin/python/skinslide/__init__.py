@@ -1,8 +1,8 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `stitch` puts chunks of a bake together, `preview` draws before and after, `check` says what
-would be slid, `setup` writes a patch, `paint` its edges, `mirror` its counterpart on a mesh's other side; `Slider` is
-the same on numpy arrays.
+`bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `preview` draws it
+before and after, `maps` in texture coordinates; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on
+a mesh's other side. `Slider` is the same on numpy arrays.
 """
 
 from pathlib import Path
@@ -13,6 +13,7 @@ from skinslide import fileformat
 from skinslide.bake import bake, bake_to_file
 from skinslide.check import check
 from skinslide.frames import FrameSpecError, UsageError, parse_frames
+from skinslide.maps import MapsReport, maps
 from skinslide.mirror import mirror
 from skinslide.paint import PaintReport, paint
 from skinslide.preview import PreviewReport, preview
@@ -21,6 +22,7 @@ from skinslide.report import BakeReport
 from skinslide.setup import setup
 from skinslide.slider import (
     Controls,
+    Diagnostics,
     Frame,
     Lookup,
     LookupInfo,
@@ -55,11 +57,13 @@ def plugin_dir() -> str:
 __all__ = [
     "BakeReport",
     "Controls",
+    "Diagnostics",
     "Frame",
     "FrameProblem",
     "FrameSpecError",
     "Lookup",
     "LookupInfo",
+    "MapsReport",
     "PaintReport",
     "PatchSetup",
     "PreviewReport",
@@ -76,6 +80,7 @@ __all__ = [
     "check",
     "choose_lookup",
     "cmake_dir",
+    "maps",
     "mirror",
     "paint",
     "parse_frames",

@@ -7,31 +7,35 @@ for each mesh:
     for each time in order, and the times beside it that velocities need, each once, several at once:
         points and controls at that time       read on this thread
         slide                                  on a thread of the pool
-    for each time in order: author points, extent, normals, velocities, accelerations
+    for each time in order: author points, extent, normals, velocities, accelerations, and diagnostics where asked for
 put the layer in place                         or author it all into the stage's edit target
 """
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.derived import Derived
+from skinslide.ahead import work_ahead
+from skinslide.derived import Derived, Solved
 from skinslide.earlier import replacing_earlier_bake
 from skinslide.files import check_not_input, check_output
 from skinslide.frames import UsageError
-from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.options import Frames, Limits, SlideOptions
+from skinslide.meshes import SlidMesh
+from skinslide.names import SLIDE, STRETCH
+from skinslide.options import BakeOptions, Frames
 from skinslide.output import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
-from skinslide.problems import FrameProblem, Problem, StageProblems, errors
+from skinslide.plan import Plan, PlannedMesh, frame_of
+from skinslide.problems import FrameProblem, Problem, StageProblems
 from skinslide.progress import Progress
 from skinslide.report import BakeReport, MeshReport
 from skinslide.slider import Lookup, Slider
-from skinslide.solving import Solved, Solver, build_sliders, frame_of, times_of
 from skinslide.stage import open_stage
+
+# Primvars, each with the field of skinslide.slider.Diagnostics that it holds.
+DIAGNOSTICS = {STRETCH: "stretch_after", SLIDE: "slide"}
 
 
 def bake_to_file(
@@ -45,6 +49,7 @@ def bake_to_file(
     progress: Progress | None = None,
     max_folded: int | None = None,
     max_clamped: int | None = None,
+    diagnostics: bool = False,
 ) -> BakeReport:
     """Bakes a stage into a layer of overs to be sublayered above it. `output_path` is written whole or not at all.
 
@@ -54,16 +59,18 @@ def bake_to_file(
     lookup    auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had
     jobs      frames slid at once; the result does not depend on it
     progress  called after each frame with the frames done and in all
+    diagnostics  writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points
     Raises UsageError, StageProblems, FrameProblem (also where max_folded or max_clamped is exceeded), StageError.
     """
     output = Path(output_path)
-    options, limits = SlideOptions.checked(prims, frames, lookup, jobs), Limits.checked(max_folded, max_clamped)
+    options = BakeOptions.checked(prims, frames, lookup, jobs, max_folded, max_clamped, diagnostics)
     stage = open_stage(stage_path)
     check_output(output, EXTENSIONS)
     check_not_input(output, stage, stage_path)
-    plan = _Plan.read(stage, options, limits)
+    plan = Plan.read(stage, options)
+    _check_primvars(plan)
     with layer_in_place(output, stage) as overs:
-        return plan.run(overs, progress)
+        return _run(plan, overs, progress)
 
 
 def bake(
@@ -76,77 +83,62 @@ def bake(
     progress: Progress | None = None,
     max_folded: int | None = None,
     max_clamped: int | None = None,
+    diagnostics: bool = False,
 ) -> BakeReport:
     """Bakes a stage into its edit target, once every frame is known; arguments and exceptions as `bake_to_file`'s.
 
     Takes the place of an earlier bake there, of the same prims. Where the layer holds the cache too, the cache's values
     move to attributes skinSlide:cached:*, from which the next bake into it starts.
     """
-    options, limits = SlideOptions.checked(prims, frames, lookup, jobs), Limits.checked(max_folded, max_clamped)
+    options = BakeOptions.checked(prims, frames, lookup, jobs, max_folded, max_clamped, diagnostics)
     target = stage.GetEditTarget().GetLayer()
     if not target.permissionToEdit or stage.IsLayerMuted(target.identifier):
         fault = "not editable" if not target.permissionToEdit else "muted"
         raise UsageError(f"the edit target {target.identifier} is {fault}")
     with replacing_earlier_bake(stage, options.prims) as earlier:
-        plan = _Plan.read(stage, options, limits)
+        plan = Plan.read(stage, options)
+        _check_primvars(plan)
         _check_target(stage.GetEditTarget(), plan)
         overs = OverLayer(Sdf.Layer.CreateAnonymous())
-        report = plan.run(overs, progress)
+        report = _run(plan, overs, progress)
         author_on_stage(overs, stage, earlier)
     report.warnings.extend(_hidden(plan.meshes, target))
     return report
 
 
-@dataclass(frozen=True)
-class _Plan:
-    """A bake that is known to be possible: a slider for every mesh, and the times to bake it at."""
-
-    meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]]
-    problems: list[Problem]
-    options: SlideOptions
-    limits: Limits
-
-    @classmethod
-    def read(cls, stage: Usd.Stage, options: SlideOptions, limits: Limits) -> "_Plan":
-        meshes, problems = read_meshes(stage, options.prims)
-        sliders = build_sliders(meshes, options.lookup, problems)
-        if errors(problems):
-            raise StageProblems(problems)
-        times = [times_of(mesh, options.frames) for mesh in meshes]
-        return cls(list(zip(meshes, sliders, times, strict=True)), problems, options, limits)
-
-    def run(self, overs: OverLayer, progress: Progress | None) -> BakeReport:
-        """Authors every mesh into overs."""
-        total = sum(len(times) for _, _, times in self.meshes)
-        report = BakeReport(list(self.problems))
-        pool = ThreadPoolExecutor(min(self.options.jobs, total), "skinslide")
-        try:
-            for mesh, slider, times in self.meshes:
-                work = _MeshBake(mesh, slider, Solver(mesh, slider, pool, self.options.jobs), self.limits)
-                report.meshes.append(work.report)
-                for _ in work.run(times, overs):
-                    if progress:
-                        progress(report.frame_count, total)
-                report.warnings.extend(work.derived.problems)
-        finally:
-            pool.shutdown(cancel_futures=True)
-        return report
+def _run(plan: Plan, overs: OverLayer, progress: Progress | None) -> BakeReport:
+    """Authors every mesh into overs."""
+    report = BakeReport(list(plan.problems))
+    pool = ThreadPoolExecutor(min(plan.options.jobs, plan.frame_count), "skinslide")
+    try:
+        for mesh, slider, times in plan.meshes:
+            work = _MeshBake(mesh, slider, pool, plan.options)
+            report.meshes.append(work.report)
+            for _ in work.run(times, overs):
+                if progress:
+                    progress(report.frame_count, plan.frame_count)
+            report.warnings.extend(work.derived.problems)
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return report
 
 
 class _MeshBake:
     """Bakes one mesh."""
 
-    def __init__(self, mesh: SlidMesh, slider: Slider, solver: Solver, limits: Limits):
+    def __init__(self, mesh: SlidMesh, slider: Slider, pool: ThreadPoolExecutor, options: BakeOptions):
         self.derived = Derived(mesh)
         self.report = MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, slider.patches)
-        self._mesh, self._slider, self._solver = mesh, slider, solver
-        self._limits = {"folded_faces": limits.max_folded, "clamped_vertices": limits.max_clamped}
+        self._mesh, self._slider, self._pool = mesh, slider, pool
+        self._limits = {"folded_faces": options.max_folded, "clamped_vertices": options.max_clamped}
+        self._in_flight = options.jobs + 1  # one is read while the others are slid
+        self._diagnostics = options.diagnostics
 
     def run(self, times: list[Usd.TimeCode], overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Authors the mesh at `times`, ascending; yields each once it is done."""
         needed = [self.derived.times_needed(time) for time in times]
         last_use = {time: index for index, wanted in enumerate(needed) for time in wanted}
-        solutions = self._solver.run(sorted(set().union(*needed)), lambda _: lambda solved: solved)
+        solutions = work_ahead(self._mesh, sorted(set().union(*needed)), self._read, self._pool, self._in_flight)
         solved: dict[Usd.TimeCode, Solved] = {}
         for index, (time, wanted) in enumerate(zip(times, needed, strict=True)):
             while not wanted <= solved.keys():
@@ -158,12 +150,26 @@ class _MeshBake:
         for attribute in self.derived.blocked:
             overs.block(attribute)
 
+    def _read(self, time: Usd.TimeCode) -> Callable[[], Solved]:
+        points, controls = self._mesh.points_at(time), self._mesh.controls_at(time)
+
+        def slide() -> Solved:
+            frame = self._slider.slide(points, controls)
+            measured = self._slider.diagnose(points, frame.points, controls) if self._diagnostics else None
+            return Solved(points, frame.points, frame.patches, measured)
+
+        return slide
+
     def _author(self, time: Usd.TimeCode, solved: dict[Usd.TimeCode, Solved], overs: OverLayer) -> None:
         geometry = UsdGeom.PointBased(self._mesh.prim)
         self._check_limits(time, solved[time])
         points = Vt.Vec3fArray.FromNumpy(solved[time].slid)
         overs.set(geometry.GetPointsAttr(), points, time)
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
+        if solved[time].diagnostics:
+            for name, field in DIAGNOSTICS.items():
+                values = Vt.FloatArray.FromNumpy(getattr(solved[time].diagnostics, field))
+                overs.set_primvar(self._mesh.prim.GetPath(), name, values, time)
         for attribute, sample, value in self.derived.values(time, solved):
             overs.set(attribute, value, sample)
         self.report.add(frame_of(time), solved[time].patches)
@@ -177,9 +183,9 @@ class _MeshBake:
                     raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
 
 
-def _hidden(meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]], target: Sdf.Layer) -> Iterator[Problem]:
+def _hidden(meshes: list[PlannedMesh], target: Sdf.Layer) -> Iterator[Problem]:
     """Warns of meshes whose points a stronger layer than the target has an opinion on."""
-    for mesh, _, _ in meshes:
+    for mesh, _slider, _times in meshes:
         opinions = UsdGeom.PointBased(mesh.prim).GetPointsAttr().GetPropertyStack()
         valued = [spec.layer for spec in opinions if spec.HasInfo("default") or spec.HasInfo("timeSamples")]
         if valued and valued[0] != target:
@@ -187,7 +193,20 @@ def _hidden(meshes: list[tuple[SlidMesh, Slider, list[Usd.TimeCode]]], target: S
             yield Problem("warning", mesh.path, None, None, message)
 
 
-def _check_target(target: Usd.EditTarget, plan: _Plan) -> None:
-    for mesh, _, _ in plan.meshes:
+def _check_primvars(plan: Plan) -> None:
+    """Raises StageProblems where the stage has something else under the names of the diagnostics."""
+    found = []
+    for mesh, _slider, _times in plan.meshes if plan.options.diagnostics else []:
+        for name in DIAGNOSTICS:
+            attr = mesh.prim.GetAttribute(name)
+            if attr and attr.GetTypeName() != Sdf.ValueTypeNames.FloatArray:
+                message = f"{name} is {attr.GetTypeName()}; a bake with diagnostics writes float[] there"
+                found.append(Problem("error", mesh.path, None, None, message))
+    if found:
+        raise StageProblems(found)
+
+
+def _check_target(target: Usd.EditTarget, plan: Plan) -> None:
+    for mesh, _slider, _times in plan.meshes:
         if not target.MapToSpecPath(mesh.prim.GetPath()):
             raise UsageError(f"the edit target {target.GetLayer().identifier} cannot hold opinions on {mesh.path}")

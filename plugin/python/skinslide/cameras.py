@@ -8,9 +8,9 @@ from typing import Protocol
 import numpy as np
 from pxr import Gf, Usd, UsdGeom
 
-from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh
 from skinslide.pictures import Camera, Shape, frame_faces
+from skinslide.problems import Fault
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
 
@@ -28,7 +28,7 @@ class StageCamera:
         prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
         if not prim or not prim.IsA(UsdGeom.Camera):
             kind = prim.GetTypeName() or "prim without a type" if prim else ""
-            raise UsageError(f"camera {path}: {f'is a {kind}, no Camera' if prim else 'there is no such prim'}")
+            raise Fault(f"camera {path}: {f'is a {kind}, no Camera' if prim else 'there is no such prim'}")
         self._camera, self._aspect = UsdGeom.Camera(prim), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:

@@ -14,9 +14,9 @@ from pxr import Usd
 from skinslide.controls import PatchControls
 from skinslide.derived import Derived
 from skinslide.frames import UsageError
-from skinslide.maps import SampledMap
 from skinslide.meshes import SlidMesh, is_skinned, read_meshes
 from skinslide.problems import Problem, StageProblems, errors, frame_text
+from skinslide.sampled import SampledMap
 from skinslide.samples import sample_problems
 from skinslide.slider import Lookup, PatchInfo, PatchSetup, Slider, SliderError, choose_lookup
 from skinslide.stage import open_stage

@@ -11,8 +11,8 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide import names
-from skinslide.maps import SampledMap
 from skinslide.problems import Fault
+from skinslide.sampled import SampledMap
 from skinslide.slider import Controls
 from skinslide.topology import Topology
 from skinslide.values import (

@@ -12,8 +12,17 @@ from pxr import Usd, UsdGeom, Vt
 from skinslide import slider
 from skinslide.meshes import SlidMesh
 from skinslide.problems import Fault, Problem
-from skinslide.solving import Solved
 from skinslide.values import SAME_TIME, flattened
+
+
+class Solved(NamedTuple):
+    """One time of a mesh, solved. Points float32 (V, 3)."""
+
+    cached: np.ndarray
+    slid: np.ndarray
+    patches: tuple[slider.PatchResult, ...]
+    diagnostics: slider.Diagnostics | None  # where they are asked for
+
 
 Solutions = Mapping[Usd.TimeCode, Solved]
 

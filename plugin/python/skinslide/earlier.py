@@ -54,12 +54,13 @@ class EarlierBake:
                 self._keep(path)
                 self._revert(path)
 
-    def replace(self, attribute: Usd.Attribute, samples: bool) -> None:
+    def replace(self, attribute: Sdf.Path, samples: bool) -> None:
         """Makes room for the values of a bake; those that are the cache's are kept beside them.
 
-        samples  whether samples will be authored; the default value, which may be the rest pose, then stays
+        attribute  on the stage, which need not have it
+        samples    whether samples will be authored; the default value, which may be the rest pose, then stays
         """
-        path = self._target.MapToSpecPath(attribute.GetPath())
+        path = self._target.MapToSpecPath(attribute)
         self._keep(path)
         spec = self._layer.GetAttributeAtPath(path)
         if not spec:
@@ -124,7 +125,7 @@ class EarlierBake:
             self._keep(_cached(path))
             Sdf.CopySpec(self._layer, _cached(path), self._layer, path)
             return
-        _clear(spec, _VALUES)
+        _clear(spec, (*_VALUES, "interpolation") if spec.name in (names.STRETCH, names.SLIDE) else _VALUES)
         data = dict(spec.GetInfo("customData"))
         del data[_MARK]
         if data:

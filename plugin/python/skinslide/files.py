@@ -16,7 +16,7 @@ from typing import Any
 from pxr import Tf, Usd, UsdUtils
 
 from skinslide.frames import UsageError
-from skinslide.problems import StageError, frame_text, usd_message
+from skinslide.problems import StageError, usd_message
 
 _ABANDONED = 24 * 60 * 60  # seconds
 
@@ -70,6 +70,30 @@ def check_not_read(output: Path, stage: Usd.Stage) -> None:
     _refuse(output, [layer.realPath for layer in stage.GetUsedLayers()])
 
 
+class Inputs:
+    """The files that a stage may read, in whatever variant and clip, for a folder of outputs."""
+
+    def __init__(self, stage: Usd.Stage, *others: str | os.PathLike):
+        self._stage = stage
+        self._known = _identities([*map(os.fspath, others), *_dependencies(stage)])
+
+    def refuse(self, output: Path) -> None:
+        """Raises UsageError where the output is one of them, or one that the stage has read so far."""
+        found = _identities([str(output)])
+        if found and found & (self._known | _identities([layer.realPath for layer in self._stage.GetUsedLayers()])):
+            raise UsageError(f"output {output}: the stage reads this file; name another folder")
+
+
+def _identities(files: Sequence[str]) -> set[tuple[int, int]]:
+    """Of those that are there: whatever they are called, and through links."""
+    found = set()
+    for file in files:
+        with suppress(OSError, ValueError):
+            status = os.stat(file)
+            found.add((status.st_dev, status.st_ino))
+    return found
+
+
 def _refuse(output: Path, files: Sequence[str]) -> None:
     for file in files:
         with suppress(OSError):  # what cannot be looked at cannot be read either
@@ -98,44 +122,12 @@ def _clips(template: UsdUtils.DependencyInfo) -> list[str]:
     return [file for file in template.dependencies if wanted.fullmatch(file)]
 
 
-def check_folder(folder: Path) -> Path:
-    """A folder to write into, made where there is none; UsageError where it cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        fault = None if os.access(folder, os.W_OK | os.X_OK) else "is not writable"
-    except FileExistsError:
-        fault = "is not a folder"
-    except (OSError, ValueError) as error:
-        fault = getattr(error, "strerror", None) or str(error)
-    if fault:
-        raise UsageError(f"output {folder}: {fault}")
-    return folder.resolve()
-
-
-def frame_suffix(frame: float | None) -> str:
-    """What the name of a file of a frame has of it: .0012, .-0005, .1012.25; nothing for the default time."""
-    if frame is None:
-        return ""
-    words = frame_text(frame)
-    whole, dot, rest = words.lstrip("-").partition(".")
-    return f".{'-' * words.startswith('-')}{whole.zfill(4)}{dot}{rest}"
-
-
-def unique_names(paths: Sequence[str]) -> list[str]:
-    """A name for files of each prim: its own, and where others have the same one its whole path's."""
-    own = [path.rpartition("/")[2] for path in paths]
-    return [
-        name if own.count(name) == 1 else path.strip("/").replace("/", "_")
-        for name, path in zip(own, paths, strict=True)
-    ]
-
-
 @contextmanager
 def replacing(output: Path) -> Iterator[Path]:
     """A new file that becomes `output` when the block ends. An exception or a signal leaves `output` as it was."""
     output = output.resolve()
     partial = output.with_name(partial_name(output, secrets.token_hex(4)))
-    with _signals_as_exceptions():
+    with signals_as_exceptions():
         try:
             with writing(output):
                 _remove_abandoned(output)
@@ -181,7 +173,7 @@ def _flush(file: Path) -> None:
 
 
 @contextmanager
-def _signals_as_exceptions() -> Iterator[None]:
+def signals_as_exceptions() -> Iterator[None]:
     """Lets `finally` run when the farm ends the process: SIGTERM and SIGHUP become SystemExit."""
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,167 +1,152 @@
-"""The maps of a patch: OpenEXR images, found by the stage's asset resolver and sampled at a primvar of the mesh."""
+"""Draws what a slide did in the texture coordinates of each mesh:
+
+meshes, problems = read the stage              any error: stop here, nothing is written
+for each mesh, for each time in order, several at once:
+    points, controls, texture coordinates      read on this thread
+    slide, measure by vertex                   on a thread of the pool, as what follows
+    for each kind and each tile: draw, make an OpenEXR file
+    put the files in place                     on this thread, one by one
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
-import numpy as np
-from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdShade
+from pxr import Usd
 
-from skinslide import names
-from skinslide.images import Corners, Image, decode_exr, map_tiles, sample_map
-from skinslide.native import SliderError
-from skinslide.problems import Fault
-from skinslide.texture import has_st, read_st
-from skinslide.topology import Topology
-from skinslide.values import Reading, primvar_sources
+from skinslide.canvases import Canvases
+from skinslide.charts import MapCanvas
+from skinslide.files import signals_as_exceptions
+from skinslide.frames import UsageError
+from skinslide.meshmaps import KINDS, MapOptions, MeshMaps, WrittenMap
+from skinslide.options import BakeOptions, Frames, listed, whole_number
+from skinslide.outputs import OutputFolder, check_frames
+from skinslide.plan import Plan
+from skinslide.problems import StageProblems
+from skinslide.progress import Progress
+from skinslide.report import BakeReport
+from skinslide.slider import Lookup
+from skinslide.stage import open_stage
 
-_LARGEST_FILE = 4 << 30  # bytes
-
-
-@dataclass(frozen=True, eq=False)
-class SampledMap:
-    """A map at one time."""
-
-    name: str  # of the attribute, such as skinSlide:elbow_L:weightMap
-    file: str  # resolved, with <UDIM> where it has tiles
-    channel: str
-    st: str  # the primvar it was sampled at
-    sizes: dict[int, tuple[int, int]]  # width and height, by tile; 0 for the one of a map without
-    values: np.ndarray  # (V,) float32, 1 at vertices off the patch
+_MOST_TEXELS = 1 << 28  # drawn at once: each takes some twenty bytes
 
 
-@dataclass(frozen=True)
-class _Source:
-    """Where a map is at one time."""
+@dataclass
+class MapsReport(BakeReport):
+    """What was slid for the maps, and the maps."""
 
-    name: str
-    authored: str
-    files: dict[int, str]  # resolved, by tile
-    channel: str
+    folder: str = ""
+    size: int = 0
+    maps: list[WrittenMap] = field(default_factory=list)
 
-    @property
-    def is_udim(self) -> bool:
-        return UsdShade.UdimUtils.IsUdimIdentifier(self.authored)
+    def as_dict(self) -> dict[str, Any]:
+        """What `--json` prints, as of a bake, and each file."""
+        return {**super().as_dict(), "maps": [written._asdict() for written in self.maps]}
+
+    def text(self) -> str:
+        lines = [super().text()]
+        for mesh in self.meshes:
+            for kind in KINDS:
+                drawn = [written for written in self.maps if (written.prim, written.kind) == (mesh.path, kind)]
+                low, high = min(each.lowest for each in drawn), max(each.highest for each in drawn)
+                lines.append(f"{mesh.path}: {kind}: {_maps(len(drawn))}, {low:.4g} to {high:.4g}")
+        written = f"{self.folder}: {_maps(len(self.maps))} of {self.size} x {self.size} texels written"
+        return "\n".join([*lines, written])
 
 
-def read_map(
-    prim: Usd.Prim, patch: str, control: str, topology: Topology, faces: np.ndarray
-) -> Reading[SampledMap | None]:
-    """The map of a control, forceDensity or weight, over time; None where there is none."""
-    attr = names.attribute(prim, patch, f"{control}Map")
-    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(_word(prim, patch, "mapSt"))
-    last: dict[tuple[str, str], Image] = {}  # what the time before was sampled from
+def _maps(count: int) -> str:
+    return f"{count} map{'s' * (count != 1)}"
 
-    def read(time: Usd.TimeCode) -> SampledMap | None:
-        source = _find(prim, patch, control, time)
-        if source is None:
-            return None
-        st = _read_st(prim, patch, time, topology)
-        corners = Corners(topology.face_counts, topology.face_indices, topology.vertex_count, faces, st)
+
+def maps(
+    stage: str | os.PathLike | Usd.Stage,
+    folder: str | os.PathLike,
+    *,
+    prims: Sequence[str] | str | None = None,
+    patches: Sequence[str] | str | None = None,
+    frames: Frames = None,
+    size: int = 1024,
+    st: str = "st",
+    lookup: str | Lookup = "auto",
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> MapsReport:
+    """Writes maps of stretch before and after, slide distance and force density over the faces of patches.
+
+    Each is an OpenEXR file of one channel, Y. Force density is that of paint, maps and edges, without what is constant,
+    which changes nothing; painting by such a map gives the same densities again, but for what an edge blurs.
+
+    stage     a path, or a stage; never written
+    folder    made where it is missing. Files are MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where the faces reach
+              beyond the first tile of a UDIM; each is written whole or not at all
+    patches   names; only these are drawn and measured, though all slide; None: every patch
+    size      texels along each side
+    st        the primvar with texture coordinates; of faces that overlap in it the later in the mesh is seen
+    prims, frames, lookup, jobs, progress as for `bake_to_file`; the drawing takes EGL whatever the lookup
+    Raises UsageError (also where there is no EGL), StageProblems, FrameProblem, StageError.
+    """
+    options = _checked(prims, patches, frames, size, st, lookup, jobs)
+    opened = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
+    place = OutputFolder(Path(folder), opened, None if stage is opened else stage)
+    size, device = options.size, options.bake.lookup.device
+    canvases = Canvases(lambda: MapCanvas(size, device), _MOST_TEXELS // size**2)
+    plan = Plan.read(opened, options.bake)
+    meshes = _meshes(plan, options, place)
+    report = MapsReport(list(plan.problems), folder=str(folder), size=options.size)
+    frame_count = sum(mesh.frame_count for mesh in meshes)
+    pool = ThreadPoolExecutor(min(options.bake.jobs, frame_count), "skinslide")
+    with signals_as_exceptions():
         try:
-            return _sample(source, corners, primvar.GetPrimvarName(), last)
-        except SliderError as error:
-            raise Fault(f"{source.name}: {_shown(source)}: {error}") from error
-
-    return Reading(read, [attr, *primvar_sources(primvar)])
-
-
-def _sample(source: _Source, corners: Corners, st: str, last: dict[tuple[str, str], Image]) -> SampledMap:
-    tiles = list(_tiles_needed(source, corners))
-    used = {_key(source, tile): _read_image(source, tile, last) for tile in tiles}
-    last.clear()
-    last.update(used)
-    images = {tile: used[_key(source, tile)] for tile in tiles}
-    sizes = {tile: image.pixels.shape[::-1] for tile, image in images.items()}
-    channel = images[tiles[0]].channel
-    return SampledMap(source.name, _shown(source), channel, st, sizes, sample_map(corners, images))
+            for mesh in meshes:
+                report.meshes.append(mesh.report)
+                for written in mesh.run(canvases, pool):
+                    report.maps.extend(written)
+                    if progress:
+                        progress(report.frame_count, frame_count)
+                report.warnings.extend(mesh.problems())
+        finally:
+            pool.shutdown(cancel_futures=True)
+    return report
 
 
-def _word(prim: Usd.Prim, patch: str, name: str) -> str:
-    """A token or a string; "" where there is none."""
-    found = names.value(prim, patch, name, Usd.TimeCode.EarliestTime())
-    if found is not None and not isinstance(found, str):
-        raise Fault(f"{names.property_name(patch, name)} is {found!r}; it must be a token")
-    return found or ""
+def _checked(
+    prims: Sequence[str] | str | None,
+    patches: Sequence[str] | str | None,
+    frames: Frames,
+    size: int,
+    st: str,
+    lookup: str | Lookup,
+    jobs: int,
+) -> MapOptions:
+    if not st:
+        raise UsageError("st: the name of the primvar with texture coordinates is empty")
+    return MapOptions(
+        bake=BakeOptions.checked(prims, frames, lookup, jobs),
+        patches=listed(patches),
+        size=whole_number("size", size, 1),
+        st=st,
+    )
 
 
-# ---- The file ----
-
-
-def _find(prim: Usd.Prim, patch: str, control: str, time: Usd.TimeCode) -> _Source | None:
-    name, attr = names.property_name(patch, f"{control}Map"), names.attribute(prim, patch, f"{control}Map")
-    asset = attr.Get(time) if attr else None
-    if asset is None:
-        return None
-    if not isinstance(asset, Sdf.AssetPath):
-        raise Fault(f"{name} is {asset!r}; it must be an asset")
-    if not asset.path:
-        return None
-    channel = _word(prim, patch, f"{control}MapChannel")
-    if UsdShade.UdimUtils.IsUdimIdentifier(asset.path):
-        layer = attr.GetPropertyStack(time)[0].layer
-        found = UsdShade.UdimUtils.ResolveUdimTilePaths(asset.path, layer)
-        files = {int(number): str(path) for path, number in found}
-    else:
-        files = {0: asset.resolvedPath} if asset.resolvedPath else {}
-    if not files:
-        raise Fault(f"{name}: {asset.path}: there is no such file")
-    return _Source(name, asset.path, files, channel)
-
-
-def _shown(source: _Source) -> str:
-    """The resolved path, with <UDIM> in place of the number of a tile."""
-    tile, path = min(source.files.items())
-    return path if tile == 0 else "<UDIM>".join(path.rsplit(str(tile), 1))
-
-
-def _tiles_needed(source: _Source, corners: Corners) -> Iterator[int]:
-    if not source.is_udim:
-        yield 0
-        return
-    needed = map_tiles(corners)
-    for tile in np.unique(needed[needed > 0]).tolist():
-        if tile not in source.files:
-            missing = source.authored.replace("<UDIM>", str(tile))
-            raise Fault(f"{source.name}: {missing}: there is no such file, and the patch has texture coordinates in it")
-        yield tile
-
-
-def _key(source: _Source, tile: int) -> tuple[str, str]:
-    return source.files[tile], source.channel
-
-
-def _read_image(source: _Source, tile: int, last: dict[tuple[str, str], Image]) -> Image:
-    """The image of a tile; that of the time before where it is the same file."""
-    key = _key(source, tile)
-    if key in last:
-        return last[key]
-    try:
-        return decode_exr(_read_bytes(source.name, key[0]), source.channel)
-    except SliderError as error:
-        raise Fault(f"{source.name}: {key[0]}: {error}") from error
-
-
-def _read_bytes(name: str, path: str) -> bytes:
-    """The bytes of a resolved asset, which may lie in a package."""
-    try:
-        asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
-        size = asset.GetSize() if asset else 0
-        if asset and size <= _LARGEST_FILE:
-            with asset as opened:
-                return bytes(opened.GetBuffer() or b"")
-    except (OSError, RuntimeError, Tf.ErrorException) as error:
-        raise Fault(f"{name}: {path}: cannot be read: {' '.join(str(error).split())}") from error
-    reason = f"has {size} bytes; more than {_LARGEST_FILE} are refused" if asset else "cannot be read"
-    raise Fault(f"{name}: {path}: {reason}")
-
-
-def _read_st(prim: Usd.Prim, patch: str, time: Usd.TimeCode, topology: Topology) -> np.ndarray:
-    """Texture coordinates of the mesh's corners, float32 (sum of counts, 2)."""
-    wanted = _word(prim, patch, "mapSt")
-    if not has_st(prim, wanted):
-        raise Fault(
-            f"has a map, but the mesh has no primvars:{wanted}; name one in {names.property_name(patch, 'mapSt')}"
-        )
-    return read_st(prim, wanted, time, topology)
+def _meshes(plan: Plan, options: MapOptions, place: OutputFolder) -> list[MeshMaps]:
+    """Raises StageProblems and UsageError for what can be known before a frame is slid."""
+    plan.check_patches(options.patches)
+    meshes, problems = [], []
+    for planned in plan.meshes:
+        if not any(map(options.draws, planned.mesh.patches)):
+            continue
+        check_frames([time.GetValue() for time in planned.times if not time.IsDefault()])
+        try:
+            meshes.append(MeshMaps(planned, options, place))
+        except StageProblems as bad:
+            problems += bad.problems
+    if problems:
+        raise StageProblems(problems)
+    for mesh in meshes:
+        mesh.check_files()
+    return meshes

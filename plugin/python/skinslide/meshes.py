@@ -13,9 +13,9 @@ from skinslide import controls, names
 from skinslide.controls import PatchControls
 from skinslide.earlier import baked_layer
 from skinslide.faces import read_faces
-from skinslide.maps import read_map
 from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, core_problem, usd_message
 from skinslide.rest import read_rest
+from skinslide.sampled import read_map
 from skinslide.slider import Controls, Lookup, PatchSetup, Slider, SliderError, Subdivision
 from skinslide.stage import find_meshes
 from skinslide.subdivision import read_subdivision

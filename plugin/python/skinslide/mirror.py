@@ -15,10 +15,10 @@ from skinslide.faces import read_faces
 from skinslide.frames import UsageError
 from skinslide.geometry import AXES, Mirrored, mirror_faces
 from skinslide.layers import SetupLayer, check_patch_name
-from skinslide.maps import read_map
 from skinslide.native import SliderError
 from skinslide.problems import Fault
 from skinslide.rest import read_rest
+from skinslide.sampled import read_map
 from skinslide.topology import Topology
 from skinslide.values import Reading
 

@@ -16,6 +16,9 @@ NOT_PATCHES = ("restPoints", "live", "cached")
 # Values of the cache that a bake into the same layer has taken the place of.
 CACHED = f"{NAMESPACE}:cached"
 
+# Primvars that a bake writes when it is asked for diagnostics.
+STRETCH, SLIDE = f"primvars:{NAMESPACE}:stretch", f"primvars:{NAMESPACE}:slide"
+
 
 def applied_schemas(prim: Usd.Prim) -> list[str]:
     """What `apiSchemas` composes to.

@@ -15,18 +15,28 @@ FORMATS = ("png", "exr")
 
 
 @dataclass(frozen=True)
-class SlideOptions:
-    """Which meshes are slid, when and how."""
+class BakeOptions:
+    """The arguments of `skinslide.bake`. Limits are what a patch may have at one frame; None is any number."""
 
     prims: list[str] | None
     frames: list[float] | None  # ascending
     lookup: Lookup
     jobs: int
+    max_folded: int | None
+    max_clamped: int | None
+    diagnostics: bool
 
     @classmethod
     def checked(
-        cls, prims: Sequence[str] | str | None, frames: Frames, lookup: str | Lookup, jobs: int
-    ) -> "SlideOptions":
+        cls,
+        prims: Sequence[str] | str | None,
+        frames: Frames,
+        lookup: str | Lookup,
+        jobs: int,
+        max_folded: int | None = None,
+        max_clamped: int | None = None,
+        diagnostics: bool = False,
+    ) -> "BakeOptions":
         """Raises UsageError for what cannot be."""
         try:
             choose_lookup(lookup)
@@ -36,22 +46,10 @@ class SlideOptions:
             prims=listed(prims),
             frames=None if frames is None else checked_frames(frames),
             lookup=Lookup.of(lookup),
-            jobs=whole("jobs", jobs, 1),
-        )
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a patch may have at one frame; None is any number."""
-
-    max_folded: int | None
-    max_clamped: int | None
-
-    @classmethod
-    def checked(cls, max_folded: int | None, max_clamped: int | None) -> "Limits":
-        return cls(
-            max_folded=None if max_folded is None else whole("max_folded", max_folded, 0),
-            max_clamped=None if max_clamped is None else whole("max_clamped", max_clamped, 0),
+            jobs=whole_number("jobs", jobs, 1),
+            max_folded=None if max_folded is None else whole_number("max_folded", max_folded, 0),
+            max_clamped=None if max_clamped is None else whole_number("max_clamped", max_clamped, 0),
+            diagnostics=bool(diagnostics),
         )
 
 
@@ -92,8 +90,8 @@ class PictureOptions:
             views=[_one_of("view", view, VIEWS) for view in dict.fromkeys(listed(views) or ())],
             camera=camera,
             follow=bool(follow),
-            width=whole("width", width, 2),
-            height=whole("height", height, 1),
+            width=whole_number("width", width, 2),
+            height=whole_number("height", height, 1),
             form=_one_of("format", form, FORMATS),
             st=st,
             squares=None if squares is None else _positive("squares", squares),
@@ -105,14 +103,14 @@ def listed(words: Sequence[str] | str | None) -> list[str] | None:
     return [words] if isinstance(words, str) else None if words is None else [str(word) for word in words]
 
 
-def whole(name: str, number: int, least: int) -> int:
+def whole_number(name: str, number: int, least: int) -> int:
     try:
-        found = operator.index(number)
+        whole = operator.index(number)
     except TypeError as error:
         raise UsageError(f"{name} is {number!r}; it must be a whole number") from error
-    if found < least:
-        raise UsageError(f"{name} is {found}; it must be at least {least}")
-    return found
+    if whole < least:
+        raise UsageError(f"{name} is {whole}; it must be at least {least}")
+    return whole
 
 
 def _positive(name: str, number: float) -> float:

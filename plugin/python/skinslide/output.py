@@ -5,7 +5,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.earlier import EarlierBake, mark
 from skinslide.files import check_not_read, replacing, writing
@@ -26,14 +26,15 @@ class OverLayer:
 
     def set(self, attribute: Usd.Attribute, value: Any, time: Usd.TimeCode) -> None:
         """Authors a sample, or the default value where time is the default time."""
-        spec = self._spec(attribute)
-        if time.IsDefault():
-            spec.default = value
-        else:
-            self.layer.SetTimeSample(spec.path, time.GetValue(), value)
-        self._unsaved += 4 * getattr(value, "size", 0)
-        if self._saves_in_parts and self._unsaved > _UNSAVED_BYTES:
-            self.save()
+        self._set(self._spec(attribute), value, time)
+
+    def set_primvar(self, prim: Sdf.Path, name: str, values: Vt.FloatArray, time: Usd.TimeCode) -> None:
+        """Authors a float primvar by vertex, which the stage need not have."""
+        spec = self.layer.GetAttributeAtPath(prim.AppendProperty(name))
+        if not spec:
+            spec = self._new_spec(prim, name, Sdf.ValueTypeNames.FloatArray, Sdf.VariabilityVarying)
+            spec.SetInfo("interpolation", UsdGeom.Tokens.vertex)
+        self._set(spec, values, time)
 
     def block(self, attribute: Usd.Attribute) -> None:
         """Makes the attribute have no value at any time."""
@@ -47,12 +48,24 @@ class OverLayer:
                 raise OSError("USD could not save it")
         self._unsaved = 0
 
+    def _set(self, spec: Sdf.AttributeSpec, value: Any, time: Usd.TimeCode) -> None:
+        if time.IsDefault():
+            spec.default = value
+        else:
+            self.layer.SetTimeSample(spec.path, time.GetValue(), value)
+        self._unsaved += 4 * getattr(value, "size", 0)
+        if self._saves_in_parts and self._unsaved > _UNSAVED_BYTES:
+            self.save()
+
     def _spec(self, attribute: Usd.Attribute) -> Sdf.AttributeSpec:
         spec = self.layer.GetAttributeAtPath(attribute.GetPath())
-        if spec:
-            return spec
-        over = Sdf.CreatePrimInLayer(self.layer, attribute.GetPrimPath())
-        spec = Sdf.AttributeSpec(over, attribute.GetName(), attribute.GetTypeName(), attribute.GetVariability())
+        kind = (attribute.GetTypeName(), attribute.GetVariability())
+        return spec or self._new_spec(attribute.GetPrimPath(), attribute.GetName(), *kind)
+
+    def _new_spec(
+        self, prim: Sdf.Path, name: str, type_name: Sdf.ValueTypeName, variability: Sdf.Variability
+    ) -> Sdf.AttributeSpec:
+        spec = Sdf.AttributeSpec(Sdf.CreatePrimInLayer(self.layer, prim), name, type_name, variability)
         mark(spec)
         return spec
 
@@ -74,8 +87,9 @@ def author_on_stage(overs: OverLayer, stage: Usd.Stage, earlier: EarlierBake) ->
     paths: list[Sdf.Path] = []
     overs.layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)
     for path in filter(Sdf.Path.IsPropertyPath, paths):
-        attribute, times = stage.GetAttributeAtPath(path), overs.layer.ListTimeSamplesForPath(path)
-        earlier.replace(attribute, samples=bool(times))
+        times = overs.layer.ListTimeSamplesForPath(path)
+        earlier.replace(path, samples=bool(times))
+        attribute = _attribute_for(overs.layer.GetAttributeAtPath(path), stage)
         for time in times:
             attribute.Set(overs.layer.QueryTimeSample(path, time), time)
         default = overs.layer.GetAttributeAtPath(path).default
@@ -84,6 +98,14 @@ def author_on_stage(overs: OverLayer, stage: Usd.Stage, earlier: EarlierBake) ->
         elif default is not None:
             attribute.Set(default)
         earlier.mark(attribute)
+
+
+def _attribute_for(spec: Sdf.AttributeSpec, stage: Usd.Stage) -> Usd.Attribute:
+    """The stage's attribute; of a primvar that it need not have, made in the edit target."""
+    if not spec.HasInfo("interpolation"):
+        return stage.GetAttributeAtPath(spec.path)
+    prim, name = stage.GetPrimAtPath(spec.path.GetPrimPath()), spec.name.removeprefix("primvars:")
+    return UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, spec.typeName, spec.GetInfo("interpolation")).GetAttr()
 
 
 def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:

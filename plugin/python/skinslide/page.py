@@ -20,7 +20,7 @@ from string import Template
 import numpy as np
 from PIL import Image
 
-from skinslide.charts import Chart, charts, svg
+from skinslide.plots import Chart, charts, svg
 from skinslide.problems import Problem
 from skinslide.report import BakeReport, PatchReport, milliseconds_text, stretch_text, time_text
 

@@ -11,15 +11,15 @@ from pxr import Usd, UsdGeom
 
 from skinslide import panels
 from skinslide.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
+from skinslide.coordinates import read_coordinates
 from skinslide.meshes import SlidMesh
 from skinslide.options import PictureOptions
 from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation
+from skinslide.plan import frame_of
 from skinslide.problems import Fault, frame_text
 from skinslide.report import PatchReport
 from skinslide.slider import Slider
-from skinslide.solving import frame_of
 from skinslide.subdivision import read_subdivision
-from skinslide.texture import has_st, read_st
 
 _SQUARES = 16  # of the chequer, across a patch
 
@@ -103,11 +103,12 @@ class Series:
 
 def _st_of(mesh: SlidMesh, asked: str | None) -> np.ndarray | None:
     """Texture coordinates for the chequer; None where there are none and none were asked for."""
-    if not has_st(mesh.prim, asked or "st"):
-        if asked:
-            raise Fault(f"there is no primvars:{asked} to draw a chequer on")
-        return None
-    return read_st(mesh.prim, asked or "st", Usd.TimeCode.EarliestTime(), mesh.topology)
+    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(asked or "st")
+    if primvar and primvar.HasAuthoredValue():
+        return read_coordinates(primvar, Usd.TimeCode.EarliestTime(), mesh.topology)
+    if asked:
+        raise Fault(f"there is no primvars:{asked} to draw a chequer on")
+    return None
 
 
 def _suitable_squares(mesh: SlidMesh, faces: np.ndarray, st: np.ndarray | None) -> float:

@@ -32,6 +32,7 @@ from skinslide.native import (
 
 __all__ = [
     "Controls",
+    "Diagnostics",
     "Frame",
     "Lookup",
     "LookupInfo",
@@ -61,7 +62,7 @@ class Frame(NamedTuple):
 
 
 class Diagnostics(NamedTuple):
-    """What a slide did, by mesh vertex, float32 (V,): see `skinslide_diagnostics`."""
+    """What a slide did to each vertex, float32 (V,) each, as in `skinslide_diagnostics`."""
 
     stretch_before: np.ndarray
     stretch_after: np.ndarray
@@ -126,15 +127,25 @@ class Slider:
             self._give_back(workspace)
         return Frame(slid, tuple(read(PatchResult, result) for result in results), planes)
 
-    def diagnose(self, cached: np.ndarray, slid: np.ndarray, controls: Sequence[Controls] | None = None) -> Diagnostics:
-        """Measures a frame by vertex: points (V, 3) before and after; controls as given to `slide`."""
-        native = Arguments()
-        before, after = (native.points(points, self._sizes.vertices, "points") for points in (cached, slid))
+    def diagnose(
+        self,
+        cached: np.ndarray,
+        slid: np.ndarray,
+        controls: Sequence[Controls] | None = None,
+        *,
+        chosen: Sequence[bool] | None = None,
+    ) -> Diagnostics:
+        """What a slide from cached to slid, (V, 3) each, did. chosen: the set-ups whose patches count; None: all."""
+        native, count = Arguments(), self._sizes.vertices
+        before, after = native.points(cached, count, "cached"), native.points(slid, count, "slid")
         given = native.frame_controls(controls, self._names, self._sizes)
-        found = Diagnostics(*(np.empty(self._sizes.vertices, np.float32) for _ in Diagnostics._fields))
-        wanted = ffi.new("skinslide_diagnostics *", [writable("float[]", array) for array in found])
-        call(lib.skinslide_diagnose, self._slider, given, ffi.NULL, before, after, wanted)
-        return found
+        if chosen is not None and len(chosen) != len(self._names):
+            raise SliderError("BAD_ARGUMENT", f"chosen: {len(chosen)} given for {len(self._names)} patches")
+        wanted = ffi.NULL if chosen is None else ffi.new("uint8_t[]", [bool(each) for each in chosen])
+        result = Diagnostics(*(np.empty(count, np.float32) for _ in Diagnostics._fields))
+        arrays = ffi.new("skinslide_diagnostics *", [writable("float[]", array) for array in result])
+        call(lib.skinslide_diagnose, self._slider, given, wanted, before, after, arrays)
+        return result
 
     def vertices(self, patch: int) -> np.ndarray:
         """Mesh vertices of a patch, int32, ascending."""

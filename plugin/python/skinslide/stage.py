@@ -120,6 +120,11 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
     return meshes, problems
 
 
+def patched_prims(stage: Usd.Stage) -> list[Usd.Prim]:
+    """Every prim of a stage that carries a patch, whether it can be slid or not."""
+    return [prim for prim in _prims_below(stage.GetPseudoRoot()) if names.patch_names(prim)]
+
+
 def composition_problems(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> Iterator[Problem]:
     """What USD could not compose: errors, for what is missing may be a mesh that should slide, or part of one.
 

@@ -1,4 +1,4 @@
-"""Texture coordinates of a mesh."""
+"""Texture coordinates of a mesh's corners."""
 
 from __future__ import annotations
 
@@ -10,15 +10,8 @@ from skinslide.topology import Topology
 from skinslide.values import check_length, flattened
 
 
-def has_st(prim: Usd.Prim, name: str) -> bool:
-    """Whether a mesh has the primvar."""
-    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
-    return bool(primvar) and primvar.HasAuthoredValue()
-
-
-def read_st(prim: Usd.Prim, name: str, time: Usd.TimeCode, topology: Topology) -> np.ndarray:
-    """The primvar, which the mesh has, at the mesh's corners: float32 (sum of counts, 2)."""
-    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
+def read_coordinates(primvar: UsdGeom.Primvar, time: Usd.TimeCode, topology: Topology) -> np.ndarray:
+    """What a primvar that has a value gives each corner, float32 (sum of counts, 2)."""
     name, interpolation = primvar.GetName(), primvar.GetInterpolation()
     tokens = UsdGeom.Tokens
     by_corner = interpolation == tokens.faceVarying
@@ -30,5 +23,6 @@ def read_st(prim: Usd.Prim, name: str, time: Usd.TimeCode, topology: Topology) -
         raise Fault(f"{name} is {primvar.GetTypeName()}; a map needs pairs of floats")
     expected = (len(topology.face_indices), "face corners") if by_corner else (topology.vertex_count, "points")
     check_length(name, len(found), *expected)
-    st = found.astype(np.float32)
+    with np.errstate(over="ignore"):
+        st = found.astype(np.float32)
     return st if by_corner else st[topology.face_indices]

@@ -1,0 +1,107 @@
+"""Files of meshes and frames, such as MESH.KIND.FRAME.exr, in one folder; each is put in place in one step."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from decimal import Decimal
+from pathlib import Path
+
+from pxr import Sdf, Usd
+
+from skinslide.files import Inputs, check_output, replacing, writing
+from skinslide.frames import UsageError
+from skinslide.problems import frame_text
+from skinslide.stage import patched_prims
+
+_PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
+
+
+class OutputFolder:
+    """Where files of meshes are written. Nothing of it is made before the first is."""
+
+    def __init__(self, folder: Path, stage: Usd.Stage, stage_path: str | os.PathLike | None):
+        """Raises UsageError for a folder that cannot be."""
+        self.folder = folder
+        self._inputs = Inputs(stage, *([] if stage_path is None else [stage_path]))
+        self._names = _mesh_names(patched_prims(stage))
+        _check_folder(folder)
+
+    def path(self, mesh: Sdf.Path, words: Sequence[str], frame: float | None, extension: str) -> Path:
+        """MESH.WORD.FRAME.extension, of each word; of no frame for the default time."""
+        at = [] if frame is None else [frame_label(frame)]
+        return self.folder / ".".join([self._names[mesh], *words, *at, extension])
+
+    def check(self, output: Path) -> None:
+        """Raises UsageError for a file that cannot be written, or that the stage reads."""
+        if self.folder.is_dir():
+            check_output(output, [output.suffix])
+            self._inputs.refuse(output)
+
+    def write(self, output: Path, data: bytes) -> None:
+        """Raises UsageError, StageError; the file is then as it was."""
+        with writing(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+        self.check(output)
+        with replacing(output) as partial, writing(output):
+            partial.write_bytes(data)
+
+
+def check_frames(frames: Sequence[float]) -> None:
+    """Raises UsageError for frames whose files would have one name."""
+    seen: dict[str, float] = {}
+    for frame in frames:
+        other = seen.setdefault(frame_label(frame), frame)
+        if other != frame:
+            raise UsageError(
+                f"frames {other!r} and {frame!r} are too near to be told apart by the names of their files"
+            )
+
+
+def frame_label(frame: float) -> str:
+    """1001, 0007, -0007; 1001_25 for 1001.25, since a dot would end the number for those who look for sequences."""
+    if abs(frame) >= 1e15:
+        return frame_text(frame)
+    number = Decimal(round(frame, _PLACES)).quantize(Decimal(1).scaleb(-_PLACES))
+    whole, _, fraction = f"{abs(number):f}".partition(".")
+    fraction = fraction.rstrip("0")
+    return ("-" if number < 0 else "") + whole.zfill(4) + (f"_{fraction}" if fraction else "")
+
+
+def _mesh_names(prims: Sequence[Usd.Prim]) -> dict[Sdf.Path, str]:
+    """The end of each path that no other has, joined by dots: body_GEO, or hero.body_GEO where there are several.
+
+    Letters that differ in case alone are the same to some file systems.
+    """
+    paths = [prim.GetPath() for prim in prims]
+    words = {path: str(path).strip("/").split("/") for path in paths}
+    folded = [[word.casefold() for word in words[path]] for path in paths]
+    return {path: ".".join(words[path][-_depth(own, folded) :]) for path, own in zip(paths, folded, strict=True)}
+
+
+def _depth(own: list[str], all_words: list[list[str]]) -> int:
+    for depth in range(1, len(own)):
+        if sum(other[-depth:] == own[-depth:] for other in all_words) == 1:
+            return depth
+    return len(own)
+
+
+def _check_folder(folder: Path) -> None:
+    try:
+        fault = _fault(folder)
+    except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
+        fault = getattr(error, "strerror", None) or str(error)
+    if fault:
+        raise UsageError(f"output {folder}: {fault}")
+
+
+def _fault(folder: Path) -> str | None:
+    """Why files cannot be put in the folder, which is made where it is missing."""
+    nearest = folder.resolve()
+    while not nearest.exists():
+        nearest = nearest.parent
+    if not nearest.is_dir():
+        return "is not a folder" if nearest == folder.resolve() else f"{nearest} is not a folder"
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        return "is not writable" if nearest == folder.resolve() else f"the folder {nearest} is not writable"
+    return None

@@ -1,0 +1,80 @@
+"""What is going to be slid: a slider for every mesh, and the times at which it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from pxr import Usd
+
+from skinslide.frames import UsageError
+from skinslide.meshes import SlidMesh, read_meshes
+from skinslide.options import BakeOptions
+from skinslide.problems import Problem, StageProblems, errors
+from skinslide.slider import Lookup, Slider
+
+
+class PlannedMesh(NamedTuple):
+    mesh: SlidMesh
+    slider: Slider
+    times: list[Usd.TimeCode]  # ascending
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Slides that are known to be possible."""
+
+    meshes: list[PlannedMesh]
+    problems: list[Problem]  # warnings
+    options: BakeOptions
+
+    @classmethod
+    def read(cls, stage: Usd.Stage, options: BakeOptions) -> Plan:
+        """Raises StageProblems where any mesh cannot be slid."""
+        meshes, problems = read_meshes(stage, options.prims)
+        sliders = _build_sliders(meshes, options.lookup, problems)
+        if errors(problems):
+            raise StageProblems(problems)
+        planned = [
+            PlannedMesh(mesh, slider, _times(mesh, options.frames))
+            for mesh, slider in zip(meshes, sliders, strict=True)
+        ]
+        return cls(planned, problems, options)
+
+    def check_patches(self, wanted: Sequence[str] | None) -> None:
+        """Raises UsageError for no names, and StageProblems for those that no mesh has."""
+        there = {patch.name for planned in self.meshes for patch in planned.mesh.patches}
+        if wanted is not None and not wanted:
+            raise UsageError("patches: there are no names in it")
+        missing = [name for name in wanted or () if name not in there]
+        if missing:
+            message = f"no mesh has it; there are {', '.join(sorted(there))}"
+            raise StageProblems([Problem("error", "", name, None, message) for name in missing])
+
+    @property
+    def frame_count(self) -> int:
+        """Of all meshes."""
+        return sum(len(planned.times) for planned in self.meshes)
+
+
+def _build_sliders(meshes: list[SlidMesh], lookup: Lookup, problems: list[Problem]) -> list[Slider]:
+    sliders = []
+    for mesh in meshes:
+        try:
+            sliders.append(mesh.slider(lookup))
+        except StageProblems as error:
+            problems.extend(error.problems)
+    return sliders
+
+
+def _times(mesh: SlidMesh, asked: list[float] | None) -> list[Usd.TimeCode]:
+    """A mesh that never changes has one value, whatever was asked."""
+    if not mesh.varies:
+        return [Usd.TimeCode.Default()]
+    return [Usd.TimeCode(time) for time in (mesh.sample_times() if asked is None else asked)]
+
+
+def frame_of(time: Usd.TimeCode) -> float | None:
+    """None for the default time."""
+    return None if time.IsDefault() else time.GetValue()
