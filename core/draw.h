@@ -1,4 +1,4 @@
-/* What the files that draw share: tessellate.c, view.cpp, canvas.c. */
+/* What the files that draw share: tessellation.c, seams.c, tessellate.c, view.cpp, canvas.c, figure.c. */
 #ifndef SKINSLIDE_DRAW_H
 #define SKINSLIDE_DRAW_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* ---- tessellation.c, tessellate.c ---- */
+/* ---- tessellation.c, seams.c, tessellate.c ---- */
 
 /* Part of a face: the fan of all of it, where side is 0, or a grid of side by side cells on its limit surface. */
 typedef struct ss_piece {
@@ -42,8 +42,9 @@ struct skinslide_tessellation {
     int32_t *corner_vertex; /* [mesh index_count] mesh vertices */
     bool in_space;          /* coordinates are places at rest */
     int32_t piece_count, vertex_count, triangle_count, segment_count, flat_faces;
-    ss_piece *pieces; /* [piece_count] */
-    ss_parameter *at; /* [vertex_count] in its face; of grids */
+    ss_piece *pieces;  /* [piece_count] */
+    ss_parameter *at;  /* [vertex_count] in its face; of grids */
+    uint32_t *same_as; /* [vertex_count] the vertex, itself or one before it, whose place it has */
     uint32_t (*triangles)[3];
     uint32_t (*segments)[2]; /* of the outline */
     ss_fixed_vertex *fixed;  /* [vertex_count] */
@@ -68,11 +69,15 @@ static inline int32_t ss_piece_size(const skinslide_tessellation *tessellation, 
 
 /* The vertex on side k of a grid, step cells on: the sides go round it as those of a face do, from its first corner on. */
 uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step);
+/* Fills same_as. faces are those of the mesh, with their edges. False where memory is short. */
+bool ss_join_seams(skinslide_tessellation *tessellation, const ss_faces *faces);
 /* Blends values [width] at the corners of a piece's face linearly at one of its vertices: values are of the mesh's vertices, or
  * of its corners. */
 void ss_blend(const skinslide_tessellation *tessellation, const ss_piece *piece, int32_t vertex, const float *values,
               int32_t width, bool by_corner, double *weights, float *out);
 
+/* Of the box of the vertices that faces have: places in float, less it, are as exact as they can be. */
+void ss_find_middle(const skinslide_tessellation *tessellation, const float *points, double middle[3]);
 bool ss_tessellation_work_allocate(const skinslide_tessellation *tessellation, ss_tessellation_work *work);
 /* The mesh in a pose, less the origin: work->vertices, whose values are 0 where values is NULL. */
 void ss_tessellate(const skinslide_tessellation *tessellation, const float *points, const float *values, const double origin[3],

@@ -244,19 +244,6 @@ static skinslide_status check(const skinslide_canvas *canvas, const skinslide_vi
     return status;
 }
 
-/* In the middle of the mesh, so that places in float are as exact as they can be. */
-static void choose_origin(const skinslide_figure *figure, double origin[3]) {
-    int32_t count = figure->tessellation->mesh_vertex_count;
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int32_t v = 0; v < count; v++) {
-            low = fmin(low, figure->points[3 * (int64_t)v + k]);
-            high = fmax(high, figure->points[3 * (int64_t)v + k]);
-        }
-        origin[k] = 0.5 * (low + high);
-    }
-}
-
 skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                        const skinslide_camera *camera, const skinslide_figure *figure, skinslide_error *error) {
     skinslide_status status = check(canvas, viewport, camera, figure, error);
@@ -265,7 +252,7 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
     ss_view view;
     ss_egl_before before;
     double origin[3];
-    choose_origin(figure, origin);
+    ss_find_middle(figure->tessellation, figure->points, origin);
     if (!ss_view_of(camera, figure->to_world, origin, &view))
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");

@@ -77,6 +77,8 @@ skinslide_status ss_check_points(const float *points, int32_t vertex_count, cons
 /* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. label begins messages. */
 skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen, int32_t count, const char *label,
                                ss_memory *memory, ss_faces *faces, skinslide_error *error);
+/* Fills corner_edge and edge_count of any faces at all, several at an edge or none like it. False where memory is short. */
+bool ss_number_edges(ss_faces *faces);
 /* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
  */
 int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack);
@@ -318,7 +320,8 @@ typedef enum ss_face_surface {
     SS_SURFACE_NONE,    /* it is not rendered */
     SS_SURFACE_REFUSED, /* it would have one but for OpenSubdiv */
 } ss_face_surface;
-ss_face_surface ss_face_surface_of(const ss_topology *topology, int32_t mesh_face);
+/* kinds out [mesh face_count] */
+skinslide_status ss_face_surfaces(const ss_topology *topology, ss_face_surface *kinds, skinslide_error *error);
 /* BAD_PATCH where a face has none. label begins messages. */
 skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,
                                     ss_surfaces **out, skinslide_error *error);

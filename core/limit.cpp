@@ -167,6 +167,15 @@ const char *crash_at(const ss_topology &topology, int32_t face) {
     return is_near_non_manifold(level, vertices) ? "a crease, near where the mesh is not manifold" : nullptr;
 }
 
+/* OpenSubdiv is asked last: where it crashes at a face, it may do so when asked. */
+ss_face_surface kind_of(const ss_topology &topology, int32_t face) {
+    if (topology.is_hole[size_t(face)])
+        return SS_SURFACE_NONE;
+    if (crash_at(topology, face))
+        return SS_SURFACE_REFUSED;
+    return topology.factory->FaceHasLimitSurface(face) ? SS_SURFACE : SS_SURFACE_NONE;
+}
+
 skinslide_status refuse_hole(const ss_topology &topology, int32_t face, const char *label, skinslide_error *error) {
     const char *why = topology.is_hole[size_t(face)] ? "it is one of holeIndices"
                       : topology.mesh->subdivision->boundary_rule == SKINSLIDE_BOUNDARY_RULE_NONE
@@ -238,10 +247,12 @@ void ss_topology_destroy(ss_topology *topology) {
     delete topology;
 }
 
-ss_face_surface ss_face_surface_of(const ss_topology *topology, int32_t mesh_face) {
-    if (!topology->factory->FaceHasLimitSurface(mesh_face))
-        return SS_SURFACE_NONE;
-    return crash_at(*topology, mesh_face) ? SS_SURFACE_REFUSED : SS_SURFACE;
+skinslide_status ss_face_surfaces(const ss_topology *topology, ss_face_surface *kinds, skinslide_error *error) {
+    return guarded(error, [&] {
+        for (int32_t face = 0; face < topology->mesh->face_count; face++)
+            kinds[face] = kind_of(*topology, face);
+        return SKINSLIDE_OK;
+    });
 }
 
 skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,

@@ -94,6 +94,22 @@ static skinslide_status pair_sides(ss_faces *faces, const side *sides, const int
     return SKINSLIDE_OK;
 }
 
+bool ss_number_edges(ss_faces *faces) {
+    ss_memory scratch = {0};
+    side *sides = SS_NEW(&scratch, side, faces->corner_count);
+    if (scratch.failed)
+        return false;
+    list_sides(faces, sides);
+    faces->edge_count = 0;
+    for (int32_t i = 0; i < faces->corner_count; i++) {
+        bool same = i > 0 && sides[i].low == sides[i - 1].low && sides[i].high == sides[i - 1].high;
+        faces->edge_count += !same;
+        faces->corner_edge[sides[i].corner] = faces->edge_count - 1;
+    }
+    ss_free(&scratch);
+    return true;
+}
+
 /* ---- The faces of a patch ---- */
 
 /* sorted is scratch of the face's size. */

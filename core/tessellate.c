@@ -94,13 +94,15 @@ static void put_between(ss_posed_vertex *vertex, const ss_posed_vertex *a, const
     }
 }
 
-/* Leaves no gap along a side where the face beyond has fewer cells. */
-static void join_side(const ss_piece *piece, int side, ss_posed_vertex *vertices) {
+/* Leaves no gap along a side where the face beyond may have fewer cells. What has its place of another has it joined. */
+static void join_side(const skinslide_tessellation *own, const ss_piece *piece, int side, ss_posed_vertex *vertices) {
     int32_t stride = piece->corner < 0 ? piece->side / 2 : piece->side;
     for (int32_t step = 0; step < piece->side; step++) {
+        uint32_t v = ss_on_side(piece, side, step);
         int32_t begin = step - step % stride;
-        put_between(&vertices[ss_on_side(piece, side, step)], &vertices[ss_on_side(piece, side, begin)],
-                    &vertices[ss_on_side(piece, side, begin + stride)], (float)(step - begin) / (float)stride);
+        if (step > begin && own->same_as[v] == v)
+            put_between(&vertices[v], &vertices[ss_on_side(piece, side, begin)],
+                        &vertices[ss_on_side(piece, side, begin + stride)], (float)(step - begin) / (float)stride);
     }
 }
 
@@ -110,12 +112,15 @@ static void pose_grid(const skinslide_tessellation *own, const ss_piece *piece, 
     for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++) {
         double place[3], normal[3];
         ss_limit_frame(own->surfaces, piece->surface, &own->at[v], work->patch_points, place, normal);
-        for (int i = 0; i < 3; i++)
-            work->vertices[v].place[i] = (float)place[i], work->vertices[v].normal[i] = (float)normal[i];
+        const ss_posed_vertex *same = &work->vertices[own->same_as[v]];
+        for (int i = 0; i < 3; i++) {
+            work->vertices[v].normal[i] = (float)normal[i];
+            work->vertices[v].place[i] = own->same_as[v] == (uint32_t)v ? (float)place[i] : same->place[i];
+        }
     }
     for (int side = 0; side < 4; side++)
         if (piece->coarse >> side & 1)
-            join_side(piece, side, work->vertices);
+            join_side(own, piece, side, work->vertices);
 }
 
 /* ---- All ---- */
@@ -125,6 +130,17 @@ static void set_values(const skinslide_tessellation *own, const float *values, s
         const ss_piece *piece = &own->pieces[p];
         for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++)
             ss_blend(own, piece, v, values, 1, false, work->weights, &work->vertices[v].value);
+    }
+}
+
+void ss_find_middle(const skinslide_tessellation *own, const float *points, double middle[3]) {
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int32_t c = 0; c < own->face_start[own->mesh_face_count]; c++) {
+            double at = points[3 * (int64_t)own->corner_vertex[c] + k];
+            low = fmin(low, at), high = fmax(high, at);
+        }
+        middle[k] = low <= high ? 0.5 * (low + high) : 0;
     }
 }
 

@@ -12,12 +12,13 @@ enum { RINGS = 2 }; /* of faces around the patch that are fine */
 
 /* What is to become of each face, while the tessellation is built. */
 typedef struct blueprint {
-    int32_t *surface_of; /* [face_count] its surface, or -1 */
-    uint8_t *drawn;      /* [face_count] it is rendered */
-    uint8_t *inside;     /* [face_count] it is in the patch */
-    uint8_t *fine;       /* [face_count] */
-    uint8_t *border;     /* [index_count] sides of the outline */
-    uint8_t *coarse;     /* [index_count] sides with a coarse face beyond */
+    ss_faces faces;         /* of the mesh, with their edges */
+    ss_face_surface *kinds; /* [face_count] */
+    int32_t *surface_of;    /* [face_count] its surface, or -1 */
+    uint8_t *inside;        /* [face_count] it is in the patch */
+    uint8_t *fine;          /* [face_count] */
+    uint8_t *border;        /* [index_count] sides of the outline */
+    uint8_t *coarse;        /* [index_count] sides with a coarse face beyond */
 } blueprint;
 
 /* ---- Pieces ---- */
@@ -58,7 +59,7 @@ static void list_pieces(skinslide_tessellation *own, const blueprint *plan) {
     for (int32_t f = 0; f < own->mesh_face_count; f++) {
         if (plan->surface_of[f] >= 0)
             add_grids(own, f, plan->surface_of[f], plan->fine[f] ? steps : 1, plan->coarse + own->face_start[f]);
-        else if (plan->drawn[f] && ss_face_size(own, f) >= 3)
+        else if (plan->kinds[f] == SS_SURFACE_REFUSED && ss_face_size(own, f) >= 3)
             add_piece(own, (ss_piece){f, -1, -1, 0, 0, 0});
     }
 }
@@ -124,36 +125,42 @@ static skinslide_status plan_grids(const skinslide_tessellation *own, blueprint 
 
 /* ---- Surfaces ---- */
 
-/* Which faces are drawn, and which of them have a surface, in the order of faces. */
-static int32_t choose_surfaces(skinslide_tessellation *own, const ss_topology *topology, int32_t *faces, blueprint *plan) {
+/* Lists the faces that have one, in order. */
+static int32_t list_surfaces(skinslide_tessellation *own, blueprint *plan, int32_t *faces) {
     int32_t count = 0;
     for (int32_t f = 0; f < own->mesh_face_count; f++) {
-        ss_face_surface kind = topology ? ss_face_surface_of(topology, f) : SS_SURFACE_REFUSED;
-        plan->surface_of[f] = kind == SS_SURFACE ? count : -1;
-        plan->drawn[f] = kind != SS_SURFACE_NONE;
-        if (kind == SS_SURFACE)
+        plan->surface_of[f] = plan->kinds[f] == SS_SURFACE ? count : -1;
+        if (plan->kinds[f] == SS_SURFACE)
             faces[count++] = f;
-        own->flat_faces += topology && kind == SS_SURFACE_REFUSED;
+        own->flat_faces += plan->kinds[f] == SS_SURFACE_REFUSED;
     }
     return count;
 }
 
-static skinslide_status take_surfaces(skinslide_tessellation *own, const skinslide_mesh *mesh, blueprint *plan,
-                                      skinslide_error *error) {
+static skinslide_status subdivide(skinslide_tessellation *own, const skinslide_mesh *mesh, blueprint *plan,
+                                  skinslide_error *error) {
     ss_topology *topology = NULL;
     ss_memory scratch = {0};
     int32_t *faces = SS_NEW(&scratch, int32_t, mesh->face_count);
     skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    if (!status && ss_is_subdivided(mesh))
+    if (!status)
         status = ss_topology_create(mesh, &topology, error);
+    if (!status)
+        status = ss_face_surfaces(topology, plan->kinds, error);
     if (!status) {
-        int32_t count = choose_surfaces(own, topology, faces, plan);
-        if (topology)
-            status = ss_surfaces_create(topology, faces, count, "picture", &own->surfaces, error);
+        int32_t count = list_surfaces(own, plan, faces);
+        status = ss_surfaces_create(topology, faces, count, "picture", &own->surfaces, error);
     }
     ss_topology_destroy(topology);
     ss_free(&scratch);
     return status;
+}
+
+static skinslide_status take_surfaces(skinslide_tessellation *own, const skinslide_mesh *mesh, blueprint *plan,
+                                      skinslide_error *error) {
+    for (int32_t f = 0; f < mesh->face_count; f++)
+        plan->kinds[f] = SS_SURFACE_REFUSED, plan->surface_of[f] = -1;
+    return ss_is_subdivided(mesh) ? subdivide(own, mesh, plan, error) : SKINSLIDE_OK;
 }
 
 /* ---- Triangles ---- */
@@ -228,19 +235,25 @@ static void list_outline(skinslide_tessellation *own, const uint8_t *border) {
                 outline_side(own, &own->pieces[p], k);
 }
 
-/* Sides of the patch's faces with no other face of it beyond; and which faces are inside. */
-static skinslide_status find_border(const skinslide_tessellation *own, const skinslide_mesh *mesh, const int32_t *faces,
-                                    int32_t count, blueprint *plan, skinslide_error *error) {
+/* Which faces are inside; and their sides with no other of them beyond. count is scratch [edge_count], of zeros. */
+static void find_border(const int32_t *chosen, int32_t chosen_count, blueprint *plan, int32_t *count) {
+    const ss_faces *faces = &plan->faces;
+    for (int32_t i = 0; i < chosen_count; i++)
+        plan->inside[chosen[i]] = 1;
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        count[faces->corner_edge[c]] += plan->inside[faces->corner_face[c]];
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        plan->border[c] = plan->inside[faces->corner_face[c]] && count[faces->corner_edge[c]] == 1 &&
+                          faces->corner_vertex[c] != faces->corner_vertex[ss_next_corner(faces, c)];
+}
+
+static skinslide_status plan_border(const int32_t *chosen, int32_t chosen_count, blueprint *plan, skinslide_error *error) {
     ss_memory scratch = {0};
-    ss_faces taken;
-    skinslide_status status = ss_take_faces(mesh, faces, count, "picture", &scratch, &taken, error);
-    for (int32_t f = 0; f < count && !status; f++) {
-        plan->inside[faces[f]] = 1;
-        for (int32_t c = taken.face_start[f]; c < taken.face_start[f + 1]; c++)
-            plan->border[own->face_start[faces[f]] + c - taken.face_start[f]] = taken.corner_twin[c] < 0;
-    }
+    int32_t *count = ss_number_edges(&plan->faces) ? SS_NEW(&scratch, int32_t, plan->faces.edge_count) : NULL;
+    if (count)
+        find_border(chosen, chosen_count, plan, count);
     ss_free(&scratch);
-    return status;
+    return count ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
 /* ---- What never changes ---- */
@@ -258,13 +271,15 @@ static void fix_st(skinslide_tessellation *own, const float *st, const uint8_t *
 
 static skinslide_status fix_vertices(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st,
                                      const uint8_t *inside, skinslide_error *error) {
-    const double nowhere[3] = {0, 0, 0};
+    double middle[3];
     ss_tessellation_work work = {0};
     bool allocated = ss_tessellation_work_allocate(own, &work);
     if (allocated) {
         fix_st(own, st, inside, work.weights);
-        if (!st)
-            ss_tessellate(own, mesh->rest_points, NULL, nowhere, &work);
+        if (!st) {
+            ss_find_middle(own, mesh->rest_points, middle);
+            ss_tessellate(own, mesh->rest_points, NULL, middle, &work);
+        }
         for (int32_t v = 0; v < own->vertex_count && !st; v++)
             for (int i = 0; i < 3; i++)
                 own->fixed[v].coordinates[i] = work.vertices[v].place[i];
@@ -317,6 +332,7 @@ static bool allocate_pieces(skinslide_tessellation *own) {
     for (int32_t p = 0; p < own->piece_count; p++)
         segments += own->pieces[p].side ? 4 * own->pieces[p].side : ss_face_size(own, own->pieces[p].face);
     own->at = SS_NEW(&own->memory, ss_parameter, own->vertex_count);
+    own->same_as = SS_NEW(&own->memory, uint32_t, own->vertex_count);
     own->fixed = SS_NEW(&own->memory, ss_fixed_vertex, own->vertex_count);
     own->triangles = ss_new(&own->memory, own->triangle_count, sizeof *own->triangles);
     own->segments = ss_new(&own->memory, segments, sizeof *own->segments);
@@ -324,8 +340,10 @@ static bool allocate_pieces(skinslide_tessellation *own) {
 }
 
 static bool allocate_plan(const skinslide_mesh *mesh, ss_memory *memory, blueprint *plan) {
+    plan->faces.corner_face = SS_NEW(memory, int32_t, mesh->index_count);
+    plan->faces.corner_edge = SS_NEW(memory, int32_t, mesh->index_count);
+    plan->kinds = SS_NEW(memory, ss_face_surface, mesh->face_count);
     plan->surface_of = SS_NEW(memory, int32_t, mesh->face_count);
-    plan->drawn = SS_NEW(memory, uint8_t, mesh->face_count);
     plan->inside = SS_NEW(memory, uint8_t, mesh->face_count);
     plan->fine = SS_NEW(memory, uint8_t, mesh->face_count);
     plan->border = SS_NEW(memory, uint8_t, mesh->index_count);
@@ -333,20 +351,34 @@ static bool allocate_plan(const skinslide_mesh *mesh, ss_memory *memory, bluepri
     return !memory->failed;
 }
 
+static void view_faces(const skinslide_tessellation *own, ss_faces *faces) {
+    faces->face_count = own->mesh_face_count, faces->corner_count = own->face_start[own->mesh_face_count];
+    faces->face_start = own->face_start, faces->corner_vertex = own->corner_vertex;
+    for (int32_t f = 0; f < own->mesh_face_count; f++)
+        for (int32_t c = own->face_start[f]; c < own->face_start[f + 1]; c++)
+            faces->corner_face[c] = f;
+}
+
+/* What is drawn of each face, and how finely. */
+static skinslide_status plan_faces(skinslide_tessellation *own, const skinslide_mesh *mesh, const int32_t *chosen,
+                                   int32_t chosen_count, blueprint *plan, skinslide_error *error) {
+    view_faces(own, &plan->faces);
+    skinslide_status status = take_surfaces(own, mesh, plan, error);
+    if (!status)
+        status = plan_border(chosen, chosen_count, plan, error);
+    return status ? status : plan_grids(own, plan, error);
+}
+
 static skinslide_status build(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st, const int32_t *faces,
                               int32_t face_count, blueprint *plan, skinslide_error *error) {
     own->in_space = !st;
     skinslide_status status = copy_faces(own, mesh) ? SKINSLIDE_OK : ss_out_of_memory(error);
     if (!status)
-        status = take_surfaces(own, mesh, plan, error);
-    if (!status)
-        status = find_border(own, mesh, faces, face_count, plan, error);
-    if (!status)
-        status = plan_grids(own, plan, error);
+        status = plan_faces(own, mesh, faces, face_count, plan, error);
     if (status)
         return status;
     list_pieces(own, plan);
-    if (!allocate_pieces(own))
+    if (!allocate_pieces(own) || !ss_join_seams(own, &plan->faces))
         return ss_out_of_memory(error);
     list_triangles(own);
     list_outline(own, plan->border);
@@ -364,7 +396,7 @@ skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const
     if (!own)
         return ss_out_of_memory(error);
     ss_memory scratch = {0};
-    blueprint plan;
+    blueprint plan = {0};
     bool allocated = allocate_plan(mesh, &scratch, &plan);
     status = allocated ? build(own, mesh, st, faces, face_count, &plan, error) : ss_out_of_memory(error);
     ss_free(&scratch);

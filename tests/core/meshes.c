@@ -375,6 +375,34 @@ static test_mesh flawed_grid(void) {
     return mesh;
 }
 
+test_mesh cube(void) {
+    static const float points[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    static const int32_t counts[6] = {4, 4, 4, 4, 4, 4};
+    static const int32_t faces[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
+    return copy_mesh(8, 6, counts, faces, &points[0][0]);
+}
+
+test_mesh octahedron(void) {
+    static const float points[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    static const int32_t counts[8] = {3, 3, 3, 3, 3, 3, 3, 3};
+    static const int32_t faces[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    return copy_mesh(6, 8, counts, faces, &points[0][0]);
+}
+
+test_mesh torus(int32_t around, int32_t across) {
+    float points[256][3];
+    int32_t counts[256], faces[256][4];
+    for (int32_t j = 0; j < across; j++)
+        for (int32_t i = 0; i < around; i++) {
+            int32_t v = j * around + i, up = (j + 1) % across * around, right = (i + 1) % around;
+            double a = 6.283185307179586 * i / around, b = 6.283185307179586 * j / across, r = 3 + cos(b);
+            points[v][0] = (float)(r * cos(a)), points[v][1] = (float)(r * sin(a)), points[v][2] = (float)sin(b);
+            counts[v] = 4;
+            faces[v][0] = v, faces[v][1] = j * around + right, faces[v][2] = up + right, faces[v][3] = up + i;
+        }
+    return copy_mesh(around * across, around * across, counts, &faces[0][0], &points[0][0]);
+}
+
 static test_mesh shaken_grid(void) {
     test_mesh mesh = quad_grid(9, 7);
     float *points = shaken(&mesh, 5, 0.3);

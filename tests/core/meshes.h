@@ -47,6 +47,10 @@ test_mesh polygon(int32_t sides);
 test_mesh random_disk(uint64_t seed, int32_t steps);
 /* A tube of rings of quads, closed at the far end by a fan of triangles: the skin of a finger. */
 test_mesh finger(int32_t around, int32_t rings);
+/* Closed meshes: of six quads, eight triangles, and a quad grid rolled up both ways, of 256 quads at most. */
+test_mesh cube(void);
+test_mesh octahedron(void);
+test_mesh torus(int32_t around, int32_t across);
 /* Two meshes as one. */
 test_mesh join_meshes(const test_mesh *a, const test_mesh *b);
 

@@ -1,4 +1,5 @@
 /* Limit surfaces: against uniform refinement, across sides, and what cannot be one. */
+#include "creases.h"
 #include "queries.h"
 #include "refined.h"
 
@@ -9,35 +10,6 @@
 enum { LEVELS = 5 };
 
 /* ---- Meshes ---- */
-
-static test_mesh cube(void) {
-    static const float points[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-    static const int32_t counts[6] = {4, 4, 4, 4, 4, 4};
-    static const int32_t faces[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
-    return copy_mesh(8, 6, counts, faces, &points[0][0]);
-}
-
-static test_mesh octahedron(void) {
-    static const float points[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    static const int32_t counts[8] = {3, 3, 3, 3, 3, 3, 3, 3};
-    static const int32_t faces[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-    return copy_mesh(6, 8, counts, faces, &points[0][0]);
-}
-
-/* A quad grid rolled up both ways. */
-static test_mesh torus(int32_t around, int32_t across) {
-    float points[256][3];
-    int32_t counts[256], faces[256][4];
-    for (int32_t j = 0; j < across; j++)
-        for (int32_t i = 0; i < around; i++) {
-            int32_t v = j * around + i, up = (j + 1) % across * around, right = (i + 1) % around;
-            double a = 6.283185307179586 * i / around, b = 6.283185307179586 * j / across, r = 3 + cos(b);
-            points[v][0] = (float)(r * cos(a)), points[v][1] = (float)(r * sin(a)), points[v][2] = (float)sin(b);
-            counts[v] = 4;
-            faces[v][0] = v, faces[v][1] = j * around + right, faces[v][2] = up + right, faces[v][3] = up + i;
-        }
-    return copy_mesh(around * across, around * across, counts, &faces[0][0], &points[0][0]);
-}
 
 static test_mesh nth_mesh(int32_t i) {
     switch (i) {
@@ -72,43 +44,6 @@ static bool only_triangles(const test_mesh *mesh) {
 }
 
 /* ---- Two implementations ---- */
-
-/* Every third edge of faces sharp: semi-sharp, or infinitely. Some corners, too. Owns its arrays. */
-typedef struct creased {
-    skinslide_subdivision own;
-    int32_t *lengths, *indices, *corners;
-    float *sharpnesses, *corner_sharpnesses;
-} creased;
-
-static creased crease_at_random(const test_mesh *mesh, skinslide_scheme scheme, uint64_t seed) {
-    dice d = {seed};
-    size_t room = (size_t)mesh->index_count;
-    creased c = {.own = {.scheme = scheme}};
-    c.lengths = malloc(room * sizeof *c.lengths), c.indices = malloc(2 * room * sizeof *c.indices);
-    c.sharpnesses = malloc(room * sizeof *c.sharpnesses);
-    c.corners = malloc(room * sizeof *c.corners), c.corner_sharpnesses = malloc(room * sizeof *c.corner_sharpnesses);
-    static const float sharpness[] = {0.5f, 1, 2.3f, 10, 20, INFINITY};
-    int32_t creases = 0, corners = 0;
-    for (int32_t f = 0, start = 0; f < mesh->face_count; start += mesh->face_counts[f++]) {
-        int32_t n = mesh->face_counts[f], k = roll_below(&d, n);
-        c.lengths[creases] = 2;
-        c.indices[2 * creases] = mesh->face_indices[start + k];
-        c.indices[2 * creases + 1] = mesh->face_indices[start + (k + 1) % n];
-        c.sharpnesses[creases++] = sharpness[roll_below(&d, 6)];
-        if (f % 5 == 0) {
-            c.corners[corners] = mesh->face_indices[start];
-            c.corner_sharpnesses[corners++] = sharpness[roll_below(&d, 6)];
-        }
-    }
-    c.own.crease_count = c.own.crease_sharpness_count = creases, c.own.crease_index_count = 2 * creases;
-    c.own.crease_lengths = c.lengths, c.own.crease_indices = c.indices, c.own.crease_sharpnesses = c.sharpnesses;
-    c.own.corner_count = corners, c.own.corner_indices = c.corners, c.own.corner_sharpnesses = c.corner_sharpnesses;
-    return c;
-}
-
-static void free_creased(creased *c) {
-    free(c->lengths), free(c->indices), free(c->corners), free(c->sharpnesses), free(c->corner_sharpnesses);
-}
 
 static int32_t compared, refused; /* meshes, since a test began */
 

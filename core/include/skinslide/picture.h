@@ -28,13 +28,15 @@ typedef struct skinslide_tessellation_info {
 } skinslide_tessellation_info;
 
 /* Makes a mesh into triangles: the fans of its faces, or, where it is subdivided, grids on its limit surface: 2 by 2 cells a
- * quad, in the patch and around it up to 16 by 16, and there 65,536 cells in all. Faces that are not rendered (holeIndices, and with boundary rule NONE those at the
- * boundary) are left out. In faces, texture coordinates and values go linearly, as in USD with faceVaryingLinearInterpolation
- * "all".
+ * quad, in the patch and two rings of faces around it up to 16 by 16, as 32,768 cells there in all allow. Grids meet without a
+ * gap, whatever their cells. Faces that are not rendered (holeIndices, and with boundary rule NONE those at the boundary) are
+ * left out, and so are those of fewer than three vertices. In faces, texture coordinates and values go linearly, as in USD with
+ * faceVaryingLinearInterpolation "all".
  *   mesh   in  read during the call only
  *   st     in  [index_count][2] texture coordinates of the mesh's corners, face by face; NULL: rest_points take their place, as
  *              the coordinates of squares in space
- *   faces  in  [face_count] mesh faces: the patch, which is outlined; what is outside it is drawn paler
+ *   faces  in  [face_count] mesh faces: the patch, in any order, of any shape: it is outlined, and what is outside it is
+ *              drawn paler
  * Fails with BAD_MESH, BAD_POINTS, BAD_CONTROL (st not finite: names the face), BAD_ARGUMENT, UNSUPPORTED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const float *st, const int32_t *faces,
                                                              int32_t face_count, skinslide_tessellation **out,
