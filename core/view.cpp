@@ -1,4 +1,5 @@
-/* Where pictures are seen from: matrices for drawing, and a camera that has faces in sight. Behind C functions. */
+/* Where pictures are seen from: matrices for drawing, and a camera that has faces in sight. Behind C functions, and nothing here
+ * throws. */
 #include "draw.h"
 
 #include <algorithm>
@@ -9,54 +10,54 @@
 
 namespace {
 
+using glm::dmat3;
 using glm::dmat4;
 using glm::dvec3;
 
-const double field_of_view = 0.5; /* radians, up and down */
-const double margin = 1.12;       /* round what is framed */
-const double cancelled = 0.25;    /* of the area: normals that sum to less say nothing */
+const double field_of_view = 0.5;  /* radians, up and down */
+const double margin = 1.12;        /* round what is framed */
+const double least_distance = 0.5; /* of its diagonal */
+const double cancelled = 0.25;     /* of the area: normals that sum to less say nothing */
+const double no_area = 1e-14;      /* of the diagonal squared: faces of less are lines */
 
 /* USD's rows of points as rows are the columns of points as columns. */
 dmat4 matrix_of(const double *rows) {
     return rows ? glm::make_mat4(rows) : dmat4(1);
 }
 
-bool is_finite(const ss_view &view) {
-    auto finite = [](float x) { return std::isfinite(x); };
-    return std::all_of(view.to_camera, view.to_camera + 16, finite) && std::all_of(view.to_clip, view.to_clip + 16, finite) &&
-           std::all_of(view.turn_normal, view.turn_normal + 9, finite);
+template <typename Number> bool all_finite(const Number *values, size_t count) {
+    return std::all_of(values, values + count, [](Number x) { return std::isfinite(x); });
 }
 
-/* ---- Framing ---- */
+double largest(const dmat3 &matrix) {
+    double most = 0;
+    for (int i = 0; i < 9; i++)
+        most = std::max(most, std::abs(matrix[i / 3][i % 3]));
+    return most;
+}
 
-/* Faces in some poses, in the world. */
+/* ---- What is framed ---- */
+
 struct Subject {
-    const skinslide_mesh *mesh;
-    const int32_t *faces;
-    int32_t face_count;
-    const float *const *poses;
-    const double *to_world;
-    int32_t pose_count;
-
-    /* Calls body(pose, vertices, n, first corner's place, place_of) for each face. */
-    template <typename Body> void each_face(Body body) const {
-        for (int32_t pose = 0; pose < pose_count; pose++) {
-            dmat4 matrix = matrix_of(to_world ? to_world + 16 * int64_t(pose) : nullptr);
-            auto place = [&](int32_t vertex) {
-                const float *p = poses[pose] + 3 * int64_t(vertex);
-                return dvec3(matrix * glm::dvec4(p[0], p[1], p[2], 1));
-            };
-            int32_t face = 0, start = 0;
-            for (int32_t i = 0; i < face_count; i++) {
-                if (faces[i] < face)
-                    face = start = 0;
-                for (; face < faces[i]; face++)
-                    start += mesh->face_counts[face];
-                body(mesh->face_indices + start, mesh->face_counts[face], place);
-            }
-        }
-    }
+    const skinslide_subject &own;
+    const int32_t *start; /* [mesh face_count] first corner of each face */
 };
+
+/* The faces in each pose, in the world. Calls body(vertices, n, place of a vertex, -1 where faces turn right seen from outside,
+ * else 1). */
+template <typename Body> void each_face(const Subject &subject, Body body) {
+    const skinslide_subject &own = subject.own;
+    for (int32_t pose = 0; pose < own.pose_count; pose++) {
+        dmat4 matrix = matrix_of(own.to_world ? own.to_world + 16 * int64_t(pose) : nullptr);
+        double turn = (glm::determinant(dmat3(matrix)) < 0) == (own.left_handed != 0) ? 1 : -1;
+        auto place = [&](int32_t vertex) {
+            const float *p = own.poses[pose] + 3 * int64_t(vertex);
+            return dvec3(matrix * glm::dvec4(p[0], p[1], p[2], 1));
+        };
+        for (int32_t i = 0; i < own.face_count; i++)
+            body(own.mesh->face_indices + subject.start[own.faces[i]], own.mesh->face_counts[own.faces[i]], place, turn);
+    }
+}
 
 struct Box {
     dvec3 low{INFINITY}, high{-INFINITY};
@@ -75,43 +76,57 @@ struct Box {
 /* What is known of the faces in all poses at once. */
 struct Shape {
     Box box;
-    dvec3 normal{0}; /* the sum of area vectors */
+    dvec3 normal{0}; /* the sum of area vectors, outwards */
     double area = 0;
-    glm::dmat3 spread{0}; /* the sum of area vectors' squares: least along the direction in which the faces are seen least */
+    dmat3 spread{0}; /* the sum of area vectors' squares: least along the direction in which the faces are seen least */
+    dvec3 first{0}, farthest{0}; /* corners: the first, and the one farthest from it */
 
     explicit Shape(const Subject &subject) {
-        subject.each_face([&](const int32_t *v, int32_t n, auto place) {
+        bool any = false;
+        each_face(subject, [&](const int32_t *v, int32_t n, auto place, double turn) {
+            for (int32_t k = 0; k < n; k++) {
+                dvec3 p = place(v[k]);
+                first = any ? first : p, any = true;
+                farthest = glm::distance(p, first) >= glm::distance(farthest, first) || box.size() == 0 ? p : farthest;
+                box.add(p);
+            }
             dvec3 sum(0);
-            for (int32_t k = 0; k < n; k++)
-                box.add(place(v[k]));
             for (int32_t k = 1; k + 1 < n; k++)
                 sum += 0.5 * glm::cross(place(v[k]) - place(v[0]), place(v[k + 1]) - place(v[0]));
-            normal += sum;
+            normal += turn * sum;
             area += glm::length(sum);
             if (glm::length(sum) > 0)
                 spread += glm::outerProduct(sum, sum) / glm::length(sum);
         });
     }
 
-    /* The direction in which most of the area is seen: the largest eigenvector of the spread, by squaring it. */
+    /* The direction in which most of the area is seen: the largest eigenvector of the spread, by squaring it. Where several are
+     * as large, as round a limb, the nearest of theirs to the sum of the normals, if that is any. */
     dvec3 widest() const {
-        glm::dmat3 power = spread / std::max(area, 1e-300);
-        for (int i = 0; i < 6; i++) {
+        dmat3 power = spread / area;
+        for (int i = 0; i < 40; i++) {
             power = power * power;
-            power /= std::max(power[0][0] + power[1][1] + power[2][2], 1e-300);
+            power /= power[0][0] + power[1][1] + power[2][2];
         }
         int most = 0;
         for (int i = 1; i < 3; i++)
             most = glm::length(power[i]) > glm::length(power[most]) ? i : most;
-        return power[most];
+        dvec3 leaning = power * normal;
+        return glm::length(leaning) > 1e-3 * area ? leaning : power[most];
     }
 
     /* Towards the camera. */
-    dvec3 direction() const {
-        dvec3 found = glm::length(normal) > cancelled * area ? normal : widest();
-        return glm::length(found) > 0 ? glm::normalize(found) : dvec3(0, 0, 1);
+    dvec3 direction(dvec3 up) const {
+        if (area > no_area * box.size() * box.size())
+            return glm::normalize(glm::length(normal) > cancelled * area ? normal : widest());
+        dvec3 along = glm::normalize(farthest - first), aside = glm::cross(along, up);
+        if (glm::length(aside) < 0.05)
+            aside = glm::cross(along, std::abs(along.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0));
+        return glm::normalize(aside);
     }
 };
+
+/* ---- Framing ---- */
 
 /* A direction that is up and not along the view. */
 dvec3 up_for(dvec3 direction, dvec3 up) {
@@ -120,75 +135,123 @@ dvec3 up_for(dvec3 direction, dvec3 up) {
     return std::abs(direction.z) < 0.9 ? dvec3(0, 0, 1) : dvec3(0, 1, 0);
 }
 
-/* Looks against a direction, and draws back until every corner is within the field of view. */
+/* How far back from the middle, and the depths of what is seen from there. */
+struct Distance {
+    double back = -INFINITY, near = INFINITY, far = -INFINITY;
+};
+
+/* Drawn back until every corner is within the field of view. turned: from the world, less the distance back. */
+Distance draw_back(const Subject &subject, const dmat4 &turned, double aspect, double size) {
+    double tall = std::tan(field_of_view / 2) / margin, wide = tall * aspect;
+    Distance found;
+    each_face(subject, [&](const int32_t *v, int32_t n, auto place, double) {
+        for (int32_t k = 0; k < n; k++) {
+            dvec3 p = dvec3(turned * glm::dvec4(place(v[k]), 1));
+            found.back = std::max(found.back, p.z + std::max(std::abs(p.x) / wide, std::abs(p.y) / tall));
+            found.near = std::min(found.near, -p.z), found.far = std::max(found.far, -p.z);
+        }
+    });
+    found.back = std::max(found.back, least_distance * size - found.near);
+    found.near += found.back, found.far += found.back;
+    return found;
+}
+
+/* Looks against a direction. */
 skinslide_camera look(const Subject &subject, const Shape &shape, dvec3 direction, dvec3 up, double aspect) {
-    dvec3 middle = shape.box.middle();
-    dmat4 turned = glm::lookAt(middle + direction, middle, up_for(direction, up));
-    double tall = std::tan(field_of_view / 2) / margin, wide = tall * aspect, back = 0, near = INFINITY, far = -INFINITY;
+    dmat4 turned(dmat3(glm::lookAt(direction, dvec3(0), up_for(direction, up))));
+    turned = glm::translate(turned, -shape.box.middle());
     Box seen;
-    subject.each_face([&](const int32_t *v, int32_t n, auto place) {
+    each_face(subject, [&](const int32_t *v, int32_t n, auto place, double) {
         for (int32_t k = 0; k < n; k++)
             seen.add(dvec3(turned * glm::dvec4(place(v[k]), 1)));
     });
-    dvec3 shift(seen.middle().x, seen.middle().y, 0);
-    subject.each_face([&](const int32_t *v, int32_t n, auto place) {
-        for (int32_t k = 0; k < n; k++) {
-            dvec3 p = dvec3(turned * glm::dvec4(place(v[k]), 1)) - shift;
-            back = std::max(back, p.z + std::max(std::abs(p.x) / wide, std::abs(p.y) / tall));
-            near = std::min(near, -p.z), far = std::max(far, -p.z);
-        }
-    });
-    dmat4 to_camera = glm::translate(dmat4(1), dvec3(0, 0, -back)) * glm::translate(dmat4(1), -shift) * turned;
-    double first = near + back, size = shape.box.size();
-    dmat4 to_screen = glm::perspective(field_of_view, aspect, std::max(first - 4 * size, 0.1 * first), far + back + 40 * size);
+    turned = glm::translate(dmat4(1), -seen.middle()) * turned;
+    double size = seen.size(); /* which turns with the subject and the camera, as the box in the world does not */
+    Distance away = draw_back(subject, turned, aspect, size);
+    dmat4 to_camera = glm::translate(dmat4(1), dvec3(0, 0, -away.back)) * turned;
+    dmat4 to_screen =
+        glm::perspective(field_of_view, aspect, std::max(away.near - 4 * size, 0.1 * away.near), away.far + 40 * size);
     skinslide_camera camera;
     std::copy_n(glm::value_ptr(to_camera), 16, camera.to_camera);
     std::copy_n(glm::value_ptr(to_screen), 16, camera.to_screen);
     return camera;
 }
 
-skinslide_status check(const Subject &subject, const double *up, double aspect, skinslide_error *error) {
-    skinslide_status status = ss_check_mesh(subject.mesh, error);
+skinslide_status frame(const Subject &subject, dvec3 up, double aspect, skinslide_camera *camera, skinslide_error *error) {
+    Shape shape(subject);
+    double size = shape.box.size();
+    skinslide_camera found = {};
+    if (size > 0 && std::isfinite(size))
+        found = look(subject, shape, shape.direction(up), up, aspect);
+    if (!(size > 0) || !std::isfinite(size) || !all_finite(found.to_camera, 16) || !all_finite(found.to_screen, 16))
+        return ss_fail(error, SKINSLIDE_BAD_POINTS,
+                       "no camera can have the faces in sight: they are all in one place, or endless");
+    *camera = found;
+    return SKINSLIDE_OK;
+}
+
+/* NULL where memory is short. */
+const int32_t *list_starts(const skinslide_mesh &mesh, ss_memory *scratch) {
+    int32_t *start = SS_NEW(scratch, int32_t, mesh.face_count);
+    for (int32_t f = 0, c = 0; start && f < mesh.face_count; c += mesh.face_counts[f++])
+        start[f] = c;
+    return start;
+}
+
+/* ---- Bad input ---- */
+
+skinslide_status check_poses(const skinslide_subject &own, skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t pose = 0; pose < own.pose_count && !status; pose++)
+        status = ss_check_points(own.poses[pose], own.mesh->vertex_count, "points", error);
+    for (int32_t pose = 0; pose < own.pose_count && own.to_world && !status; pose++)
+        if (!all_finite(own.to_world + 16 * int64_t(pose), 16))
+            status = ss_fail(error, SKINSLIDE_BAD_POINTS, "pose %d: its way to the world is not finite", pose);
+    return status;
+}
+
+skinslide_status check(const skinslide_subject &own, const double *up, double aspect, skinslide_error *error) {
+    skinslide_status status = ss_check_mesh(own.mesh, error);
     if (status)
         return status;
-    if (subject.face_count < 1 || !subject.faces || subject.pose_count < 1 || !subject.poses || !up || !(aspect > 0) ||
-        !std::isfinite(aspect) || !(glm::length(glm::make_vec3(up)) > 0))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces or poses, no way up, or no shape of picture");
-    for (int32_t i = 0; i < subject.face_count; i++)
-        if (subject.faces[i] < 0 || subject.faces[i] >= subject.mesh->face_count)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", subject.faces[i],
-                           subject.mesh->face_count);
-    for (int32_t pose = 0; pose < subject.pose_count && !status; pose++)
-        status = ss_check_points(subject.poses[pose], subject.mesh->vertex_count, "points", error);
-    return status;
+    if (own.face_count < 1 || !own.faces || own.pose_count < 1 || !own.poses)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces, or no poses");
+    double length = up ? glm::length(glm::make_vec3(up)) : 0;
+    if (!(length > 0) || !std::isfinite(length) || !(aspect > 0) || !std::isfinite(aspect))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no way up, or no shape of picture");
+    for (int32_t i = 0; i < own.face_count; i++)
+        if (own.faces[i] < 0 || own.faces[i] >= own.mesh->face_count)
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", own.faces[i],
+                           own.mesh->face_count);
+    return check_poses(own, error);
 }
 
 } // namespace
 
+/* ---- C ---- */
+
 bool ss_view_of(const skinslide_camera *camera, const double *to_world, const double origin[3], ss_view *view) {
     dmat4 world = glm::translate(matrix_of(to_world), dvec3(origin[0], origin[1], origin[2]));
     dmat4 to_camera = matrix_of(camera->to_camera) * world, to_clip = matrix_of(camera->to_screen) * to_camera;
-    glm::mat3 normal(glm::transpose(glm::inverse(glm::dmat3(to_camera))));
+    dmat3 normal = glm::transpose(glm::inverse(dmat3(to_camera)));
     std::copy_n(glm::value_ptr(glm::mat4(to_camera)), 16, view->to_camera);
     std::copy_n(glm::value_ptr(glm::mat4(to_clip)), 16, view->to_clip);
-    std::copy_n(glm::value_ptr(normal), 9, view->turn_normal);
-    view->mirrored = glm::determinant(glm::dmat3(to_camera)) < 0;
-    return is_finite(*view);
+    std::copy_n(glm::value_ptr(glm::mat3(normal / largest(normal))), 9, view->turn_normal);
+    view->mirrored = glm::determinant(to_clip) > 0; /* below 0 unless it is: depth in clip space goes away from the camera */
+    return all_finite(view->to_camera, 16) && all_finite(view->to_clip, 16) && all_finite(view->turn_normal, 9);
 }
 
-skinslide_status skinslide_frame_faces(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count,
-                                       const float *const *poses, const double *to_world, int32_t pose_count,
-                                       const double up[3], double aspect, skinslide_camera *camera, skinslide_error *error) {
-    Subject subject{mesh, faces, face_count, poses, to_world, pose_count};
-    if (!camera)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the camera");
-    skinslide_status status = check(subject, up, aspect, error);
+skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const double up[3], double aspect,
+                                       skinslide_camera *camera, skinslide_error *error) {
+    if (!subject || !camera)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no subject, or no place for the camera");
+    skinslide_status status = check(*subject, up, aspect, error);
     if (status)
         return status;
-    Shape shape(subject);
-    if (!(shape.box.size() > 0) || !std::isfinite(shape.box.size()))
-        return ss_fail(error, SKINSLIDE_BAD_POINTS,
-                       "no camera can have the faces in sight: they are all in one place, or endless");
-    *camera = look(subject, shape, shape.direction(), glm::normalize(glm::make_vec3(up)), aspect);
-    return SKINSLIDE_OK;
+    ss_memory scratch = {};
+    const int32_t *start = list_starts(*subject->mesh, &scratch);
+    status = start ? frame(Subject{*subject, start}, glm::normalize(glm::make_vec3(up)), aspect, camera, error)
+                   : ss_out_of_memory(error);
+    ss_free(&scratch);
+    return status;
 }

@@ -59,9 +59,12 @@ static scene set_scene(int32_t side, skinslide_scheme scheme, bool near) {
     stop_unless(skinslide_tessellation_create(&view, NULL, patch, count, &s.tessellation, &error), &error);
     s.create = spent() - start;
     const float *poses[2] = {s.before, s.after};
-    stop_unless(skinslide_frame_faces(&view, near ? patch : all, near ? count : s.mesh.face_count, poses, NULL, 2, up,
-                                      0.5 * WIDTH / HEIGHT, &s.camera, &error),
-                &error);
+    const skinslide_subject subject = {.mesh = &view,
+                                       .faces = near ? patch : all,
+                                       .face_count = near ? count : s.mesh.face_count,
+                                       .pose_count = 2,
+                                       .poses = poses};
+    stop_unless(skinslide_frame_faces(&subject, up, 0.5 * WIDTH / HEIGHT, &s.camera, &error), &error);
     stop_unless(skinslide_canvas_create(NULL, &s.canvas, &error), &error);
     free(all), free(patch);
     return s;

@@ -71,19 +71,25 @@ typedef struct skinslide_camera {
     double to_screen[16]; /* the projection: to clip space, -1..1 in all of x/w, y/w, z/w */
 } skinslide_camera;
 
-/* A camera that has faces of a mesh in sight in each of some poses, as near as all of them fit. It looks against the mean of
- * the faces' normals over the poses; where those cancel out, as round a limb, from where the faces are widest.
- *   mesh       in  rest_points are not read
- *   faces      in  [face_count] mesh faces, face_count > 0
- *   poses      in  [pose_count] each [mesh vertex_count][3]
- *   to_world   in  [pose_count][16], or NULL: poses are in the world
- *   up         in  the world's, a direction
- *   aspect     in  width of the picture by its height
+/* Faces of a mesh in some poses. */
+typedef struct skinslide_subject {
+    const skinslide_mesh *mesh; /* rest_points are not read */
+    const int32_t *faces;       /* [face_count] mesh faces */
+    int32_t face_count;         /* > 0 */
+    int32_t pose_count;         /* > 0 */
+    const float *const *poses;  /* [pose_count] each [mesh vertex_count][3] */
+    const double *to_world;     /* [pose_count][16], or NULL: poses are in the world */
+    int32_t left_handed;        /* not 0 where the mesh's orientation is leftHanded */
+} skinslide_subject;
+
+/* A camera that has a subject in sight in each of its poses, as near as all of it fits, and no nearer than half the diagonal of
+ * its box, along the picture and into it. It looks against the mean of the faces' normals over the poses; where those cancel out, as round a limb, from where
+ * the faces are widest.
+ *   up      in  the world's, a direction
+ *   aspect  in  width of the picture by its height
  * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite, or no camera can see them: all in one place), OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_frame_faces(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count,
-                                                     const float *const *poses, const double *to_world, int32_t pose_count,
-                                                     const double up[3], double aspect, skinslide_camera *camera,
-                                                     skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const double up[3], double aspect,
+                                                     skinslide_camera *camera, skinslide_error *error);
 
 /* ---- On what ---------------------------------------------------------------------------------------------------------------- */
 

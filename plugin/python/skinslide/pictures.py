@@ -8,9 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.native import Arguments, LookupInfo, Subdivision, call, enum_value, read
-
-MOST_SIDE = 16384
+from skinslide.native import Arguments, LookupInfo, SliderError, Subdivision, as_array, call, enum_value, read, writable
 
 
 class Viewport(NamedTuple):
@@ -77,10 +75,9 @@ class Canvas:
 
     def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None):
         out, wanted = ffi.new("skinslide_canvas **"), -1 if device is None else device
-        options = ffi.new(
-            "skinslide_canvas_options *",
-            (*(min(side, 2**31 - 1) for side in (width, height)), enum_value("pixels", pixels, ""), wanted),
-        )
+        if device is not None and device < 0:
+            raise SliderError("BAD_ARGUMENT", f"no such device: {device}")
+        options = _struct("canvas_options", (width, height, enum_value("pixels", pixels, ""), wanted))
         call(lib.skinslide_canvas_create, options, out)
         self._handle = ffi.gc(out[0], lib.skinslide_canvas_destroy)
         self.width, self.height = width, height
@@ -95,7 +92,8 @@ class Canvas:
 
     def clear(self, colour: Sequence[float]) -> None:
         """Fills it with a colour, linear light."""
-        call(lib.skinslide_canvas_clear, self._handle, ffi.new("float[3]", list(colour)))
+        native = Arguments()
+        call(lib.skinslide_canvas_clear, self._handle, native.pointer(colour, np.float32, (3,), "colour"))
 
     def draw(
         self,
@@ -112,26 +110,20 @@ class Canvas:
     ) -> None:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale."""
         native, figure = Arguments(), ffi.new("skinslide_figure *")
+        world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
         figure.tessellation = tessellation.handle
         figure.points = native.points(points, tessellation.vertex_count, "points")
-        world = ffi.NULL if to_world is None else _matrix(to_world)
-        figure.to_world, figure.squares = world, squares
-        figure.double_sided, figure.left_handed = double_sided, left_handed
+        figure.to_world = ffi.NULL if world is None else world
+        figure.squares, figure.double_sided, figure.left_handed = squares, double_sided, left_handed
         if scale:
             figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
             figure.lowest, figure.highest = scale.lowest, scale.highest
-        call(
-            lib.skinslide_canvas_draw,
-            self._handle,
-            ffi.new("skinslide_viewport *", tuple(viewport)),
-            _camera(camera),
-            figure,
-        )
+        call(lib.skinslide_canvas_draw, self._handle, _struct("viewport", viewport), _camera(camera), figure)
 
     def read(self) -> np.ndarray:
         """(height, width, 4), from the top row on."""
         pixels = np.empty((self.height, self.width, 4), self._dtype)
-        call(lib.skinslide_canvas_read, self._handle, ffi.from_buffer("char[]", pixels, require_writable=True))
+        call(lib.skinslide_canvas_read, self._handle, writable("char[]", pixels))
         return pixels
 
 
@@ -142,25 +134,21 @@ def frame_faces(
     to_world: np.ndarray,
     up: Sequence[float],
     aspect: float,
+    *,
+    left_handed: bool = False,
 ) -> Camera:
     """A camera that has faces in sight in each of the poses, (V, 3), with to_world (poses, 4, 4)."""
-    native, found = Arguments(), ffi.new("skinslide_camera *")
+    native, subject, found = Arguments(), ffi.new("skinslide_subject *"), ffi.new("skinslide_camera *")
+    if not len(poses):
+        raise SliderError("BAD_ARGUMENT", "no faces, or no poses")
     mesh = native.mesh(*shape, poses[0])
-    chosen = native.pointer(faces, np.int32, (-1,), "faces")
-    pointers = [native.points(points, len(poses[0]), "points") for points in poses]
-    matrices = _matrices(to_world, len(poses))
-    call(
-        lib.skinslide_frame_faces,
-        ffi.addressof(mesh),
-        chosen,
-        len(faces),
-        ffi.new("float *[]", pointers),
-        matrices,
-        len(poses),
-        ffi.new("double[3]", list(up)),
-        aspect,
-        found,
-    )
+    pointers = ffi.new("float *[]", [native.points(points, len(poses[0]), "points") for points in poses])
+    matrices = _doubles(to_world, (len(poses), 4, 4), "to_world")
+    subject.mesh = ffi.addressof(mesh)
+    subject.faces, subject.face_count = native.pointer(faces, np.int32, (-1,), "faces"), len(faces)
+    subject.pose_count, subject.poses, subject.to_world = len(poses), pointers, matrices
+    subject.left_handed = left_handed
+    call(lib.skinslide_frame_faces, subject, _doubles(up, (3,), "up"), aspect, found)
     return Camera(*(np.array(list(field)).reshape(4, 4) for field in (found.to_camera, found.to_screen)))
 
 
@@ -168,20 +156,23 @@ def false_colour(share: float) -> tuple[float, float, float]:
     """A colour of the scale, linear light: 0 is the lowest, 1 the highest."""
     colour = ffi.new("float[3]")
     lib.skinslide_false_colour(share, colour)
-    return tuple(colour)
+    return colour[0], colour[1], colour[2]
 
 
-def _matrix(values: np.ndarray) -> Any:
-    return _matrices(np.asarray(values)[None], 1)
-
-
-def _matrices(values: np.ndarray, count: int) -> Any:
-    array = np.ascontiguousarray(values, np.float64).reshape(count, 16)
-    return ffi.from_buffer("double[]", array)
+def _doubles(values: Any, shape: tuple[int, ...], what: str) -> Any:
+    return ffi.from_buffer("double[]", as_array(values, np.float64, shape, what).reshape(-1))
 
 
 def _camera(camera: Camera) -> Any:
     made = ffi.new("skinslide_camera *")
     for name, values in camera._asdict().items():
-        ffi.memmove(getattr(made, name), np.ascontiguousarray(values, np.float64), 16 * 8)
+        ffi.memmove(getattr(made, name), _doubles(values, (4, 4), name), 16 * 8)
     return made
+
+
+def _struct(name: str, values: Sequence[int]) -> Any:
+    """Of whole numbers; SliderError where one is too large for it."""
+    try:
+        return ffi.new(f"skinslide_{name} *", tuple(values))
+    except OverflowError as error:
+        raise SliderError("BAD_ARGUMENT", f"{name.replace('_', ' ')}: {error}") from error
