@@ -139,6 +139,9 @@ skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float co
     ss_egl_before before;
     if (!canvas || !colour)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no colour");
+    if (!isfinite(colour[0]) || !isfinite(colour[1]) || !isfinite(colour[2]))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the colour (%g, %g, %g) is not finite", (double)colour[0],
+                       (double)colour[1], (double)colour[2]);
     skinslide_status status = ss_gl_enter(canvas->egl, &before, error);
     if (status)
         return status;

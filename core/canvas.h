@@ -1,4 +1,4 @@
-/* A canvas from inside: canvas.c makes, clears and reads it, figure.c draws figures on it. */
+/* A canvas from inside: canvas.c makes, clears and reads it, figure.c draws figures on it with what shading.c makes. */
 #ifndef SKINSLIDE_CANVAS_H
 #define SKINSLIDE_CANVAS_H
 
@@ -10,7 +10,7 @@ typedef struct ss_figure_objects {
     GLuint surface_program, outline_program;
     GLuint surface_array, outline_array;
     GLuint fixed_buffer, posed_buffer, triangle_buffer, segment_buffer;
-    GLint surface_to_camera, surface_to_clip, turn_normal, coordinates, scale, colours, encoded; /* uniforms */
+    GLint surface_to_camera, surface_to_clip, turn_normal, coordinates, scale, colours, encoded, chequered; /* uniforms */
     GLint outline_to_clip, half_width, line_colour;
 } ss_figure_objects;
 
@@ -24,6 +24,9 @@ struct skinslide_canvas {
 
 /* The context is current. */
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);
+
+/* The program that draws surfaces is in use. */
+void ss_set_scale_colours(const ss_egl_api *gl, const ss_figure_objects *objects);
 
 /* What a colour of linear light is in the canvas's pixels. */
 void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]);

@@ -1,4 +1,4 @@
-/* What the files that draw share: tessellation.c, seams.c, tessellate.c, view.cpp, canvas.c, figure.c. */
+/* What the files that draw share: tessellation.c, seams.c, tessellate.c, view.cpp, canvas.c, figure.c, shading.c. */
 #ifndef SKINSLIDE_DRAW_H
 #define SKINSLIDE_DRAW_H
 
@@ -67,6 +67,10 @@ static inline int32_t ss_piece_size(const skinslide_tessellation *tessellation, 
     return piece->side ? (piece->side + 1) * (piece->side + 1) : ss_face_size(tessellation, piece->face);
 }
 
+static inline int32_t ss_triangles_of(const skinslide_tessellation *tessellation, const ss_piece *piece) {
+    return piece->side ? 2 * piece->side * piece->side : ss_face_size(tessellation, piece->face) - 2;
+}
+
 /* The vertex on side k of a grid, step cells on: the sides go round it as those of a face do, from its first corner on. */
 uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step);
 /* Fills same_as. faces are those of the mesh, with their edges. False where memory is short. */
@@ -88,7 +92,7 @@ void ss_tessellate(const skinslide_tessellation *tessellation, const float *poin
 /* For columns, as OpenGL has them, and for places less an origin of the mesh. */
 typedef struct ss_view {
     float to_camera[16], to_clip[16];
-    float turn_normal[9]; /* from the mesh's space to the camera's */
+    float turn_normal[9]; /* from the mesh's space to the camera's, up to its length */
     bool mirrored;        /* what turns left in the mesh's space turns right in the camera's */
 } ss_view;
 

@@ -35,7 +35,7 @@ static void add_piece(skinslide_tessellation *own, ss_piece piece) {
     piece.first_vertex = own->vertex_count;
     own->pieces[own->piece_count++] = piece;
     own->vertex_count += ss_piece_size(own, &piece);
-    own->triangle_count += piece.side ? 2 * piece.side * piece.side : ss_face_size(own, piece.face) - 2;
+    own->triangle_count += ss_triangles_of(own, &piece);
 }
 
 /* A quad is one grid, another polygon one for each corner. coarse: bit k for side k of the face. */

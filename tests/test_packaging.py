@@ -52,9 +52,10 @@ def test_an_interruption_while_the_command_is_loaded(tmp_path):
     assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
 
 
-def test_the_header_is_the_manual():
-    installed = PACKAGE / "include" / "skinslide" / "skinslide.h"
-    assert installed.read_text() == (ROOT / "core" / "include" / "skinslide" / "skinslide.h").read_text()
+@pytest.mark.parametrize("header", ["skinslide.h", "picture.h"])
+def test_the_headers_are_the_manual(header):
+    installed = PACKAGE / "include" / "skinslide" / header
+    assert installed.read_text() == (ROOT / "core" / "include" / "skinslide" / header).read_text()
 
 
 def test_a_project_in_c_or_cpp_builds_against_the_package(tmp_path):

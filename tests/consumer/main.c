@@ -1,5 +1,6 @@
-/* Slides one frame of a sheet of four quads: its middle vertex, pulled aside, goes most of the way back. */
-#include <skinslide/skinslide.h>
+/* Slides one frame of a sheet of four quads: its middle vertex, pulled aside, goes most of the way back. And makes ready to draw
+ * it, which needs no device yet. */
+#include <skinslide/picture.h>
 #include <stdio.h>
 
 static const int32_t counts[] = {4, 4, 4, 4};
@@ -18,6 +19,9 @@ int main(void) {
     skinslide_patch_setup patch = {0};
     skinslide_slider *slider;
     skinslide_workspace *workspace;
+    skinslide_tessellation *tessellation;
+    skinslide_tessellation_info info;
+    skinslide_canvas_options options = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
     skinslide_error error;
     float points[27], slid[27];
     int i;
@@ -35,6 +39,12 @@ int main(void) {
         return fail(&error);
     if (skinslide_slide(workspace, points, NULL, slid, NULL, &error) != SKINSLIDE_OK)
         return fail(&error);
+    if (skinslide_tessellation_create(&mesh, NULL, faces, 4, &tessellation, &error) != SKINSLIDE_OK ||
+        skinslide_tessellation_describe(tessellation, &info, &error) != SKINSLIDE_OK)
+        return fail(&error);
+    skinslide_tessellation_destroy(tessellation);
+    if (info.triangle_count != 8 || options.width != 1920)
+        return 1;
     printf("%s %g\n", skinslide_version(), slid[12]);
     skinslide_workspace_destroy(workspace);
     skinslide_slider_destroy(slider);

@@ -106,6 +106,8 @@ static const GLubyte *get_extensions(void) {
                  robust);
     else
         snprintf(context_extensions, sizeof context_extensions, "%s%s", own, shown ? " GL_EXT_robustness" : "");
+    for (char *at = context_extensions; plan.hidden && (at = strstr(at, plan.hidden)) != NULL;)
+        *at = '_';
     char *other = strstr(context_extensions, "GL_KHR_robustness");
     if (other)
         *other = '_';
@@ -122,7 +124,7 @@ static const GLubyte *get_string(GLenum name) {
 
 static void get_integer(GLenum name, GLint *value) {
     real.glGetIntegerv(name, value);
-    if (plan.largest && name == GL_MAX_TEXTURE_SIZE)
+    if (plan.largest && (name == GL_MAX_TEXTURE_SIZE || name == GL_MAX_RENDERBUFFER_SIZE))
         *value = plan.largest;
 }
 

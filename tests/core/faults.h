@@ -10,10 +10,10 @@ typedef struct fault {
     int32_t after;      /* calls that still succeed */
     int32_t times;      /* then so many fail; -1: all */
     uint32_t code;      /* what eglGetError, glGetError or the call itself then says */
-    const char *hidden; /* an extension that EGL does not have, or NULL */
+    const char *hidden; /* an extension that EGL and the context do not have, or the beginning of some; or NULL */
     const char *shown;  /* what the only device says of itself, or NULL: what it does */
     const char *renderer;
-    int32_t largest; /* texture, or 0: what it is */
+    int32_t largest; /* texture or renderbuffer, or 0: what it is */
     int32_t devices; /* that EGL lists, or -1: what it has, which beyond that are its first again */
     int32_t robust;  /* contexts that can tell that they were lost, the first ones, or 0: all */
     bool varied;     /* EGL's errors go up from code */

@@ -208,6 +208,53 @@ static void each_allocation_for_images_fails_in_turn(void **state) {
     assert_in_range(n, 30, 9999);
 }
 
+/* A tessellation along a limit surface, a camera for it, and a picture. */
+static skinslide_status run_pictures(const scene *s, skinslide_error *error) {
+    enum { SIDE = 32 };
+    static uint8_t pixels[SIDE * SIDE * 4];
+    const skinslide_canvas_options options = {SIDE, SIDE, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE};
+    const skinslide_viewport all = {0, 0, SIDE, SIDE};
+    const double up[3] = {0, 1, 0};
+    skinslide_mesh view = view_of_scene(s);
+    const skinslide_subject subject = {
+        .mesh = &view, .faces = s->faces, .face_count = 20, .pose_count = 1, .poses = (const float *[]){s->points}};
+    skinslide_tessellation *tessellation = NULL;
+    skinslide_canvas *canvas = NULL;
+    skinslide_camera camera;
+    skinslide_status status = skinslide_tessellation_create(&view, NULL, s->faces, 20, &tessellation, error);
+    const skinslide_figure figure = {.tessellation = tessellation, .points = s->points, .squares = 1};
+    if (!status)
+        status = skinslide_frame_faces(&subject, up, 1, &camera, error);
+    if (!status)
+        status = skinslide_canvas_create(&options, &canvas, error);
+    if (!status)
+        status = skinslide_canvas_draw(canvas, &all, &camera, &figure, error);
+    if (!status)
+        status = skinslide_canvas_read(canvas, pixels, error);
+    skinslide_canvas_destroy(canvas);
+    skinslide_tessellation_destroy(tessellation);
+    return status;
+}
+
+static void each_allocation_for_pictures_fails_in_turn(void **state) {
+    (void)state;
+    scene s;
+    make_scene(&s);
+    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
+    int32_t n = 0;
+    for (; status != SKINSLIDE_OK && n < 10000; n++) {
+        skinslide_error error;
+        left_to_give = n, live = 0, watching = true;
+        status = run_pictures(&s, &error);
+        watching = false;
+        assert_int_equal(live, 0);
+        if (status != SKINSLIDE_OK)
+            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+    }
+    assert_in_range(n, 30, 9999);
+    free_scene(&s);
+}
+
 /* A frame allocates nothing but what checks the edges that its controls name, so it cannot fail for memory otherwise. */
 static void a_frame_allocates_nothing(void **state) {
     (void)state;
@@ -253,11 +300,13 @@ int main(void) {
     SuiteSparse_config.calloc_func = __wrap_calloc;
     SuiteSparse_config.free_func = __wrap_free;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_that_are_too_large_fail), cmocka_unit_test(memory_is_zero_and_aligned),
-        cmocka_unit_test(each_allocation_fails_in_turn),  cmocka_unit_test(each_allocation_for_images_fails_in_turn),
-        cmocka_unit_test(a_frame_allocates_nothing),      cmocka_unit_test(counts_that_are_too_large_fail),
-        cmocka_unit_test(memory_is_zero_and_aligned),     cmocka_unit_test(each_allocation_fails_in_turn),
-        cmocka_unit_test(a_frame_allocates_nothing),      cmocka_unit_test(a_pole_takes_room_for_itself_alone),
+        cmocka_unit_test(counts_that_are_too_large_fail),
+        cmocka_unit_test(memory_is_zero_and_aligned),
+        cmocka_unit_test(each_allocation_fails_in_turn),
+        cmocka_unit_test(each_allocation_for_images_fails_in_turn),
+        cmocka_unit_test(each_allocation_for_pictures_fails_in_turn),
+        cmocka_unit_test(a_frame_allocates_nothing),
+        cmocka_unit_test(a_pole_takes_room_for_itself_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

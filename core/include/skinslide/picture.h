@@ -55,7 +55,7 @@ typedef struct skinslide_figure {
     const float *points;    /* [mesh vertex_count][3] */
     const double *to_world; /* [16] from the mesh's object space; NULL: it is the world's */
     const float *values;    /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */
-    float lowest, highest;  /* lowest < highest */
+    float lowest, highest;  /* lowest < highest, by 1e-37 to 1e37 */
     float squares;          /* of the chequer, for each unit of st or of length at rest; > 0 */
     int32_t double_sided;   /* 0: faces turned away from the camera are left out, as USD has it */
     int32_t left_handed;    /* not 0 where the mesh's orientation is leftHanded */
@@ -101,7 +101,7 @@ typedef enum skinslide_pixels {
 
 /* Start from SKINSLIDE_CANVAS_OPTIONS_DEFAULT. */
 typedef struct skinslide_canvas_options {
-    int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit */
+    int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit; 67,108,864 in all */
     skinslide_pixels pixels;
     int32_t device; /* as in skinslide_workspace_options */
 } skinslide_canvas_options;
@@ -133,7 +133,8 @@ typedef struct skinslide_viewport {
     int32_t x, y, width, height;
 } skinslide_viewport;
 
-/* Draws a figure, shaded by a light at the camera, four samples a pixel, behind what is nearer of what was drawn before.
+/* Draws a figure, four samples a pixel, behind what is nearer of what was drawn before. It is shaded by a light beside the
+ * camera, in which a surface that faces the camera has its own colour.
  * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer or of the scale), BAD_POINTS (points, values or matrices not
  * finite), DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,

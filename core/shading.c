@@ -1,0 +1,188 @@
+/* How figures look: the scale of false colours, the programs that draw surfaces and outlines, and what they are fed from. */
+#include "canvas.h"
+
+#include <math.h>
+#include <stddef.h>
+
+enum { COLOURS = 5 };
+
+/* From little to much, linear light; as many as the shader has. */
+static const float scale_colours[COLOURS][3] = {{0.024f, 0.042f, 0.137f},
+                                                {0.023f, 0.275f, 0.381f},
+                                                {0.270f, 0.617f, 0.102f},
+                                                {0.913f, 0.533f, 0.045f},
+                                                {0.680f, 0.019f, 0.047f}};
+
+void skinslide_false_colour(float share, float colour[3]) {
+    float place = fminf(fmaxf(share, 0), 1) * (COLOURS - 1);
+    int below = place < COLOURS - 1 ? (int)place : COLOURS - 2;
+    for (int k = 0; k < 3; k++)
+        colour[k] = scale_colours[below][k] + (place - (float)below) * (scale_colours[below + 1][k] - scale_colours[below][k]);
+}
+
+/* ---- Programs ---- */
+
+static const char surface_vertex[] = "#version 300 es\n"
+                                     "uniform mat4 to_camera, to_clip;\n"
+                                     "uniform mat3 turn_normal;\n"
+                                     "layout(location = 0) in vec3 fixed_coordinates;\n"
+                                     "layout(location = 1) in float fixed_inside;\n"
+                                     "layout(location = 2) in vec3 place;\n"
+                                     "layout(location = 3) in vec3 surface_normal;\n"
+                                     "layout(location = 4) in float posed_value;\n"
+                                     "out highp vec3 coordinates, seen, normal;\n"
+                                     "out highp float inside, value;\n"
+                                     "void main() {\n"
+                                     "    coordinates = fixed_coordinates;\n"
+                                     "    inside = fixed_inside;\n"
+                                     "    seen = (to_camera * vec4(place, 1.0)).xyz;\n"
+                                     "    normal = turn_normal * surface_normal;\n"
+                                     "    value = posed_value;\n"
+                                     "    gl_Position = to_clip * vec4(place, 1.0);\n"
+                                     "}\n";
+
+/* A chequer's mean over the pixel, so that squares too small to be seen are grey; light from beside the camera, in which what
+ * faces the camera has its own colour. coordinate_scale is squares, and whether they are in space; scale is lowest and the
+ * inverse of the range. Where the surface has no normal, that of the triangle, as it is seen. */
+static const char surface_fragment[] =
+    "#version 300 es\n"
+    "precision highp float;\n"
+    "uniform vec2 coordinate_scale, scale;\n"
+    "uniform int encoded, chequered;\n"
+    "uniform vec3 colours[5];\n"
+    "in vec3 coordinates, seen, normal;\n"
+    "in float inside, value;\n"
+    "layout(location = 0) out vec4 colour;\n"
+    "float chequer() {\n"
+    "    vec3 p = coordinates * coordinate_scale.x + 0.317 * coordinate_scale.y;\n"
+    "    vec3 w = max(fwidth(p), 1e-4);\n"
+    "    vec3 mean = 2.0 * (abs(fract(0.5 * (p - 0.5 * w)) - 0.5) - abs(fract(0.5 * (p + 0.5 * w)) - 0.5)) / w;\n"
+    "    return 0.5 - 0.5 * mean.x * mean.y * mix(1.0, mean.z, coordinate_scale.y);\n"
+    "}\n"
+    "vec3 false_colour() {\n"
+    "    float place = clamp((value - scale.x) * scale.y, 0.0, 1.0) * 4.0;\n"
+    "    int below = min(int(place), 3);\n"
+    "    return mix(colours[below], colours[below + 1], place - float(below));\n"
+    "}\n"
+    "vec3 encode(vec3 light) {\n"
+    "    return mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));\n"
+    "}\n"
+    "vec3 largest_one(vec3 v) {\n"
+    "    return v / max(max(max(abs(v.x), abs(v.y)), abs(v.z)), 1e-37);\n"
+    "}\n"
+    "vec3 towards_light() {\n"
+    "    vec3 n = gl_FrontFacing ? normal : -normal;\n"
+    "    if (dot(n, n) < 1e-12) {\n"
+    "        n = largest_one(cross(largest_one(dFdx(seen)), largest_one(dFdy(seen))));\n"
+    "        n = n.z < 0.0 ? -n : n;\n"
+    "    }\n"
+    "    return dot(n, n) > 0.0 ? normalize(n) : vec3(0.0, 0.0, 1.0);\n"
+    "}\n"
+    "float shade(vec3 n) {\n"
+    "    return 0.23 + 0.07 * n.y + 0.78 * max(dot(n, normalize(vec3(-0.35, 0.55, 0.8))), 0.0);\n"
+    "}\n"
+    "void main() {\n"
+    "    vec3 plain = vec3(0.33, 0.31, 0.30);\n"
+    "    vec3 base = plain;\n"
+    "    if (chequered == 1)\n"
+    "        base = mix(mix(vec3(0.045, 0.055, 0.09), vec3(0.78, 0.74, 0.68), chequer()), plain, 0.7 * (1.0 - inside));\n"
+    "    else if (inside > 0.5)\n"
+    "        base = false_colour();\n"
+    "    vec3 light = base * shade(towards_light()) / shade(vec3(0.0, 0.0, 1.0));\n"
+    "    colour = vec4(encoded == 1 ? encode(light) : light, 1.0);\n"
+    "}\n";
+
+/* Each segment is a strip as wide as the line, square at its ends. What of it is behind the near plane is cut off first: places
+ * on the picture, on which its width is, have no meaning there. */
+static const char outline_vertex[] = "#version 300 es\n"
+                                     "uniform mat4 to_clip;\n"
+                                     "uniform vec2 half_width;\n"
+                                     "layout(location = 0) in vec3 begin;\n"
+                                     "layout(location = 1) in vec3 end;\n"
+                                     "void main() {\n"
+                                     "    vec4 a = to_clip * vec4(begin, 1.0), b = to_clip * vec4(end, 1.0);\n"
+                                     "    float a_ahead = a.z + a.w, b_ahead = b.z + b.w;\n"
+                                     "    if (max(a_ahead, b_ahead) <= 0.0) {\n"
+                                     "        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n"
+                                     "        return;\n"
+                                     "    }\n"
+                                     "    if (a_ahead < 0.0)\n"
+                                     "        a = mix(a, b, a_ahead / (a_ahead - b_ahead));\n"
+                                     "    else if (b_ahead < 0.0)\n"
+                                     "        b = mix(b, a, b_ahead / (b_ahead - a_ahead));\n"
+                                     "    vec2 along = (b.xy / b.w - a.xy / a.w) / half_width;\n"
+                                     "    along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);\n"
+                                     "    bool at_end = gl_VertexID > 1;\n"
+                                     "    vec2 aside = vec2(-along.y, along.x) * (gl_VertexID % 2 == 0 ? 1.0 : -1.0);\n"
+                                     "    gl_Position = at_end ? b : a;\n"
+                                     "    gl_Position.xy += (aside + (at_end ? along : -along)) * half_width * gl_Position.w;\n"
+                                     "}\n";
+
+static const char outline_fragment[] = "#version 300 es\n"
+                                       "precision highp float;\n"
+                                       "uniform vec3 line_colour;\n"
+                                       "layout(location = 0) out vec4 colour;\n"
+                                       "void main() {\n"
+                                       "    colour = vec4(line_colour, 1.0);\n"
+                                       "}\n";
+
+/* ---- Objects ---- */
+
+static void point_to(const ss_egl_api *gl, GLuint place, int32_t width, size_t stride, size_t offset) {
+    gl->glEnableVertexAttribArray(place);
+    gl->glVertexAttribPointer(place, width, GL_FLOAT, GL_FALSE, (GLsizei)stride, (const void *)(uintptr_t)offset);
+}
+
+static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
+    gl->glGenBuffers(1, &objects->fixed_buffer);
+    gl->glGenBuffers(1, &objects->posed_buffer);
+    gl->glGenBuffers(1, &objects->triangle_buffer);
+    gl->glGenBuffers(1, &objects->segment_buffer);
+    gl->glGenVertexArrays(1, &objects->surface_array);
+    gl->glBindVertexArray(objects->surface_array);
+    gl->glBindBuffer(GL_ARRAY_BUFFER, objects->fixed_buffer);
+    point_to(gl, 0, 3, sizeof(ss_fixed_vertex), offsetof(ss_fixed_vertex, coordinates));
+    point_to(gl, 1, 1, sizeof(ss_fixed_vertex), offsetof(ss_fixed_vertex, inside));
+    gl->glBindBuffer(GL_ARRAY_BUFFER, objects->posed_buffer);
+    point_to(gl, 2, 3, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, place));
+    point_to(gl, 3, 3, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, normal));
+    point_to(gl, 4, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, value));
+    gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
+    gl->glGenVertexArrays(1, &objects->outline_array);
+    gl->glBindVertexArray(objects->outline_array);
+    gl->glBindBuffer(GL_ARRAY_BUFFER, objects->segment_buffer);
+    for (GLuint end = 0; end < 2; end++) {
+        point_to(gl, end, 3, sizeof(float[2][3]), end * sizeof(float[3]));
+        gl->glVertexAttribDivisor(end, 1);
+    }
+}
+
+static void find_uniforms(const ss_egl_api *gl, ss_figure_objects *objects) {
+    GLuint surface = objects->surface_program, outline = objects->outline_program;
+    objects->surface_to_camera = gl->glGetUniformLocation(surface, "to_camera");
+    objects->surface_to_clip = gl->glGetUniformLocation(surface, "to_clip");
+    objects->turn_normal = gl->glGetUniformLocation(surface, "turn_normal");
+    objects->coordinates = gl->glGetUniformLocation(surface, "coordinate_scale");
+    objects->scale = gl->glGetUniformLocation(surface, "scale");
+    objects->colours = gl->glGetUniformLocation(surface, "colours");
+    objects->encoded = gl->glGetUniformLocation(surface, "encoded");
+    objects->chequered = gl->glGetUniformLocation(surface, "chequered");
+    objects->outline_to_clip = gl->glGetUniformLocation(outline, "to_clip");
+    objects->half_width = gl->glGetUniformLocation(outline, "half_width");
+    objects->line_colour = gl->glGetUniformLocation(outline, "line_colour");
+}
+
+void ss_set_scale_colours(const ss_egl_api *gl, const ss_figure_objects *objects) {
+    gl->glUniform3fv(objects->colours, COLOURS, scale_colours[0]);
+}
+
+skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error) {
+    skinslide_status status = ss_gl_program(gl, surface_vertex, surface_fragment, NULL, 0, &objects->surface_program, error);
+    if (!status)
+        status = ss_gl_program(gl, outline_vertex, outline_fragment, NULL, 0, &objects->outline_program, error);
+    if (status)
+        return status;
+    make_arrays(gl, objects);
+    find_uniforms(gl, objects);
+    return SKINSLIDE_OK;
+}

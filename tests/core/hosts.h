@@ -1,0 +1,20 @@
+/* Programs that have an EGL context of their own current while they call us. */
+#ifndef SKINSLIDE_TEST_HOSTS_H
+#define SKINSLIDE_TEST_HOSTS_H
+
+#include "egl.h"
+
+typedef struct host {
+    ss_egl_api egl;
+    EGLDisplay display;
+    EGLContext context;
+    EGLSurface draw, read;
+} host;
+
+/* Whose context, of an API on a platform, is current from now on. */
+host host_with(EGLenum api, EGLenum platform);
+/* It still is, with its surfaces, and the API bound that was. */
+void assert_current(const host *h, EGLenum api, EGLenum bound);
+void end_host(host *h);
+
+#endif
