@@ -539,6 +539,25 @@ def test_maps_that_the_stage_reads_are_never_written(tile, tmp_path):
     maps(shot, tmp_path / "other", size=64)
 
 
+def test_maps_that_a_resolver_finds_are_never_written(tmp_path):
+    stage, mesh = sheet()
+    shot, library = stages.save(stage, tmp_path / "shot.usda"), tmp_path / "library" / "maps"
+    maps(shot, library, size=16, frames=[1002])
+    stages.set_property(mesh, "weightMap", Sdf.AssetPath("maps/skin_GEO.slide.1002.exr"))
+    before = files(library)
+    program = """
+        import sys, skinslide
+        from pxr import Ar
+        Ar.DefaultResolver.SetDefaultSearchPath([sys.argv[1]])
+        skinslide.maps(sys.argv[2], sys.argv[3], size=16)
+    """
+    arguments = [str(tmp_path / "library"), str(stages.save(stage, tmp_path / "mapped.usda")), str(library)]
+    command = [sys.executable, "-c", textwrap.dedent(program), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert f"output {library / 'skin_GEO.slide.1002.exr'}: the stage reads this file" in done.stderr
+    assert files(library) == before
+
+
 def test_a_stage_in_the_way(tmp_path):
     """A layer under a map's name, as a link."""
     shot = stages.save(sheet()[0], tmp_path / "shot.usda")

@@ -9,9 +9,11 @@ from pathlib import Path
 
 from pxr import Sdf, Usd
 
+from skinslide import names
 from skinslide.files import Inputs, check_output, replacing, writing
 from skinslide.frames import UsageError
 from skinslide.problems import frame_text
+from skinslide.sampled import map_files
 from skinslide.stage import patched_prims
 
 _PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
@@ -22,9 +24,11 @@ class OutputFolder:
 
     def __init__(self, folder: Path, stage: Usd.Stage, stage_path: str | os.PathLike | None):
         """Raises UsageError for a folder that cannot be."""
-        self.folder = folder
-        self._inputs = Inputs(stage, *([] if stage_path is None else [stage_path]))
-        self._names = _mesh_names(patched_prims(stage))
+        self.folder, prims = folder, patched_prims(stage)
+        # A resolver may find maps where their names alone do not lead.
+        maps = [file for prim in prims for patch in names.patch_names(prim) for file in map_files(prim, patch)]
+        self._inputs = Inputs(stage, *maps, *([] if stage_path is None else [stage_path]))
+        self._names = _mesh_names(prims)
         _check_folder(folder)
 
     def path(self, mesh: Sdf.Path, words: Sequence[str], frame: float | None, extension: str) -> Path:

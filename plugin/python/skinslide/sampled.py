@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from skinslide.images import Corners, Image, decode_exr, map_tiles, sample_map
 from skinslide.native import SliderError
 from skinslide.problems import Fault
 from skinslide.topology import Topology
-from skinslide.values import Reading, primvar_sources
+from skinslide.values import FIRST, Reading, primvar_sources
 
 _LARGEST_FILE = 4 << 30  # bytes
 
@@ -69,6 +70,16 @@ def read_map(
             raise Fault(f"{source.name}: {_shown(source)}: {error}") from error
 
     return Reading(read, [attr, *primvar_sources(primvar)])
+
+
+def map_files(prim: Usd.Prim, patch: str) -> Iterator[str]:
+    """The resolved files of every map of a patch, at whatever time; those that are not there are passed over."""
+    for control in ("weight", "forceDensity"):
+        attr = names.attribute(prim, patch, f"{control}Map")
+        for time in [FIRST, *map(Usd.TimeCode, attr.GetTimeSamples())] if attr else []:
+            with suppress(Fault):
+                source = _find(prim, patch, control, time)
+                yield from source.files.values() if source else ()
 
 
 def _sample(source: _Source, corners: Corners, st: str, last: dict[tuple[str, str], Image]) -> SampledMap:
