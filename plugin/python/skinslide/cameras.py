@@ -71,4 +71,5 @@ def _framed(mesh: SlidMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], as
     up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
     poses = [mesh.points_at(time) for time in times]
     matrices = np.array([to_world(mesh, time) for time in times])
-    return frame_faces(Shape(mesh.face_counts, mesh.face_indices), faces, poses, matrices, up, aspect)
+    shape = Shape(mesh.face_counts, mesh.face_indices)
+    return frame_faces(shape, faces, poses, matrices, up, aspect, left_handed=mesh.left_handed)

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from skinslide.images import encode_exr
-from skinslide.pictures import MOST_SIDE, Viewport, false_colour
+from skinslide.pictures import Viewport, false_colour
 
 BACKGROUND = (0.045, 0.045, 0.052)  # linear light
 
@@ -114,6 +114,7 @@ def _as_bytes(image: Image.Image, form: str, **options) -> bytes:
 # ---- Contact sheets ----
 
 _THUMBNAIL = 480  # pixels wide
+_TALLEST = 16384  # pixels of a sheet
 _IN_A_ROW, _MARGIN = 4, 12
 
 
@@ -121,7 +122,7 @@ def contact_sheets(strips: Sequence[Sequence[Image.Image]]) -> list[bytes]:
     """Thumbnails as PNG files: a strip begins a row; more than one file where they would be too tall."""
     rows = [strip[i : i + _IN_A_ROW] for strip in strips for i in range(0, len(strip), _IN_A_ROW)]
     tallest = max((image.height for row in rows for image in row), default=1) + _MARGIN
-    most = max(1, (MOST_SIDE - _MARGIN) // tallest)
+    most = max(1, (_TALLEST - _MARGIN) // tallest)
     return [_sheet(rows[i : i + most]) for i in range(0, len(rows), most)]
 
 
