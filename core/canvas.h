@@ -5,13 +5,19 @@
 #include "draw.h"
 #include "egl.h"
 
+/* A program and its uniforms. */
+typedef struct ss_surface_program {
+    GLuint program;
+    GLint to_clip, turn_normal, scale, encoded, colours;
+} ss_surface_program;
+
 /* Objects that draw figures. */
 typedef struct ss_figure_objects {
-    GLuint surface_program, outline_program;
+    ss_surface_program chequer, false_colours;
+    GLuint outline_program;
+    GLint outline_to_clip, half_width, line_colour; /* its uniforms */
     GLuint surface_array, outline_array;
     GLuint fixed_buffer, posed_buffer, triangle_buffer, segment_buffer;
-    GLint surface_to_camera, surface_to_clip, turn_normal, coordinates, scale, colours, encoded, chequered; /* uniforms */
-    GLint outline_to_clip, half_width, line_colour;
 } ss_figure_objects;
 
 struct skinslide_canvas {
@@ -24,9 +30,6 @@ struct skinslide_canvas {
 
 /* The context is current. */
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);
-
-/* The program that draws surfaces is in use. */
-void ss_set_scale_colours(const ss_egl_api *gl, const ss_figure_objects *objects);
 
 /* What a colour of linear light is in the canvas's pixels. */
 void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]);

@@ -91,7 +91,7 @@ void ss_tessellate(const skinslide_tessellation *tessellation, const float *poin
 
 /* For columns, as OpenGL has them, and for places less an origin of the mesh. */
 typedef struct ss_view {
-    float to_camera[16], to_clip[16];
+    float to_clip[16];
     float turn_normal[9]; /* from the mesh's space to the camera's, up to its length */
     bool mirrored;        /* what turns left in the mesh's space turns right in the camera's */
 } ss_view;

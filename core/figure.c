@@ -65,20 +65,19 @@ static void fill(const ss_egl_api *gl, GLenum target, GLuint buffer, const void 
 
 static void set_surface(const drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
-    const ss_figure_objects *objects = &drawn->canvas->objects;
     const skinslide_figure *figure = drawn->figure;
+    const ss_surface_program *own = figure->values ? &drawn->canvas->objects.false_colours : &drawn->canvas->objects.chequer;
     float turn_normal[9];
     for (int i = 0; i < 9; i++)
         turn_normal[i] = figure->left_handed ? -drawn->view.turn_normal[i] : drawn->view.turn_normal[i];
-    gl->glUseProgram(objects->surface_program);
-    gl->glUniformMatrix4fv(objects->surface_to_camera, 1, GL_FALSE, drawn->view.to_camera);
-    gl->glUniformMatrix4fv(objects->surface_to_clip, 1, GL_FALSE, drawn->view.to_clip);
-    gl->glUniformMatrix3fv(objects->turn_normal, 1, GL_FALSE, turn_normal);
-    gl->glUniform2f(objects->coordinates, figure->squares, drawn->mesh->in_space);
-    gl->glUniform2f(objects->scale, figure->lowest, figure->values ? 1 / (figure->highest - figure->lowest) : 0);
-    gl->glUniform1i(objects->encoded, drawn->canvas->pixels == SKINSLIDE_PIXELS_BYTES);
-    gl->glUniform1i(objects->chequered, !figure->values);
-    ss_set_scale_colours(gl, objects);
+    gl->glUseProgram(own->program);
+    gl->glUniformMatrix4fv(own->to_clip, 1, GL_FALSE, drawn->view.to_clip);
+    gl->glUniformMatrix3fv(own->turn_normal, 1, GL_FALSE, turn_normal);
+    gl->glUniform1i(own->encoded, drawn->canvas->pixels == SKINSLIDE_PIXELS_BYTES);
+    if (figure->values)
+        gl->glUniform2f(own->scale, figure->lowest, 1 / (figure->highest - figure->lowest));
+    else
+        gl->glUniform2f(own->scale, figure->squares, drawn->mesh->in_space);
 }
 
 static void draw_surface(const drawing *drawn) {

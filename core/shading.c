@@ -23,74 +23,66 @@ void skinslide_false_colour(float share, float colour[3]) {
 /* ---- Programs ---- */
 
 static const char surface_vertex[] = "#version 300 es\n"
-                                     "uniform mat4 to_camera, to_clip;\n"
+                                     "uniform mat4 to_clip;\n"
                                      "uniform mat3 turn_normal;\n"
                                      "layout(location = 0) in vec3 fixed_coordinates;\n"
                                      "layout(location = 1) in float fixed_inside;\n"
                                      "layout(location = 2) in vec3 place;\n"
                                      "layout(location = 3) in vec3 surface_normal;\n"
                                      "layout(location = 4) in float posed_value;\n"
-                                     "out highp vec3 coordinates, seen, normal;\n"
+                                     "out highp vec3 coordinates, normal;\n"
                                      "out highp float inside, value;\n"
                                      "void main() {\n"
                                      "    coordinates = fixed_coordinates;\n"
                                      "    inside = fixed_inside;\n"
-                                     "    seen = (to_camera * vec4(place, 1.0)).xyz;\n"
                                      "    normal = turn_normal * surface_normal;\n"
                                      "    value = posed_value;\n"
                                      "    gl_Position = to_clip * vec4(place, 1.0);\n"
                                      "}\n";
 
-/* A chequer's mean over the pixel, so that squares too small to be seen are grey; light from beside the camera, in which what
- * faces the camera has its own colour. coordinate_scale is squares, and whether they are in space; scale is lowest and the
- * inverse of the range. Where the surface has no normal, that of the triangle, as it is seen. */
-static const char surface_fragment[] =
-    "#version 300 es\n"
-    "precision highp float;\n"
-    "uniform vec2 coordinate_scale, scale;\n"
-    "uniform int encoded, chequered;\n"
-    "uniform vec3 colours[5];\n"
-    "in vec3 coordinates, seen, normal;\n"
-    "in float inside, value;\n"
-    "layout(location = 0) out vec4 colour;\n"
-    "float chequer() {\n"
-    "    vec3 p = coordinates * coordinate_scale.x + 0.317 * coordinate_scale.y;\n"
-    "    vec3 w = max(fwidth(p), 1e-4);\n"
+/* Light from beside the camera, in which what faces the camera, and what has no normal, has its own colour: base(). Programs of
+ * their own for each, since software rasterisers take both ways of a branch. */
+#define SURFACE_FRAGMENT(base)                                                                                                 \
+    "#version 300 es\n"                                                                                                        \
+    "precision highp float;\n"                                                                                                 \
+    "uniform int encoded;\n"                                                                                                   \
+    "in vec3 coordinates, normal;\n"                                                                                           \
+    "in float inside, value;\n"                                                                                                \
+    "layout(location = 0) out vec4 colour;\n"                                                                                  \
+    "const vec3 plain = vec3(0.33, 0.31, 0.30);\n" base "float shade(vec3 n) {\n"                                              \
+    "    return 0.23 + 0.07 * n.y + 0.78 * max(dot(n, normalize(vec3(-0.35, 0.55, 0.8))), 0.0);\n"                             \
+    "}\n"                                                                                                                      \
+    "vec3 encode(vec3 light) {\n"                                                                                              \
+    "    return mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));\n"                    \
+    "}\n"                                                                                                                      \
+    "void main() {\n"                                                                                                          \
+    "    vec3 n = normalize((gl_FrontFacing ? normal : -normal) + vec3(0.0, 0.0, 1e-6));\n"                                    \
+    "    vec3 light = base() * (shade(n) / shade(vec3(0.0, 0.0, 1.0)));\n"                                                     \
+    "    colour = vec4(encoded == 1 ? encode(light) : light, 1.0);\n"                                                          \
+    "}\n"
+
+/* The chequer's mean over the pixel, so that squares too small to be seen are grey. scale is squares, and whether they are in
+ * space. */
+static const char chequer_fragment[] = SURFACE_FRAGMENT(
+    "uniform vec2 scale;\n"
+    "vec3 base() {\n"
+    "    vec3 p = coordinates * scale.x + 0.317 * scale.y, w = max(fwidth(p), 1e-4);\n"
     "    vec3 mean = 2.0 * (abs(fract(0.5 * (p - 0.5 * w)) - 0.5) - abs(fract(0.5 * (p + 0.5 * w)) - 0.5)) / w;\n"
-    "    return 0.5 - 0.5 * mean.x * mean.y * mix(1.0, mean.z, coordinate_scale.y);\n"
-    "}\n"
-    "vec3 false_colour() {\n"
-    "    float place = clamp((value - scale.x) * scale.y, 0.0, 1.0) * 4.0;\n"
-    "    int below = min(int(place), 3);\n"
-    "    return mix(colours[below], colours[below + 1], place - float(below));\n"
-    "}\n"
-    "vec3 encode(vec3 light) {\n"
-    "    return mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));\n"
-    "}\n"
-    "vec3 largest_one(vec3 v) {\n"
-    "    return v / max(max(max(abs(v.x), abs(v.y)), abs(v.z)), 1e-37);\n"
-    "}\n"
-    "vec3 towards_light() {\n"
-    "    vec3 n = gl_FrontFacing ? normal : -normal;\n"
-    "    if (dot(n, n) < 1e-12) {\n"
-    "        n = largest_one(cross(largest_one(dFdx(seen)), largest_one(dFdy(seen))));\n"
-    "        n = n.z < 0.0 ? -n : n;\n"
-    "    }\n"
-    "    return dot(n, n) > 0.0 ? normalize(n) : vec3(0.0, 0.0, 1.0);\n"
-    "}\n"
-    "float shade(vec3 n) {\n"
-    "    return 0.23 + 0.07 * n.y + 0.78 * max(dot(n, normalize(vec3(-0.35, 0.55, 0.8))), 0.0);\n"
-    "}\n"
-    "void main() {\n"
-    "    vec3 plain = vec3(0.33, 0.31, 0.30);\n"
-    "    vec3 base = plain;\n"
-    "    if (chequered == 1)\n"
-    "        base = mix(mix(vec3(0.045, 0.055, 0.09), vec3(0.78, 0.74, 0.68), chequer()), plain, 0.7 * (1.0 - inside));\n"
-    "    else if (inside > 0.5)\n"
-    "        base = false_colour();\n"
-    "    vec3 light = base * shade(towards_light()) / shade(vec3(0.0, 0.0, 1.0));\n"
-    "    colour = vec4(encoded == 1 ? encode(light) : light, 1.0);\n"
-    "}\n";
+    "    float share = 0.5 - 0.5 * mean.x * mean.y * mix(1.0, mean.z, scale.y);\n"
+    "    return mix(mix(vec3(0.045, 0.055, 0.09), vec3(0.78, 0.74, 0.68), share), plain, 0.7 * (1.0 - inside));\n"
+    "}\n");
+
+/* scale is lowest, and the inverse of the range. */
+static const char false_colour_fragment[] =
+    SURFACE_FRAGMENT("uniform vec2 scale;\n"
+                     "uniform vec3 colours[5];\n"
+                     "vec3 base() {\n"
+                     "    float place = clamp((value - scale.x) * scale.y, 0.0, 1.0) * 4.0;\n"
+                     "    vec3 found = colours[0];\n"
+                     "    for (int i = 0; i < 4; i++)\n"
+                     "        found += clamp(place - float(i), 0.0, 1.0) * (colours[i + 1] - colours[i]);\n"
+                     "    return inside > 0.5 ? found : plain;\n"
+                     "}\n");
 
 /* Each segment is a strip as wide as the line, square at its ends. What of it is behind the near plane is cut off first: places
  * on the picture, on which its width is, have no meaning there. */
@@ -158,31 +150,30 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
 }
 
 static void find_uniforms(const ss_egl_api *gl, ss_figure_objects *objects) {
-    GLuint surface = objects->surface_program, outline = objects->outline_program;
-    objects->surface_to_camera = gl->glGetUniformLocation(surface, "to_camera");
-    objects->surface_to_clip = gl->glGetUniformLocation(surface, "to_clip");
-    objects->turn_normal = gl->glGetUniformLocation(surface, "turn_normal");
-    objects->coordinates = gl->glGetUniformLocation(surface, "coordinate_scale");
-    objects->scale = gl->glGetUniformLocation(surface, "scale");
-    objects->colours = gl->glGetUniformLocation(surface, "colours");
-    objects->encoded = gl->glGetUniformLocation(surface, "encoded");
-    objects->chequered = gl->glGetUniformLocation(surface, "chequered");
-    objects->outline_to_clip = gl->glGetUniformLocation(outline, "to_clip");
-    objects->half_width = gl->glGetUniformLocation(outline, "half_width");
-    objects->line_colour = gl->glGetUniformLocation(outline, "line_colour");
-}
-
-void ss_set_scale_colours(const ss_egl_api *gl, const ss_figure_objects *objects) {
-    gl->glUniform3fv(objects->colours, COLOURS, scale_colours[0]);
+    for (int i = 0; i < 2; i++) {
+        ss_surface_program *own = i ? &objects->false_colours : &objects->chequer;
+        own->to_clip = gl->glGetUniformLocation(own->program, "to_clip");
+        own->turn_normal = gl->glGetUniformLocation(own->program, "turn_normal");
+        own->scale = gl->glGetUniformLocation(own->program, "scale");
+        own->encoded = gl->glGetUniformLocation(own->program, "encoded");
+        own->colours = gl->glGetUniformLocation(own->program, "colours");
+    }
+    objects->outline_to_clip = gl->glGetUniformLocation(objects->outline_program, "to_clip");
+    objects->half_width = gl->glGetUniformLocation(objects->outline_program, "half_width");
+    objects->line_colour = gl->glGetUniformLocation(objects->outline_program, "line_colour");
 }
 
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error) {
-    skinslide_status status = ss_gl_program(gl, surface_vertex, surface_fragment, NULL, 0, &objects->surface_program, error);
+    skinslide_status status = ss_gl_program(gl, surface_vertex, chequer_fragment, NULL, 0, &objects->chequer.program, error);
+    if (!status)
+        status = ss_gl_program(gl, surface_vertex, false_colour_fragment, NULL, 0, &objects->false_colours.program, error);
     if (!status)
         status = ss_gl_program(gl, outline_vertex, outline_fragment, NULL, 0, &objects->outline_program, error);
     if (status)
         return status;
     make_arrays(gl, objects);
     find_uniforms(gl, objects);
+    gl->glUseProgram(objects->false_colours.program);
+    gl->glUniform3fv(objects->false_colours.colours, COLOURS, scale_colours[0]);
     return SKINSLIDE_OK;
 }

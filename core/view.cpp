@@ -234,11 +234,10 @@ bool ss_view_of(const skinslide_camera *camera, const double *to_world, const do
     dmat4 world = glm::translate(matrix_of(to_world), dvec3(origin[0], origin[1], origin[2]));
     dmat4 to_camera = matrix_of(camera->to_camera) * world, to_clip = matrix_of(camera->to_screen) * to_camera;
     dmat3 normal = glm::transpose(glm::inverse(dmat3(to_camera)));
-    std::copy_n(glm::value_ptr(glm::mat4(to_camera)), 16, view->to_camera);
     std::copy_n(glm::value_ptr(glm::mat4(to_clip)), 16, view->to_clip);
     std::copy_n(glm::value_ptr(glm::mat3(normal / largest(normal))), 9, view->turn_normal);
     view->mirrored = glm::determinant(to_clip) > 0; /* below 0 unless it is: depth in clip space goes away from the camera */
-    return all_finite(view->to_camera, 16) && all_finite(view->to_clip, 16) && all_finite(view->turn_normal, 9);
+    return all_finite(view->to_clip, 16) && all_finite(view->turn_normal, 9);
 }
 
 skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const double up[3], double aspect,

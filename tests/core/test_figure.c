@@ -328,8 +328,8 @@ static void slopes_are_shaded(void **state) {
     }
 }
 
-/* Where faces of two windings meet in every vertex, their normals cancel: each is lit as its triangle lies. */
-static void where_normals_cancel_triangles_are_lit(void **state) {
+/* Where faces of two windings meet in every vertex, their normals cancel: they are lit as if they faced the camera. */
+static void where_normals_cancel_colours_are_plain(void **state) {
     (void)state;
     static pixel pixels[HEIGHT][WIDTH];
     static const float points[3][3] = {{-WIDTH, -HEIGHT, 0}, {3 * WIDTH, -HEIGHT, 0}, {-WIDTH, 3 * HEIGHT, 0}};
@@ -573,7 +573,7 @@ int main(void) {
         cmocka_unit_test(false_colours_are_those_of_the_scale),
         cmocka_unit_test(shares_clamp),
         cmocka_unit_test(slopes_are_shaded),
-        cmocka_unit_test(where_normals_cancel_triangles_are_lit),
+        cmocka_unit_test(where_normals_cancel_colours_are_plain),
         cmocka_unit_test(the_nearer_hides_the_farther),
         cmocka_unit_test(backs_are_left_out),
         cmocka_unit_test(the_outline_is_on_top),

@@ -425,9 +425,13 @@ static void views_are_the_cameras(void **state) {
         }
     }
     double dot[2] = {0, 0}; /* of the normal z with what x and y become */
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 2; i++)
-            dot[i] += (double)view.turn_normal[6 + k] * view.to_camera[4 * i + k];
+    for (int i = 0; i < 2; i++) {
+        const float ends[2][3] = {{0, 0, 0}, {i == 0, i == 1, 0}};
+        double from[4], to[4];
+        to_camera(&f, ends[0], world, from), to_camera(&f, ends[1], world, to);
+        for (int k = 0; k < 3; k++)
+            dot[i] += view.turn_normal[6 + k] * (to[k] - from[k]);
+    }
     assert_near(dot[0], 0, 1e-5);
     assert_near(dot[1], 0, 1e-5);
     world[0] *= -1, world[4] *= -1, world[8] *= -1, world[12] *= -1;
