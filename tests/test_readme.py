@@ -42,7 +42,7 @@ def python_snippets():
 def shell_commands():
     """The lines of indented blocks, and inline code, that call the tool."""
     return re.findall(
-        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|bake|maps|stitch) [^`\n]*)", README, re.MULTILINE
+        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|preview|bake|maps|stitch) [^`\n]*)", README, re.MULTILINE
     )
 
 
