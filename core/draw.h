@@ -57,6 +57,7 @@ typedef struct ss_tessellation_work {
     double (*normals)[3];      /* [mesh_vertex_count], of fans */
     double *weights;           /* [largest_face] */
     ss_posed_vertex *vertices; /* [vertex_count] */
+    uint8_t *skipped;          /* [piece_count] its vertices are not wanted */
 } ss_tessellation_work;
 
 static inline int32_t ss_face_size(const skinslide_tessellation *tessellation, int32_t face) {

@@ -6,44 +6,6 @@
 
 static const float outline_light[3] = {0.90f, 0.22f, 0.02f};
 
-/* ---- What is in sight ---- */
-
-/* A bit for each side of the view that a place is beyond. */
-static unsigned beyond(const float *to_clip, const float place[3]) {
-    float clip[4];
-    unsigned sides = 0;
-    for (int i = 0; i < 4; i++)
-        clip[i] = to_clip[i] * place[0] + to_clip[4 + i] * place[1] + to_clip[8 + i] * place[2] + to_clip[12 + i];
-    for (int i = 0; i < 3; i++)
-        sides |= (unsigned)(clip[i] < -clip[3]) << (2 * i) | (unsigned)(clip[i] > clip[3]) << (2 * i + 1);
-    return sides;
-}
-
-static bool in_sight(const skinslide_tessellation *mesh, const ss_piece *piece, const ss_view *view,
-                     const ss_posed_vertex *vertices) {
-    unsigned all = ~0u;
-    for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(mesh, piece) && all; v++)
-        all &= beyond(view->to_clip, vertices[v].place);
-    return !all;
-}
-
-/* The triangles but those of pieces that are all beyond one side of the view: close to a patch, most of a mesh is. */
-static int32_t list_in_sight(const skinslide_tessellation *mesh, const ss_view *view, const ss_posed_vertex *vertices,
-                             uint32_t (*triangles)[3]) {
-    int32_t count = 0;
-    for (int32_t p = 0, first = 0; p < mesh->piece_count; p++) {
-        int32_t own = ss_triangles_of(mesh, &mesh->pieces[p]);
-        if (in_sight(mesh, &mesh->pieces[p], view, vertices)) {
-            memcpy(triangles + count, mesh->triangles + first, (size_t)own * sizeof *triangles);
-            count += own;
-        }
-        first += own;
-    }
-    return count;
-}
-
-/* ---- Drawing ---- */
-
 /* One call of skinslide_canvas_draw. */
 typedef struct drawing {
     const skinslide_canvas *canvas;
@@ -51,12 +13,83 @@ typedef struct drawing {
     const skinslide_tessellation *mesh;
     ss_view view;
     ss_tessellation_work work;
-    uint32_t (*triangles)[3]; /* [triangle_count] in sight, of room for all */
+    double origin[3];
+    uint8_t *in_sight;        /* [mesh->piece_count] */
+    uint32_t (*triangles)[3]; /* [triangle_count] of pieces in sight, of room for all */
     int32_t triangle_count;
     float (*ends)[2][3]; /* [mesh->segment_count] */
     float line;          /* pixels that the outline is wide */
     float line_on_screen[2];
 } drawing;
+
+/* ---- What is in sight ---- */
+
+enum { LEEWAY = 20 }; /* percent: surfaces that OpenSubdiv fits may leave the hull of the vertices that make them */
+
+/* A bit for each side of the view that a vertex is beyond. */
+static unsigned beyond(const drawing *drawn, int32_t vertex) {
+    const float *to_clip = drawn->view.to_clip, *point = drawn->figure->points + 3 * (int64_t)vertex;
+    double clip[4];
+    unsigned sides = 0;
+    for (int i = 0; i < 4; i++) {
+        clip[i] = to_clip[12 + i];
+        for (int k = 0; k < 3; k++)
+            clip[i] += to_clip[4 * k + i] * (point[k] - drawn->origin[k]);
+    }
+    double reach = clip[3] * (1 + LEEWAY / 100.0);
+    for (int i = 0; i < 3; i++)
+        sides |= (unsigned)(clip[i] < -reach) << (2 * i) | (unsigned)(clip[i] > reach) << (2 * i + 1);
+    return sides;
+}
+
+/* False where all vertices that make it are beyond the same side of the view. What has the outline always is. */
+static bool in_sight(const drawing *drawn, const ss_piece *piece) {
+    const skinslide_tessellation *mesh = drawn->mesh;
+    const int32_t *vertices = mesh->corner_vertex + mesh->face_start[piece->face];
+    int32_t count =
+        piece->side ? ss_limit_vertices(mesh->surfaces, piece->surface, &vertices) : ss_face_size(mesh, piece->face);
+    unsigned all = ~0u;
+    for (int32_t i = 0; i < count && all; i++)
+        all &= beyond(drawn, vertices[i]);
+    return !all || mesh->fixed[piece->first_vertex].inside > 0;
+}
+
+static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
+    int32_t low = 0, high = mesh->piece_count;
+    while (high - low > 1) {
+        int32_t middle = low + (high - low) / 2;
+        *(mesh->pieces[middle].first_vertex <= vertex ? &low : &high) = middle;
+    }
+    return low;
+}
+
+/* Close to a patch, most of a mesh is out of sight. It is not posed, but where what is in sight has places of it. */
+static void skip_out_of_sight(drawing *drawn) {
+    const skinslide_tessellation *mesh = drawn->mesh;
+    for (int32_t p = 0; p < mesh->piece_count; p++) {
+        drawn->in_sight[p] = in_sight(drawn, &mesh->pieces[p]);
+        drawn->work.skipped[p] = !drawn->in_sight[p];
+    }
+    for (int32_t p = 0; p < mesh->piece_count; p++) {
+        int32_t first = mesh->pieces[p].first_vertex, end = first + ss_piece_size(mesh, &mesh->pieces[p]);
+        for (int32_t v = first; v < end && drawn->in_sight[p] && mesh->pieces[p].side; v++)
+            if ((int32_t)mesh->same_as[v] < first)
+                drawn->work.skipped[piece_of(mesh, (int32_t)mesh->same_as[v])] = 0;
+    }
+}
+
+static void list_triangles(drawing *drawn) {
+    for (int32_t p = 0, first = 0; p < drawn->mesh->piece_count; p++) {
+        int32_t own = ss_triangles_of(drawn->mesh, &drawn->mesh->pieces[p]);
+        if (drawn->in_sight[p])
+            memcpy(drawn->triangles + drawn->triangle_count, drawn->mesh->triangles + first,
+                   (size_t)own * sizeof *drawn->triangles);
+        drawn->triangle_count += drawn->in_sight[p] ? own : 0;
+        first += own;
+    }
+}
+
+/* ---- Drawing ---- */
 
 static void fill(const ss_egl_api *gl, GLenum target, GLuint buffer, const void *data, int64_t count, size_t size) {
     gl->glBindBuffer(target, buffer);
@@ -148,17 +181,18 @@ static skinslide_status prepare(drawing *drawn, const skinslide_viewport *viewpo
     const skinslide_figure *figure = drawn->figure;
     const skinslide_tessellation *mesh = drawn->mesh;
     ss_tessellation_work *work = &drawn->work;
-    double origin[3];
-    ss_find_middle(mesh, figure->points, origin);
-    if (!ss_view_of(camera, figure->to_world, origin, &drawn->view))
+    ss_find_middle(mesh, figure->points, drawn->origin);
+    if (!ss_view_of(camera, figure->to_world, drawn->origin, &drawn->view))
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
+    drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->piece_count);
     drawn->triangles = ss_new(&work->memory, mesh->triangle_count, sizeof *drawn->triangles);
     drawn->ends = ss_new(&work->memory, mesh->segment_count, sizeof *drawn->ends);
     if (!ss_tessellation_work_allocate(mesh, work))
         return ss_out_of_memory(error);
-    ss_tessellate(mesh, figure->points, figure->values, origin, work);
-    drawn->triangle_count = list_in_sight(mesh, &drawn->view, work->vertices, drawn->triangles);
+    skip_out_of_sight(drawn);
+    ss_tessellate(mesh, figure->points, figure->values, drawn->origin, work);
+    list_triangles(drawn);
     for (int32_t i = 0; i < mesh->segment_count; i++)
         for (int end = 0; end < 2; end++)
             memcpy(drawn->ends[i][end], work->vertices[mesh->segments[i][end]].place, sizeof drawn->ends[i][end]);

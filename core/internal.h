@@ -336,6 +336,8 @@ int32_t ss_limit_stencil(const ss_surfaces *surfaces, int32_t face, const ss_par
 /* Gathers what makes the face's surface from the mesh's points, less origin, for ss_limit_point. face counts in the mesh_faces
  * that the surfaces are of. */
 void ss_limit_prepare(const ss_surfaces *surfaces, int32_t face, const float *points, const double origin[3], double *scratch);
+/* The mesh vertices that make the face's surface. Returns their count. */
+int32_t ss_limit_vertices(const ss_surfaces *surfaces, int32_t face, const int32_t **vertices);
 void ss_limit_point(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double out[3]);
 /* The same with the unit normal, of zeros where the surface has none, and the other way round where faces are left-handed. */
 void ss_limit_frame(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double point[3],

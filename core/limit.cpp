@@ -286,6 +286,12 @@ int32_t ss_limit_stencil(const ss_surfaces *surfaces, int32_t face, const ss_par
     return surface.EvaluateStencil(&uv.x, weights);
 }
 
+int32_t ss_limit_vertices(const ss_surfaces *surfaces, int32_t face, const int32_t **vertices) {
+    int32_t begin = surfaces->vertex_start[size_t(face)];
+    *vertices = surfaces->vertices.data() + begin;
+    return surfaces->vertex_start[size_t(face) + 1] - begin;
+}
+
 void ss_limit_prepare(const ss_surfaces *surfaces, int32_t face, const float *points, const double origin[3], double *scratch) {
     int32_t begin = surfaces->vertex_start[size_t(face)], end = surfaces->vertex_start[size_t(face) + 1];
     glm::dvec3 centre(origin[0], origin[1], origin[2]);

@@ -128,7 +128,7 @@ static void pose_grid(const skinslide_tessellation *own, const ss_piece *piece, 
 static void set_values(const skinslide_tessellation *own, const float *values, ss_tessellation_work *work) {
     for (int32_t p = 0; p < own->piece_count; p++) {
         const ss_piece *piece = &own->pieces[p];
-        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++)
+        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece) && !work->skipped[p]; v++)
             ss_blend(own, piece, v, values, 1, false, work->weights, &work->vertices[v].value);
     }
 }
@@ -150,6 +150,7 @@ bool ss_tessellation_work_allocate(const skinslide_tessellation *own, ss_tessell
     work->normals = ss_new(memory, own->mesh_vertex_count, sizeof *work->normals);
     work->weights = SS_NEW(memory, double, own->largest_face);
     work->vertices = SS_NEW(memory, ss_posed_vertex, own->vertex_count);
+    work->skipped = SS_NEW(memory, uint8_t, own->piece_count);
     return !memory->failed;
 }
 
@@ -158,7 +159,8 @@ void ss_tessellate(const skinslide_tessellation *own, const float *points, const
     if (!own->surfaces || own->flat_faces)
         find_normals(own, points, work->normals);
     for (int32_t p = 0; p < own->piece_count; p++)
-        (own->pieces[p].side ? pose_grid : pose_fan)(own, &own->pieces[p], points, origin, work);
+        if (!work->skipped[p])
+            (own->pieces[p].side ? pose_grid : pose_fan)(own, &own->pieces[p], points, origin, work);
     if (values)
         set_values(own, values, work);
 }

@@ -1,6 +1,7 @@
 /* Pixels of figures: which are drawn, in which colour, in front of what. Most are drawn by a camera whose world is in pixels, so
  * that what each pixel has can be told by hand. */
 #include "canvas.h"
+#include "creases.h"
 #include "support.h"
 
 #include <math.h>
@@ -507,6 +508,60 @@ static void from_inside_nothing_smears(void **state) {
     free_mesh(&mesh);
 }
 
+/* ---- A part of a picture ---- */
+
+/* A torus with creases and a mesh of polygons in perspective, as a whole; and each of 4 by 4 parts by itself, in which most is out
+ * of sight: the same pixels, but for a sample here and there. */
+static void compare_parts(test_mesh mesh, const skinslide_subdivision *own) {
+    enum { PARTS = 4 };
+    static uint8_t all[PARTS * HEIGHT][PARTS * WIDTH][4], part[HEIGHT][WIDTH][4];
+    const double up[3] = {0, 1, 0};
+    skinslide_mesh view = view_of(&mesh);
+    int32_t *faces = all_faces(&mesh), differ = 0;
+    const float *poses[1] = {mesh.points};
+    const skinslide_subject subject = {&view, faces, mesh.face_count, 1, poses, NULL, 0};
+    skinslide_tessellation *drawn;
+    skinslide_camera camera;
+    skinslide_error error;
+    view.subdivision = own;
+    assert_ok(skinslide_tessellation_create(&view, NULL, faces, 2, &drawn, &error), &error);
+    assert_ok(skinslide_frame_faces(&subject, up, (double)WIDTH / HEIGHT, &camera, &error), &error);
+    const skinslide_figure figure = {.tessellation = drawn, .points = mesh.points, .squares = 0.5f, .double_sided = 1};
+    skinslide_canvas *canvas = canvas_of(PARTS * WIDTH, PARTS * HEIGHT, SKINSLIDE_PIXELS_BYTES);
+    draw_in(canvas, (skinslide_viewport){0, 0, PARTS * WIDTH, PARTS * HEIGHT}, &figure, camera);
+    read_all(canvas, all);
+    for (int i = 0; i < PARTS * PARTS; i++) {
+        skinslide_camera near = camera;
+        double middle[2] = {(2.0 * (i % PARTS) + 1) / PARTS - 1, (2.0 * (i / PARTS) + 1) / PARTS - 1};
+        for (int row = 0; row < 4; row++)
+            for (int k = 0; k < 2; k++)
+                near.to_screen[4 * row + k] =
+                    PARTS * (camera.to_screen[4 * row + k] - middle[k] * camera.to_screen[4 * row + 3]);
+        canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
+        draw_in(canvas, whole, &figure, near);
+        read_all(canvas, part);
+        for (int32_t y = 0; y < HEIGHT; y++)
+            for (int32_t x = 0; x < WIDTH; x++)
+                for (int k = 0; k < 3; k++)
+                    differ += abs(part[y][x][k] - all[(PARTS - 1 - i / PARTS) * HEIGHT + y][i % PARTS * WIDTH + x][k]) > 8;
+    }
+    assert_in_range(differ, 0, 3 * PARTS * PARTS * WIDTH * HEIGHT / 500);
+    skinslide_tessellation_destroy(drawn);
+    free(faces);
+    free_mesh(&mesh);
+}
+
+static void parts_of_pictures_are_theirs(void **state) {
+    (void)state;
+    test_mesh sharp = torus(16, 12);
+    creased c = crease_at_random(&sharp, SKINSLIDE_SCHEME_CATMULL_CLARK, 2);
+    const skinslide_subdivision smooth = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    compare_parts(sharp, &c.own);
+    compare_parts(brick_wall(9, 10), &smooth);
+    compare_parts(finger(12, 20), NULL);
+    free_creased(&c);
+}
+
 /* ---- Any size, anywhere ---- */
 
 static void draw_torus(double scale, const double shift[3], uint8_t *levels) {
@@ -578,6 +633,7 @@ int main(void) {
         cmocka_unit_test(backs_are_left_out),
         cmocka_unit_test(the_outline_is_on_top),
         cmocka_unit_test(from_inside_nothing_smears),
+        cmocka_unit_test(parts_of_pictures_are_theirs),
         cmocka_unit_test(pictures_do_not_know_sizes_or_places),
         cmocka_unit_test(a_million_faces),
     };
