@@ -1,111 +1,34 @@
-/* Faces of the slid patch must not turn over. Two areas tell: that of the face as seen along the normals of the surface where
- * its vertices are, and that of the face in the chart. An energy keeps the first from coming near zero, and steps that would
- * take either there are cut back. Both are measured by what they are in the cache; faces with none there are let alone. */
+/* Faces of the slid patch must not turn over in the chart. An energy keeps their areas there from coming near zero, and steps
+ * are shortened so that none loses most of what it has. Faces that have no area at rest are let alone. */
 #include "relax.h"
 
-#define LOW_AREA   0.2  /* where the energy sets in */
-#define LEAST_AREA 0.01 /* where a face counts as turned over */
+#define LOW_AREA   0.2 /* of that at rest, where the energy sets in */
 #define STIFFNESS  0.1
+#define LEAST_KEPT 0.2  /* of a face's area by one step */
+#define SHARPNESS  4.0  /* of the limit that a vertex has from its faces */
+#define LEAST_AREA 0.01 /* of that at rest, where a face counts as turned over */
 
 static const int32_t *corners_of(const ss_relaxer *relaxer, int32_t face, int32_t *count) {
-    const ss_faces *faces = &relaxer->surface->patch->faces;
+    const ss_faces *faces = &relaxer->chart->surface->patch->faces;
     *count = ss_fan_size(faces, face) + 2;
     return faces->corner_vertex + faces->face_start[face];
 }
 
-/* Along the mean of the normals at the corners, normal. */
-static double face_area(const ss_relaxer *relaxer, int32_t face, const ss_stand *stands, double normal[3]) {
-    int32_t count;
-    const int32_t *v = corners_of(relaxer, face, &count);
-    double area[3] = {0, 0, 0}, p[3], q[3], product[3];
-    normal[0] = normal[1] = normal[2] = 0;
-    for (int32_t k = 0; k < count; k++)
-        ss_add(1, stands[v[k]].normal, normal);
-    ss_normalise(normal);
-    for (int32_t k = 1; k + 1 < count; k++) {
-        ss_subtract(stands[v[k]].place, stands[v[0]].place, p);
-        ss_subtract(stands[v[k + 1]].place, stands[v[0]].place, q);
-        ss_cross(p, q, product);
-        ss_add(0.5, product, area);
-    }
-    return ss_dot(area, normal);
+static double area_now(const ss_relaxer *relaxer, int32_t face) {
+    return ss_chart_area(relaxer->chart, face, (const double(*)[2])relaxer->uv);
 }
 
-static double chart_area(const ss_relaxer *relaxer, int32_t face, const ss_stand *stands) {
-    int32_t count;
-    const int32_t *v = corners_of(relaxer, face, &count);
-    const double *first = stands[v[0]].uv;
-    double area = 0;
-    for (int32_t k = 1; k + 1 < count; k++) {
-        const double *p = stands[v[k]].uv, *q = stands[v[k + 1]].uv;
-        area += 0.5 * ((p[0] - first[0]) * (q[1] - first[1]) - (p[1] - first[1]) * (q[0] - first[0]));
-    }
-    return area;
-}
-
-void ss_measure_cache(ss_relaxer *relaxer) {
-    double normal[3];
-    for (int32_t f = 0; f < relaxer->surface->patch->faces.face_count; f++) {
-        relaxer->cache_area[f] = face_area(relaxer, f, relaxer->now, normal);
-        relaxer->cache_chart_area[f] = chart_area(relaxer, f, relaxer->now);
-        relaxer->area[f] = 1;
-    }
-}
-
-/* ---- Cutting back ---- */
-
-static bool turned_over(ss_relaxer *relaxer, int32_t face) {
-    double normal[3], cache = relaxer->cache_area[face], cache_chart = relaxer->cache_chart_area[face];
-    relaxer->trial_area[face] = cache > 0 ? face_area(relaxer, face, relaxer->trial, normal) / cache : 1;
-    return relaxer->trial_area[face] < LEAST_AREA ||
-           (cache_chart > 0 && chart_area(relaxer, face, relaxer->trial) < LEAST_AREA * cache_chart);
-}
-
-/* Six times half the step, then none. Returns whether anything was left to cut. */
-static bool cut_face(ss_relaxer *relaxer, int32_t face, int round) {
-    int32_t count;
-    const int32_t *v = corners_of(relaxer, face, &count);
-    bool any = false;
-    for (int32_t k = 0; k < count; k++) {
-        if (relaxer->surface->patch->fixed[v[k]] || relaxer->part[v[k]] == 0)
-            continue;
-        relaxer->part[v[k]] = round < 6 ? relaxer->part[v[k]] / 2 : 0;
-        ss_walk_trial(relaxer, v[k]);
-        any = true;
-    }
-    return any;
-}
-
-/* Ends, since each round leaves fewer vertices to move. */
-void ss_cut_back(ss_relaxer *relaxer) {
-    bool any = true;
-    for (int round = 0; any; round++) {
-        any = false;
-        for (int32_t f = 0; f < relaxer->surface->patch->faces.face_count; f++)
-            if (turned_over(relaxer, f))
-                any |= cut_face(relaxer, f, round);
-    }
-}
-
-/* ---- The energy: c (r - low)^2 log(low / r) of each area r ---- */
-
-double ss_fold_energy(const ss_relaxer *relaxer, const double *area) {
-    double sum = 0;
-    for (int32_t f = 0; f < relaxer->surface->patch->faces.face_count; f++) {
-        double r = area[f];
-        if (r < LOW_AREA)
-            sum += r > 0 ? STIFFNESS * (r - LOW_AREA) * (r - LOW_AREA) * log(LOW_AREA / r) : INFINITY;
-    }
-    return sum;
-}
+/* ---- The energy: c (r - low)^2 log(low / r) of each area r, as a share of that at rest ---- */
 
 /* One corner of a face: d1 and d2 are the halved derivatives of its energy by r. The corners of a face are coupled through its
  * area; count times their own blocks bounds that from above, and keeps the pattern. */
-static void add_corner(ss_relaxer *relaxer, int32_t unknown, const double (*axis)[3], const double gradient[3], double d1,
-                       double d2, int32_t count) {
+static void add_corner(ss_relaxer *relaxer, int32_t vertex, const double gradient[2], double d1, double d2, int32_t count) {
+    int32_t unknown = ss_blocks_unknown(relaxer->blocks, vertex);
+    if (unknown < 0)
+        return;
     double *own = ss_blocks_own(relaxer->blocks, unknown), slope[2];
     for (int j = 0; j < 2; j++)
-        slope[j] = ss_dot(axis[j], gradient);
+        slope[j] = relaxer->way[vertex][j][0] * gradient[0] + relaxer->way[vertex][j][1] * gradient[1];
     for (int j = 0; j < 2; j++) {
         relaxer->blocks->right[unknown][j] -= d1 * slope[j];
         for (int k = 0; k < 2; k++)
@@ -113,43 +36,93 @@ static void add_corner(ss_relaxer *relaxer, int32_t unknown, const double (*axis
     }
 }
 
-static void add_face(ss_relaxer *relaxer, int32_t face) {
+static void add_face(ss_relaxer *relaxer, int32_t face, double r) {
     int32_t count;
     const int32_t *v = corners_of(relaxer, face, &count);
-    double r = relaxer->area[face], off = r - LOW_AREA, log_r = log(r / LOW_AREA), normal[3], across[3], gradient[3];
+    double off = r - LOW_AREA, log_r = log(r / LOW_AREA), half = 0.5 / relaxer->chart->area[face];
     double d1 = 0.5 * STIFFNESS * (-2 * off * log_r - off * off / r);
     double d2 = 0.5 * STIFFNESS * (-2 * log_r - 4 * off / r + off * off / (r * r));
-    face_area(relaxer, face, relaxer->now, normal);
     for (int32_t k = 0; k < count; k++) {
-        int32_t unknown = ss_blocks_unknown(relaxer->blocks, v[k]);
-        if (unknown < 0)
-            continue;
-        ss_subtract(relaxer->now[v[(k + 1) % count]].place, relaxer->now[v[(k + count - 1) % count]].place, across);
-        ss_cross(across, normal, gradient);
-        for (int j = 0; j < 3; j++)
-            gradient[j] *= 0.5 / relaxer->cache_area[face];
-        add_corner(relaxer, unknown, (const double(*)[3])relaxer->axis[v[k]], gradient, d1, d2, count);
+        const double *next = relaxer->uv[v[(k + 1) % count]], *last = relaxer->uv[v[(k + count - 1) % count]];
+        double gradient[2] = {half * (next[1] - last[1]), half * (last[0] - next[0])};
+        add_corner(relaxer, v[k], gradient, d1, d2, count);
     }
 }
 
 void ss_fold_model(ss_relaxer *relaxer) {
-    for (int32_t f = 0; f < relaxer->surface->patch->faces.face_count; f++)
-        if (relaxer->area[f] < LOW_AREA)
-            add_face(relaxer, f);
+    for (int32_t f = 0; f < relaxer->chart->surface->patch->faces.face_count; f++) {
+        double rest = relaxer->chart->area[f], r = rest > 0 ? area_now(relaxer, f) / rest : 1;
+        if (r > 0 && r < LOW_AREA)
+            add_face(relaxer, f, r);
+    }
+}
+
+/* ---- Shorter steps ---- */
+
+static double cross(const double a[2], const double b[2]) {
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+/* How much of the steps a face can take and keep its least share: the first root of its area, which is quadratic in that. */
+static double face_reach(const ss_relaxer *relaxer, int32_t face) {
+    int32_t count;
+    const int32_t *v = corners_of(relaxer, face, &count);
+    double now = 0, slope = 0, bend = 0;
+    for (int32_t k = 1; k + 1 < count; k++) {
+        double p[2], q[2], dp[2], dq[2];
+        for (int j = 0; j < 2; j++) {
+            p[j] = relaxer->uv[v[k]][j] - relaxer->uv[v[0]][j], q[j] = relaxer->uv[v[k + 1]][j] - relaxer->uv[v[0]][j];
+            dp[j] = relaxer->step[v[k]][j] - relaxer->step[v[0]][j];
+            dq[j] = relaxer->step[v[k + 1]][j] - relaxer->step[v[0]][j];
+        }
+        now += cross(p, q), slope += cross(p, dq) + cross(dp, q), bend += cross(dp, dq);
+    }
+    if (!(now > 0) || !(relaxer->chart->area[face] > 0))
+        return INFINITY;
+    now *= 1 - LEAST_KEPT;
+    double root = slope * slope - 4 * bend * now, below = root >= 0 ? sqrt(root) - slope : 0;
+    return below > 0 ? 2 * now / below : INFINITY;
+}
+
+/* Each vertex goes as far as its faces let all go together; then all as far as the shortened steps let them. */
+void ss_limit_steps(ss_relaxer *relaxer) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    double all = 1;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        relaxer->reach[v] = 1;
+    for (int32_t f = 0; f < patch->faces.face_count; f++) {
+        int32_t count;
+        const int32_t *v = corners_of(relaxer, f, &count);
+        double reach = face_reach(relaxer, f);
+        for (int32_t k = 0; k < count; k++)
+            relaxer->reach[v[k]] += pow(reach, -SHARPNESS);
+    }
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        double part = pow(relaxer->reach[v], -1.0 / SHARPNESS);
+        relaxer->step[v][0] *= part, relaxer->step[v][1] *= part;
+    }
+    for (int32_t f = 0; f < patch->faces.face_count; f++)
+        all = fmin(all, face_reach(relaxer, f));
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        relaxer->step[v][0] *= all, relaxer->step[v][1] *= all;
+}
+
+bool ss_has_turned(const ss_relaxer *relaxer, int32_t face) {
+    double rest = relaxer->chart->area[face];
+    return rest > 0 && area_now(relaxer, face) < LEAST_AREA * rest;
 }
 
 /* ---- The result ---- */
 
 int32_t ss_count_turned(ss_relaxer *relaxer, const ss_location *locations) {
-    const ss_surface *surface = relaxer->surface;
+    const ss_patch *patch = relaxer->chart->surface->patch;
     int32_t turned = 0;
-    for (int32_t i = 0; i < surface->patch->free_count; i++) {
-        double *uv = relaxer->now[surface->patch->free_vertex[i]].uv;
-        const double *own = relaxer->chart[surface->patch->free_vertex[i]], *there = locations[i].uv;
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        int32_t v = patch->free_vertex[i];
         for (int k = 0; k < 2; k++)
-            uv[k] = locations[i].face == SS_STAYS ? own[k] : there[k];
+            relaxer->uv[v][k] = locations[i].face == SS_STAYS ? relaxer->chart->uv[v][k] : locations[i].uv[k];
     }
-    for (int32_t f = 0; f < surface->patch->faces.face_count; f++)
-        turned += relaxer->cache_chart_area[f] > 0 && chart_area(relaxer, f, relaxer->now) <= 0;
+    for (int32_t f = 0; f < patch->faces.face_count; f++)
+        turned += relaxer->chart->area[f] > 0 && area_now(relaxer, f) <= 0;
     return turned;
 }

@@ -122,7 +122,8 @@ static skinslide_status embed_plane(ss_part *part, double *density, double *no_p
 }
 
 /* From a patch to a part: symbolic factor, paint, weights, rest embedding. */
-static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslide_controls *controls, skinslide_error *error) {
+static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslide_mesh *mesh,
+                                const skinslide_controls *controls, skinslide_error *error) {
     const ss_patch *patch = part->patch;
     ss_memory scratch = {0};
     part->paint = SS_NEW(memory, double, patch->faces.edge_count);
@@ -144,6 +145,8 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
     }
     if (!status)
         status = ss_surface_create(patch, &part->surface, error);
+    if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
+        status = ss_chart_create(part->surface, (const double(*)[2])part->rest_uv, mesh->rest_points, &part->chart, error);
     if (!status)
         part->rest_layout = ss_lay_out(patch, (const double(*)[2])part->rest_uv);
     ss_free(&scratch);
@@ -205,7 +208,7 @@ static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh
         ss_patch_create(mesh, &slider->setups[setup], setup, pieces->chosen, count, piece, pieces->count, &part->patch, error);
     if (!status) {
         slider->part_count++;
-        status = prepare(&slider->memory, part, &slider->setups[setup].controls, error);
+        status = prepare(&slider->memory, part, mesh, &slider->setups[setup].controls, error);
     }
     if (!status)
         status = add_cage(slider, mesh, part, error);
@@ -324,6 +327,7 @@ void skinslide_slider_destroy(skinslide_slider *slider) {
         return;
     for (int32_t p = 0; p < slider->part_count; p++) {
         ss_cage_destroy(slider->parts[p].cage);
+        ss_chart_destroy(slider->parts[p].chart);
         ss_surface_destroy(slider->parts[p].surface);
         ss_system_destroy(slider->parts[p].system);
         ss_patch_destroy(slider->parts[p].patch);
@@ -360,7 +364,7 @@ static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_be
     if (!status)
         status = ss_traveller_create(part->surface, &bench->traveller, error);
     if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
-        status = ss_relaxer_create(part->surface, part->system, &bench->relaxer, error);
+        status = ss_relaxer_create(part->chart, part->system, &bench->relaxer, error);
     return status;
 }
 

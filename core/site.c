@@ -1,15 +1,10 @@
-/* Sites: points that slide on the surface.
+/* Sites: points that slide on a patch, in the plane that it is laid out in.
  *
- * A walk is straight: where it crosses a side it goes on in the next triangle at the same angle to that side, as if the two
- * were unfolded flat. At the border of the patch what is left of it goes along the border. So a site never leaves the surface.
- *
- * In the round manner a site's place is on the rounded surface (Phong tessellation; Boubekeur and Alexa 2008), its normal is
- * blended from those of the vertices, and a step ends where the surface is met along the normal there (Phong projection;
- * Panozzo and others 2013). All three go on continuously from triangle to triangle, so that a slide is smooth in time. */
+ * A walk is straight: where it crosses a side it goes on in the next triangle at the same angle to that side. It ends at the
+ * border of the patch, so a site never leaves it. */
 #include "site.h"
 
-#define MOST_CROSSED   1000
-#define MOST_CORRECTED 4
+#define MOST_CROSSED 1000
 
 ss_site ss_site_of_vertex(const ss_surface *surface, int32_t vertex) {
     ss_site site = {surface->vertex_triangle[vertex], {0, 0, 0}};
@@ -44,7 +39,7 @@ ss_site ss_location_site(const ss_surface *surface, const ss_location *location,
     return site;
 }
 
-static void flat_place(const ss_shape *pose, const ss_site *site, double out[3]) {
+void ss_site_place(const ss_shape *pose, const ss_site *site, double out[3]) {
     const int32_t *v = pose->surface->vertex[site->triangle];
     int corner = ss_site_corner(site);
     const double *from = pose->point[v[corner < 0 ? 0 : corner]];
@@ -54,48 +49,6 @@ static void flat_place(const ss_shape *pose, const ss_site *site, double out[3])
         return;
     ss_add(site->weight[1], pose->facet[site->triangle].first, out);
     ss_add(site->weight[2], pose->facet[site->triangle].second, out);
-}
-
-/* Halfway from the flat place to where its projections on the tangent planes of the three vertices average. */
-void ss_site_place(const ss_shape *pose, const ss_site *site, double out[3]) {
-    const int32_t *v = pose->surface->vertex[site->triangle];
-    double flat[3], from[3];
-    flat_place(pose, site, flat);
-    for (int k = 0; k < 3; k++)
-        out[k] = flat[k];
-    for (int j = 0; j < 3 && pose->manner == SS_ROUND; j++) {
-        ss_subtract(flat, pose->point[v[j]], from);
-        ss_add(-0.5 * site->weight[j] * ss_dot(from, pose->normal[v[j]]), pose->normal[v[j]], out);
-    }
-}
-
-/* How the place moves with the second and third weight, in the round manner. */
-static void round_tangents(const ss_shape *pose, const ss_site *site, double first[3], double second[3]) {
-    const int32_t *v = pose->surface->vertex[site->triangle];
-    const ss_facet *facet = &pose->facet[site->triangle];
-    double flat[3], from[3];
-    flat_place(pose, site, flat);
-    for (int k = 0; k < 3; k++)
-        first[k] = facet->first[k], second[k] = facet->second[k];
-    for (int j = 0; j < 3; j++) {
-        const double *normal = pose->normal[v[j]];
-        ss_subtract(flat, pose->point[v[j]], from);
-        double height = ss_dot(from, normal);
-        ss_add(-0.5 * (site->weight[j] * ss_dot(facet->first, normal) + ((j == 1) - (j == 0)) * height), normal, first);
-        ss_add(-0.5 * (site->weight[j] * ss_dot(facet->second, normal) + ((j == 2) - (j == 0)) * height), normal, second);
-    }
-}
-
-void ss_site_normal(const ss_shape *pose, ss_manner manner, const ss_site *site, double out[3]) {
-    const int32_t *v = pose->surface->vertex[site->triangle];
-    const double(*normal)[3] = (const double(*)[3])(manner == SS_BLUNT ? pose->blunt_normal : pose->normal);
-    bool faceted = manner == SS_FLAT && ss_site_corner(site) < 0;
-    out[0] = out[1] = out[2] = 0;
-    if (faceted)
-        ss_add(1, pose->facet[site->triangle].normal, out);
-    for (int j = 0; j < 3 && !faceted; j++)
-        ss_add(site->weight[j], normal[v[j]], out);
-    ss_normalise(out);
 }
 
 /* ---- Setting out: a step as rates of the weights ---- */
@@ -113,39 +66,26 @@ static void vector_of(const ss_facet *facet, const double rates[3], double vecto
         vector[k] = rates[1] * facet->first[k] + rates[2] * facet->second[k];
 }
 
-static void scale_to(const ss_facet *facet, double length, double rates[3]) {
-    double vector[3];
-    vector_of(facet, rates, vector);
-    double now = ss_length(vector), factor = now > 0 ? length / now : 0;
-    for (int k = 0; k < 3; k++)
-        rates[k] *= factor;
-}
-
-/* Solves step = a p + b q as seen along a normal; false where p and q turn right or make no angle. */
-static bool split_along(const double normal[3], const double p[3], const double q[3], const double step[3], double out[2]) {
-    double product[3];
-    ss_cross(p, q, product);
-    double area = ss_dot(normal, product);
-    ss_cross(step, q, product);
-    out[0] = ss_dot(normal, product) / area;
-    ss_cross(p, step, product);
-    out[1] = ss_dot(normal, product) / area;
+/* Solves step = a p + b q; false where p and q turn right or make no angle. */
+static bool split(const double p[3], const double q[3], const double step[3], double out[2]) {
+    double area = p[0] * q[1] - p[1] * q[0];
+    out[0] = (step[0] * q[1] - step[1] * q[0]) / area;
+    out[1] = (p[0] * step[1] - p[1] * step[0]) / area;
     return area > 0 && isfinite(out[0]) && isfinite(out[1]);
 }
 
-/* From a vertex, round manner: into the triangle that the step points into as seen along the normal; where none is, the one
- * that it nearly does. */
-static void leave_round_vertex(const ss_shape *pose, ss_site *site, const double step[3], double rates[3]) {
-    const ss_surface *surface = pose->surface;
+/* From a vertex: into the triangle that the step points into; where none is, the one that it nearly does. */
+static void leave_vertex(const ss_shape *plane, ss_site *site, const double step[3], double rates[3]) {
+    const ss_surface *surface = plane->surface;
     int32_t vertex = surface->vertex[site->triangle][ss_site_corner(site)], first = surface->vertex_triangle[vertex], t = first;
     double best = -INFINITY;
     do {
         const int32_t *v = surface->vertex[t];
         int k = ss_triangle_corner(surface, t, vertex), next = (k + 1) % 3, last = (k + 2) % 3;
         double p[3], q[3], along[2];
-        ss_subtract(pose->point[v[next]], pose->point[vertex], p);
-        ss_subtract(pose->point[v[last]], pose->point[vertex], q);
-        if (split_along(pose->normal[vertex], p, q, step, along) && fmin(along[0], along[1]) > best) {
+        ss_subtract(plane->point[v[next]], plane->point[vertex], p);
+        ss_subtract(plane->point[v[last]], plane->point[vertex], q);
+        if (split(p, q, step, along) && fmin(along[0], along[1]) > best) {
             best = fmin(along[0], along[1]);
             *site = (ss_site){t, {k == 0, k == 1, k == 2}};
             rates[next] = fmax(along[0], 0), rates[last] = fmax(along[1], 0), rates[k] = -rates[next] - rates[last];
@@ -154,63 +94,12 @@ static void leave_round_vertex(const ss_shape *pose, ss_site *site, const double
     } while (best < 0 && t >= 0 && t != first);
 }
 
-/* The way into a triangle from its corner k that is nearest to a step, as rates. Returns how far along the step it leads. */
-static double enter(const ss_shape *pose, int32_t triangle, int k, const double step[3], double rates[3]) {
-    const ss_facet *facet = &pose->facet[triangle];
-    const int32_t *v = pose->surface->vertex[triangle];
-    int next = (k + 1) % 3, last = (k + 2) % 3;
-    double vector[3], ahead[2];
-    rates_along(facet, step, rates);
-    if (rates[next] >= 0 && rates[last] >= 0 && facet->has_area) {
-        vector_of(facet, rates, vector);
-        return ss_length(vector);
-    }
-    for (int side = 0; side < 2; side++) {
-        ss_subtract(pose->point[v[side ? last : next]], pose->point[v[k]], vector);
-        ss_normalise(vector);
-        ahead[side] = ss_dot(step, vector);
-    }
-    int side = ahead[1] > ahead[0];
+static void leave(const ss_shape *plane, ss_site *site, const double step[3], double rates[3]) {
     rates[0] = rates[1] = rates[2] = 0;
-    rates[k] = -1, rates[side ? last : next] = 1;
-    return ahead[side];
-}
-
-/* From a vertex, other manners: into the triangle round it that leads farthest along the step. */
-static void leave_flat_vertex(const ss_shape *pose, ss_site *site, const double step[3], double rates[3]) {
-    const ss_surface *surface = pose->surface;
-    int32_t vertex = surface->vertex[site->triangle][ss_site_corner(site)], first = surface->vertex_triangle[vertex], t = first;
-    double best = 0, trial[3];
-    do {
-        int k = ss_triangle_corner(surface, t, vertex);
-        double ahead = enter(pose, t, k, step, trial);
-        if (ahead > best) {
-            best = ahead;
-            *site = (ss_site){t, {k == 0, k == 1, k == 2}};
-            rates[0] = trial[0], rates[1] = trial[1], rates[2] = trial[2];
-        }
-        t = surface->neighbour[t][(k + 2) % 3];
-    } while (t >= 0 && t != first);
-    scale_to(&pose->facet[site->triangle], pose->manner == SS_BLUNT ? ss_length(step) : best, rates);
-}
-
-static void leave(const ss_shape *pose, ss_site *site, const double step[3], double rates[3]) {
-    double first[3], second[3], normal[3], along[2];
-    rates[0] = rates[1] = rates[2] = 0;
-    if (ss_site_corner(site) >= 0) {
-        (pose->manner == SS_ROUND ? leave_round_vertex : leave_flat_vertex)(pose, site, step, rates);
-        return;
-    }
-    if (pose->manner != SS_ROUND) {
-        rates_along(&pose->facet[site->triangle], step, rates);
-        if (pose->manner == SS_BLUNT)
-            scale_to(&pose->facet[site->triangle], ss_length(step), rates);
-        return;
-    }
-    round_tangents(pose, site, first, second);
-    ss_site_normal(pose, SS_ROUND, site, normal);
-    if (split_along(normal, first, second, step, along))
-        rates[0] = -along[0] - along[1], rates[1] = along[0], rates[2] = along[1];
+    if (ss_site_corner(site) >= 0)
+        leave_vertex(plane, site, step, rates);
+    else
+        rates_along(&plane->facet[site->triangle], step, rates);
 }
 
 /* ---- Walking ---- */
@@ -260,19 +149,6 @@ static void cross_side(const ss_shape *pose, ss_site *site, int corner, double r
     }
 }
 
-/* Along the border opposite a corner, at most to its end. */
-static void follow_border(const ss_shape *pose, ss_site *site, int corner, double rates[3]) {
-    const int32_t *v = pose->surface->vertex[site->triangle];
-    int a = (corner + 1) % 3, b = (corner + 2) % 3;
-    double side[3], vector[3];
-    ss_subtract(pose->point[v[b]], pose->point[v[a]], side);
-    vector_of(&pose->facet[site->triangle], rates, vector);
-    double square = ss_dot(side, side), share = square > 0 ? ss_dot(vector, side) / square : 0;
-    site->weight[b] = fmin(1, fmax(0, site->weight[b] + share));
-    site->weight[a] = 1 - site->weight[b];
-    site->weight[corner] = 0;
-}
-
 /* What a walk is measured with: the way in another pose, and how far it may go there. */
 typedef struct ss_meter {
     const ss_shape *pose;
@@ -289,49 +165,39 @@ static double measure(ss_meter *meter, int32_t triangle, const double rates[3], 
     return too_far ? part * (allowed / length) : part;
 }
 
-/* One straight walk. A facet without area ends it. */
-static void walk(const ss_shape *pose, ss_site *site, const double step[3], ss_meter *meter) {
+/* One straight walk. A facet without area ends it, and so does the border. */
+static void walk(const ss_shape *plane, ss_site *site, const double step[3], ss_meter *meter) {
     double rates[3];
-    leave(pose, site, step, rates);
+    leave(plane, site, step, rates);
     for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
         int corner;
         double whole = reach(site, rates, &corner), part = meter ? measure(meter, site->triangle, rates, whole) : whole;
-        corner = part < whole ? -1 : corner;
-        advance(site, rates, part, corner);
-        if (corner < 0)
+        advance(site, rates, part, part < whole ? -1 : corner);
+        if (corner < 0 || part < whole)
             return;
-        int32_t there = pose->surface->neighbour[site->triangle][(corner + 1) % 3];
-        if (there < 0 && !meter)
-            follow_border(pose, site, corner, rates);
-        if (there < 0 || !pose->facet[there].has_area)
+        int32_t there = plane->surface->neighbour[site->triangle][(corner + 1) % 3];
+        if (there < 0 || !plane->facet[there].has_area)
             return;
-        cross_side(pose, site, corner, rates);
+        cross_side(plane, site, corner, rates);
     }
 }
 
-/* Where the surface is met along its normal from the end of the step: found by walking again for what the walk before has missed
- * by the curvature, until that is nothing to the step. */
-void ss_site_walk(const ss_shape *pose, ss_site *site, const double step[3]) {
-    double target[3], here[3], missing[3], normal[3];
-    ss_site_place(pose, site, target);
-    ss_add(1, step, target);
-    walk(pose, site, step, NULL);
-    for (int again = 0; again < MOST_CORRECTED && pose->manner == SS_ROUND; again++) {
-        ss_site_place(pose, site, here);
-        ss_subtract(target, here, missing);
-        ss_site_normal(pose, SS_ROUND, site, normal);
-        ss_add(-ss_dot(missing, normal), normal, missing);
-        if (ss_dot(missing, missing) <= 1e-8 * ss_dot(step, step))
-            return;
-        walk(pose, site, missing, NULL);
-    }
+static void step_to(const ss_shape *plane, const ss_site *site, const double uv[2], double step[3]) {
+    double here[3];
+    ss_site_place(plane, site, here);
+    step[0] = uv[0] - here[0], step[1] = uv[1] - here[1], step[2] = 0;
+}
+
+void ss_site_walk(const ss_shape *plane, ss_site *site, const double uv[2]) {
+    double step[3];
+    step_to(plane, site, uv, step);
+    walk(plane, site, step, NULL);
 }
 
 double ss_site_trace(const ss_shape *plane, const ss_shape *pose, ss_site *site, const double uv[2], double limit) {
-    double step[3] = {0, 0, 0}, here[3];
+    double step[3];
     ss_meter meter = {pose, 0, limit};
-    ss_site_place(plane, site, here);
-    step[0] = uv[0] - here[0], step[1] = uv[1] - here[1];
+    step_to(plane, site, uv, step);
     walk(plane, site, step, &meter);
     return meter.walked;
 }

@@ -34,22 +34,14 @@ typedef struct ss_facet {
     bool has_area;
 } ss_facet;
 
-/* What a site's place and tangent plane are. */
-typedef enum ss_manner {
-    SS_ROUND, /* on the rounded surface, which changes smoothly from triangle to triangle */
-    SS_FLAT,  /* on the triangle */
-    SS_BLUNT  /* on the triangle, with normals averaged over neighbours: leads out of creases */
-} ss_manner;
-
 typedef struct ss_shape {
     const ss_surface *surface;
-    ss_manner manner;
-    double (*point)[3];        /* [vertex_count] */
-    double (*normal)[3];       /* [vertex_count] area-weighted, of unit length */
-    double (*blunt_normal)[3]; /* [vertex_count] averaged over neighbours, three times */
-    ss_facet *facet;           /* [triangle_count] */
+    double (*point)[3]; /* [vertex_count] */
+    ss_facet *facet;    /* [triangle_count] */
 } ss_shape;
 
+/* The patch's of the whole mesh's points: [vertex_count][3]. */
+void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
 bool ss_shape_allocate(ss_memory *memory, const ss_surface *surface, ss_shape *pose);
 /* points is the whole mesh's. */
 void ss_shape_set(ss_shape *pose, const float *points);
@@ -69,22 +61,19 @@ ss_site ss_site_of_vertex(const ss_surface *surface, int32_t vertex);
 int ss_site_corner(const ss_site *site);
 /* The weighted sum of values [vertex_count][2]. */
 void ss_site_blend(const ss_surface *surface, const ss_site *site, const double (*values)[2], double out[2]);
-/* In the manner of the pose. */
 void ss_site_place(const ss_shape *pose, const ss_site *site, double out[3]);
-/* Of the tangent plane, in a manner that need not be the pose's. */
-void ss_site_normal(const ss_shape *pose, ss_manner manner, const ss_site *site, double out[3]);
 /* As a location for ss_interpolate, uv being the embedding [vertex_count][2] that it will be given, and back. */
 ss_location ss_site_location(const ss_surface *surface, const ss_site *site, const double (*uv)[2]);
 ss_site ss_location_site(const ss_surface *surface, const ss_location *location, const double (*uv)[2]);
-/* Moves the site by a step in its tangent plane; it never leaves the surface. */
-void ss_site_walk(const ss_shape *pose, ss_site *site, const double step[3]);
+/* Walks straight in the plane to uv, or to the border. */
+void ss_site_walk(const ss_shape *plane, ss_site *site, const double uv[2]);
+/* The same, but no farther than limit measured in the pose. Returns how far. */
+double ss_site_trace(const ss_shape *plane, const ss_shape *pose, ss_site *site, const double uv[2], double limit);
 /* For a site on the border: the direction in which faces go round it there, and a walk along it that far. */
 void ss_site_border(const ss_shape *pose, const ss_site *site, double out[3]);
 void ss_site_walk_border(const ss_shape *pose, ss_site *site, double distance);
 /* How far the site is along its loop from a vertex of it, the shorter way: less than 0 against the faces' way. */
 double ss_site_border_distance(const ss_shape *pose, int32_t vertex, const ss_site *site);
-/* Walks straight in the plane to uv, but no farther than limit measured in the pose, and ends at borders. Returns how far. */
-double ss_site_trace(const ss_shape *plane, const ss_shape *pose, ss_site *site, const double uv[2], double limit);
 
 /* ---- Vectors ---- */
 

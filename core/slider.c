@@ -121,7 +121,7 @@ static void relax_patch(skinslide_workspace *workspace, int32_t p, const float *
     ss_bench *bench = &workspace->benches[p];
     skinslide_patch_result *result = &workspace->results[p];
     const double(*uv)[2] = (const double(*)[2])bench->uv;
-    result->relax_steps = ss_relax(bench->relaxer, points, uv, bench->paint, bench->locations);
+    result->relax_steps = ss_relax(bench->relaxer, points, bench->paint, bench->locations);
     if (bench->limited || !slides_fully(workspace->slider->parts[p].patch, bench->weights))
         result->clamped_vertices =
             ss_travel(bench->traveller, points, uv, (ss_allowance){bench->weights, bench->limits}, bench->locations);

@@ -18,6 +18,7 @@ typedef struct ss_part {
     ss_layout rest_layout;
     ss_cage *cage; /* NULL unless its interpolation is LIMIT */
     ss_surface *surface;
+    ss_chart *chart; /* NULL unless the rule is RELAXED */
 } ss_part;
 
 struct skinslide_slider {

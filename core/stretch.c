@@ -1,139 +1,148 @@
-/* The energy of a relaxed slide and its quadratic model at the places reached:
+/* The energy of a relaxed slide and its quadratic models:
  *
- *     E = sum of k log^2(l / rest l) + hold k |s|^2 / rest l^2
+ *     E = sum of k log^2(l / rest l) + hold k |s|^2 / d^2
  *
- * over edges, k the painted force density, l the distance of the edge's ends, s the difference of their slides. The second term
- * is small: edges of quads alone leave shear free, and would let a slide jump from one answer to another in the course of a
- * motion. With t the edge's direction and z = log(l / rest l) the Hessian of log^2 for one end is
+ * over edges, k the painted force density, l the distance of the edge's ends, d its length in the chart, s the difference of
+ * their slides there. The second term is small: edges of quads alone leave shear free. With t the edge's direction and
+ * z = log(l / rest l) the Hessian of log^2 for one end is
  *
  *     2 / l^2 ((1 - z) t t' + z (1 - t t'))
  *
  * of which the model keeps what is positive, and of t t' a fifth at least. */
 #include "relax.h"
 
+#define HOLD        0.003
+#define DAMPING     0.05 /* of a step, as the hold: of a share of every edge's own stiffness */
 #define LEAST_ALONG 0.2
+#define BLUNTNESS   0.05 /* of where what is kept begins */
 
 /* Edges between two fixed vertices never change, and are left out. */
 static bool counts(const ss_patch *patch, int32_t edge) {
     return !patch->fixed[patch->edge_vertex[edge][0]] || !patch->fixed[patch->edge_vertex[edge][1]];
 }
 
-static double edge_vector(const ss_patch *patch, const ss_stand *stands, int32_t edge, double out[3]) {
-    ss_subtract(stands[patch->edge_vertex[edge][0]].place, stands[patch->edge_vertex[edge][1]].place, out);
+/* From the first end to the second. */
+static double edge_vector(const ss_relaxer *relaxer, int32_t edge, double out[3]) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    ss_subtract(relaxer->place[patch->edge_vertex[edge][1]], relaxer->place[patch->edge_vertex[edge][0]], out);
     double length = ss_length(out);
     return length < patch->shortest ? patch->shortest : length;
 }
 
-/* How much farther the first end of the edge slid than the second. */
-static void slide_difference(const ss_relaxer *relaxer, const ss_stand *stands, int32_t edge, double out[3]) {
-    const int32_t *v = relaxer->surface->patch->edge_vertex[edge];
-    const double(*point)[3] = (const double(*)[3])relaxer->pose.point;
-    for (int k = 0; k < 3; k++)
-        out[k] = (stands[v[0]].place[k] - stands[v[1]].place[k]) - (point[v[0]][k] - point[v[1]][k]);
-}
-
-static double edge_energy(const ss_relaxer *relaxer, const ss_stand *stands, int32_t edge) {
-    const ss_patch *patch = relaxer->surface->patch;
-    double vector[3], rest = patch->rest_length[edge];
-    double stretch = log(edge_vector(patch, stands, edge, vector) / rest), energy = stretch * stretch;
-    if (relaxer->hold > 0) {
-        slide_difference(relaxer, stands, edge, vector);
-        energy += relaxer->hold * ss_dot(vector, vector) / (rest * rest);
+double ss_stretch_energy(const ss_relaxer *relaxer) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    double sum = 0, vector[3];
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        double stretch = log(edge_vector(relaxer, e, vector) / patch->rest_length[e]);
+        sum += counts(patch, e) ? relaxer->paint[e] * stretch * stretch : 0;
     }
-    return relaxer->paint[edge] * energy;
-}
-
-double ss_stretch_energy(const ss_relaxer *relaxer, const ss_stand *stands) {
-    const ss_patch *patch = relaxer->surface->patch;
-    double sum = 0;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++)
-        sum += counts(patch, e) ? edge_energy(relaxer, stands, e) : 0;
     return sum;
 }
 
-void ss_stretch_by_vertex(const ss_relaxer *relaxer, const ss_stand *stands, double *sums) {
-    const ss_patch *patch = relaxer->surface->patch;
-    for (int32_t v = 0; v < patch->vertex_count; v++)
-        sums[v] = 0;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-        double energy = counts(patch, e) ? edge_energy(relaxer, stands, e) : 0;
-        sums[patch->edge_vertex[e][0]] += energy;
-        sums[patch->edge_vertex[e][1]] += energy;
-    }
-}
-
-/* ---- The model, halved throughout ---- */
+/* ---- The models, halved throughout ---- */
 
 typedef struct edge_model {
-    double direction[3], pull; /* the force along the edge, > 0 where it is stretched */
-    double hold[3];            /* the force of the hold */
-    double more, across;       /* stiffness along the edge beyond that across it */
-    bool unfold;
+    double pull;         /* the force along the edge, > 0 where it is stretched */
+    double slope[2][2];  /* of each end along its unknowns: how they make the edge longer, the first end's with its sign */
+    double more, across; /* stiffness along the edge beyond that across it */
+    double spring;       /* of the hold and the damping */
+    double hold[2];      /* the force of the hold */
 } edge_model;
 
+static void set_springs(const ss_relaxer *relaxer, int32_t edge, edge_model *model) {
+    const int32_t *v = relaxer->chart->surface->patch->edge_vertex[edge];
+    const double(*uv)[2] = (const double(*)[2])relaxer->uv, (*own)[2] = relaxer->chart->uv;
+    double spring = relaxer->paint[edge] * relaxer->chart->inverse_square[edge];
+    model->spring = (HOLD + DAMPING) * spring;
+    for (int k = 0; k < 2; k++)
+        model->hold[k] = HOLD * spring * ((uv[v[1]][k] - uv[v[0]][k]) - (own[v[1]][k] - own[v[0]][k]));
+}
+
+/* x where it is, else 0, smoothly. */
+static double positive(double x) {
+    return 0.5 * (x + sqrt(x * x + BLUNTNESS * BLUNTNESS));
+}
+
 static edge_model model_edge(const ss_relaxer *relaxer, int32_t edge) {
-    const ss_patch *patch = relaxer->surface->patch;
+    const ss_patch *patch = relaxer->chart->surface->patch;
     edge_model model;
-    double rest = patch->rest_length[edge], weight = relaxer->paint[edge], spring = weight / (rest * rest);
-    double length = edge_vector(patch, relaxer->now, edge, model.direction), stretch = log(length / rest);
-    double stiff = weight / (length * length);
-    model.across = stiff * fmax(stretch, 0) + (relaxer->hold + relaxer->damping) * spring;
-    model.more = stiff * (fmax(1 - stretch, LEAST_ALONG) - fmax(stretch, 0));
+    double vector[3], weight = relaxer->paint[edge], length = edge_vector(relaxer, edge, vector);
+    double stretch = log(length / patch->rest_length[edge]), stiff = weight / (length * length);
+    model.across = stiff * positive(stretch);
+    model.more = stiff * (LEAST_ALONG + positive(1 - stretch - LEAST_ALONG)) - model.across;
     model.pull = weight * stretch / length;
-    model.unfold = relaxer->pose.manner == SS_BLUNT && stretch < 0;
-    slide_difference(relaxer, relaxer->now, edge, model.hold);
-    for (int k = 0; k < 3; k++) {
-        model.direction[k] /= length;
-        model.hold[k] *= relaxer->hold * spring;
-    }
+    for (int end = 0; end < 2; end++)
+        for (int j = 0; j < 2; j++)
+            model.slope[end][j] = (end ? 1 : -1) * ss_dot(vector, relaxer->axis[patch->edge_vertex[edge][end]][j]) / length;
+    set_springs(relaxer, edge, &model);
     return model;
 }
 
-/* How the edge's direction lies in the axes of an end. Across a closed crease it points through the air, at right angles to
- * both planes: to unfold it is taken for the direction in the plane that is nearest. */
-static void find_slope(const edge_model *model, const double (*axis)[3], double slope[2]) {
-    for (int j = 0; j < 2; j++)
-        slope[j] = ss_dot(axis[j], model->direction);
-    double size = sqrt(slope[0] * slope[0] + slope[1] * slope[1]);
-    for (int j = 0; j < 2 && model->unfold && size > 1e-3; j++)
-        slope[j] /= size;
+static edge_model model_rest_edge(const ss_relaxer *relaxer, int32_t edge) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    edge_model model;
+    double vector[3], weight = relaxer->paint[edge];
+    model.across = 0, model.more = weight;
+    model.pull = weight * log(edge_vector(relaxer, edge, vector) / patch->rest_length[edge]);
+    for (int end = 0; end < 2; end++)
+        for (int j = 0; j < 2; j++) {
+            const double *way = relaxer->way[patch->edge_vertex[edge][end]][j], *slope = relaxer->chart->slope[edge][end];
+            model.slope[end][j] = (end ? 1 : -1) * (way[0] * slope[0] + way[1] * slope[1]);
+        }
+    set_springs(relaxer, edge, &model);
+    model.spring = HOLD * weight * relaxer->chart->inverse_square[edge];
+    return model;
 }
 
-/* One end of an edge: its own block and its slope; sign is 1 at the first end. */
-static void add_end(ss_relaxer *relaxer, int32_t unknown, const double (*axis)[3], const edge_model *model, double sign,
-                    double slope[2]) {
+static double way_dot(const double a[2], const double b[2]) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+/* One end of an edge: its own block and its slope. */
+static void add_end(ss_relaxer *relaxer, int32_t vertex, int end, const edge_model *model) {
+    int32_t unknown = ss_blocks_unknown(relaxer->blocks, vertex);
+    const double(*axis)[3] = (const double(*)[3])relaxer->axis[vertex], (*way)[2] = (const double(*)[2])relaxer->way[vertex];
+    if (unknown < 0)
+        return;
     double *own = ss_blocks_own(relaxer->blocks, unknown), *right = relaxer->blocks->right[unknown];
-    find_slope(model, axis, slope);
+    const double *slope = model->slope[end];
     for (int j = 0; j < 2; j++) {
-        right[j] -= sign * (model->pull * slope[j] + ss_dot(axis[j], model->hold));
+        right[j] -= model->pull * slope[j] + (end ? 1 : -1) * way_dot(way[j], model->hold);
         for (int k = 0; k < 2; k++)
-            own[2 * j + k] += model->more * slope[j] * slope[k] + (j == k ? model->across : 0);
+            own[2 * j + k] += model->more * slope[j] * slope[k] + model->across * ss_dot(axis[j], axis[k]) +
+                              model->spring * way_dot(way[j], way[k]);
     }
 }
 
-static void add_edge(ss_relaxer *relaxer, int32_t edge) {
-    const int32_t *v = relaxer->surface->patch->edge_vertex[edge];
-    int32_t a = ss_blocks_unknown(relaxer->blocks, v[0]), b = ss_blocks_unknown(relaxer->blocks, v[1]);
-    const double(*first)[3] = (const double(*)[3])relaxer->axis[v[0]], (*second)[3] = (const double(*)[3])relaxer->axis[v[1]];
-    edge_model model = model_edge(relaxer, edge);
-    double slope[2][2];
+static void add_edge(ss_relaxer *relaxer, int32_t edge, const edge_model *model) {
+    const int32_t *v = relaxer->chart->surface->patch->edge_vertex[edge];
     bool first_is_row;
-    if (a >= 0)
-        add_end(relaxer, a, first, &model, 1, slope[0]);
-    if (b >= 0)
-        add_end(relaxer, b, second, &model, -1, slope[1]);
-    if (a < 0 || b < 0)
+    add_end(relaxer, v[0], 0, model);
+    add_end(relaxer, v[1], 1, model);
+    if (ss_blocks_unknown(relaxer->blocks, v[0]) < 0 || ss_blocks_unknown(relaxer->blocks, v[1]) < 0)
         return;
     double *between = ss_blocks_between(relaxer->blocks, edge, &first_is_row);
     for (int j = 0; j < 2; j++)
         for (int k = 0; k < 2; k++)
             between[first_is_row ? 2 * j + k : 2 * k + j] =
-                -model.more * slope[0][j] * slope[1][k] - model.across * ss_dot(first[j], second[k]);
+                model->more * model->slope[0][j] * model->slope[1][k] -
+                model->across * ss_dot(relaxer->axis[v[0]][j], relaxer->axis[v[1]][k]) -
+                model->spring * way_dot(relaxer->way[v[0]][j], relaxer->way[v[1]][k]);
+}
+
+static void add_edges(ss_relaxer *relaxer, edge_model (*model)(const ss_relaxer *, int32_t)) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        if (counts(patch, e)) {
+            edge_model own = model(relaxer, e);
+            add_edge(relaxer, e, &own);
+        }
 }
 
 void ss_stretch_model(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->surface->patch;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++)
-        if (counts(patch, e))
-            add_edge(relaxer, e);
+    add_edges(relaxer, model_edge);
+}
+
+void ss_rest_model(ss_relaxer *relaxer) {
+    add_edges(relaxer, model_rest_edge);
 }

@@ -74,7 +74,6 @@ int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*u
     int32_t at_holes = 0;
     ss_shape_set(&traveller->pose, points);
     ss_shape_set_plane(&traveller->plane, uv);
-    traveller->pose.manner = SS_FLAT;
     for (int32_t i = 0; i < patch->free_count; i++) {
         journey j = {.vertex = patch->free_vertex[i],
                      .share = allowance.shares ? allowance.shares[i] : 1,

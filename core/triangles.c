@@ -82,8 +82,6 @@ bool ss_shape_allocate(ss_memory *memory, const ss_surface *surface, ss_shape *p
     int32_t vertices = surface->patch->vertex_count;
     pose->surface = surface;
     pose->point = ss_new(memory, vertices, sizeof *pose->point);
-    pose->normal = ss_new(memory, vertices, sizeof *pose->normal);
-    pose->blunt_normal = ss_new(memory, vertices, sizeof *pose->blunt_normal);
     pose->facet = SS_NEW(memory, ss_facet, surface->triangle_count);
     return !memory->failed;
 }
@@ -97,61 +95,29 @@ static void measure_facet(const double *a, const double *b, const double *c, ss_
     facet->gram[0] = facet->has_area ? ss_dot(facet->second, facet->second) / square : 0;
     facet->gram[1] = facet->has_area ? -ss_dot(facet->first, facet->second) / square : 0;
     facet->gram[2] = facet->has_area ? ss_dot(facet->first, facet->first) / square : 0;
-}
-
-/* Not moved to the patch's centre: so differences are those of ss_edge_lengths, to the bit, and rest has no stretch at all. */
-static void set_points(ss_shape *pose, const float *points) {
-    const ss_patch *patch = pose->surface->patch;
-    for (int32_t v = 0; v < patch->vertex_count; v++)
-        for (int k = 0; k < 3; k++)
-            pose->point[v][k] = points[3 * (int64_t)patch->mesh_vertex[v] + k];
-}
-
-static void normalise_all(double (*normal)[3], int32_t count) {
-    for (int32_t v = 0; v < count; v++)
-        ss_normalise(normal[v]);
+    ss_normalise(facet->normal);
 }
 
 static void set_facets(ss_shape *pose) {
-    const ss_surface *surface = pose->surface;
-    int32_t vertices = surface->patch->vertex_count;
-    memset(pose->normal, 0, (size_t)vertices * sizeof *pose->normal);
-    for (int32_t t = 0; t < surface->triangle_count; t++) {
-        const int32_t *v = surface->vertex[t];
-        ss_facet *facet = &pose->facet[t];
-        measure_facet(pose->point[v[0]], pose->point[v[1]], pose->point[v[2]], facet);
-        for (int j = 0; j < 3; j++)
-            ss_add(1, facet->normal, pose->normal[v[j]]);
-        ss_normalise(facet->normal);
+    for (int32_t t = 0; t < pose->surface->triangle_count; t++) {
+        const int32_t *v = pose->surface->vertex[t];
+        measure_facet(pose->point[v[0]], pose->point[v[1]], pose->point[v[2]], &pose->facet[t]);
     }
-    normalise_all(pose->normal, vertices);
 }
 
-/* Each edge in turn brings the normals of its ends nearer to each other: an average over neighbours that needs no second array.
- */
-static void blunt_normals(ss_shape *pose) {
-    const ss_patch *patch = pose->surface->patch;
-    memcpy(pose->blunt_normal, pose->normal, (size_t)patch->vertex_count * sizeof *pose->normal);
-    for (int round = 0; round < 3; round++) {
-        for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-            double *a = pose->blunt_normal[patch->edge_vertex[e][0]], *b = pose->blunt_normal[patch->edge_vertex[e][1]];
-            double before[3] = {a[0], a[1], a[2]};
-            ss_add(1, b, a);
-            ss_add(1, before, b);
-        }
-        normalise_all(pose->blunt_normal, patch->vertex_count);
-    }
+/* Not moved to the patch's centre: so differences are those of ss_edge_lengths, to the bit, and rest has no stretch at all. */
+void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]) {
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        for (int k = 0; k < 3; k++)
+            out[v][k] = points[3 * (int64_t)patch->mesh_vertex[v] + k];
 }
 
 void ss_shape_set(ss_shape *pose, const float *points) {
-    pose->manner = SS_ROUND;
-    set_points(pose, points);
+    ss_take_points(pose->surface->patch, points, pose->point);
     set_facets(pose);
-    blunt_normals(pose);
 }
 
 void ss_shape_set_plane(ss_shape *pose, const double (*uv)[2]) {
-    pose->manner = SS_ROUND;
     for (int32_t v = 0; v < pose->surface->patch->vertex_count; v++)
         pose->point[v][0] = uv[v][0], pose->point[v][1] = uv[v][1], pose->point[v][2] = 0;
     set_facets(pose);

@@ -1,5 +1,5 @@
 /* What a frame costs in the core, on one thread, by stage, for quads and triangles of about 1,000, 10,000 and 100,000 vertices;
- * and what walking to a face costs beside looking it up in the tree. The median frame of several. Ratios are of one run, so
+ * what a frame of the relaxed rule costs beside one by force density; and what walking to a face costs beside looking it up in the tree. The median frame of several. Ratios are of one run, so
  * they can be compared where milliseconds cannot. */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include "meshes.h"
@@ -28,7 +28,7 @@ static void stop_unless(bool good, const char *message) {
 
 typedef struct cost { /* seconds */
     double density, embed, locate, interpolate, frame;
-    int32_t vertices, free;
+    int32_t vertices, free, relax_steps;
     int64_t steps;
 } cost;
 
@@ -37,11 +37,11 @@ static int by_frame(const void *a, const void *b) {
     return x->frame < y->frame ? -1 : x->frame > y->frame;
 }
 
-static skinslide_slider *slider_of(const test_mesh *mesh) {
+static skinslide_slider *slider_of(const test_mesh *mesh, skinslide_rule rule) {
     int32_t *faces = all_faces(mesh);
     skinslide_mesh view = view_of(mesh);
     skinslide_patch_setup setup = {
-        .name = "bench", .faces = faces, .face_count = mesh->face_count, .controls = SKINSLIDE_CONTROLS_DEFAULT};
+        .name = "bench", .faces = faces, .face_count = mesh->face_count, .rule = rule, .controls = SKINSLIDE_CONTROLS_DEFAULT};
     skinslide_slider *slider = NULL;
     skinslide_error error;
     stop_unless(skinslide_slider_create(&view, &setup, 1, &slider, &error) == SKINSLIDE_OK, error.message);
@@ -49,8 +49,8 @@ static skinslide_slider *slider_of(const test_mesh *mesh) {
     return slider;
 }
 
-static cost measure(const test_mesh *mesh, int32_t side) {
-    skinslide_slider *slider = slider_of(mesh);
+static cost measure(const test_mesh *mesh, int32_t side, skinslide_rule rule) {
+    skinslide_slider *slider = slider_of(mesh, rule);
     skinslide_workspace *workspace = NULL;
     skinslide_error error;
     stop_unless(skinslide_workspace_create(slider, &exact, &workspace, &error) == SKINSLIDE_OK, error.message);
@@ -68,6 +68,7 @@ static cost measure(const test_mesh *mesh, int32_t side) {
                           now() - start,
                           mesh->vertex_count,
                           slider->parts[0].patch->free_count,
+                          r.relax_steps,
                           r.walk_steps};
         free(points);
     }
@@ -83,7 +84,7 @@ static void print_costs(const char *kind, test_mesh (*make)(int32_t columns, int
     double first = 0;
     for (int i = 0; i < 3; i++) {
         test_mesh mesh = make(sides[i], sides[i]);
-        cost c = measure(&mesh, sides[i]);
+        cost c = measure(&mesh, sides[i], SKINSLIDE_RULE_UNIT);
         if (i == 0)
             first = c.frame;
         printf("| %s | %d | %.2f | %.2f | %.2f | %.2f | %.2f | %.1f | %.0f %% | %.1f |\n", kind, c.vertices, 1e3 * c.density,
@@ -93,10 +94,18 @@ static void print_costs(const char *kind, test_mesh (*make)(int32_t columns, int
     }
 }
 
+static void print_relaxed(int32_t side) {
+    test_mesh mesh = quad_grid(side, side);
+    cost unit = measure(&mesh, side, SKINSLIDE_RULE_UNIT), relaxed = measure(&mesh, side, SKINSLIDE_RULE_RELAXED);
+    printf("%d vertices: unit %.2f ms, relaxed %.2f ms in %d steps, %.1f times as long\n", unit.vertices, 1e3 * unit.frame,
+           1e3 * relaxed.frame, relaxed.relax_steps, relaxed.frame / unit.frame);
+    free_mesh(&mesh);
+}
+
 /* Rest places in the embedding of a bump, by walking and, as if no walk were allowed, by the tree, which is built first. */
 static void print_lookups(int32_t side) {
     test_mesh mesh = quad_grid(side, side);
-    skinslide_slider *slider = slider_of(&mesh);
+    skinslide_slider *slider = slider_of(&mesh, SKINSLIDE_RULE_UNIT);
     skinslide_workspace *workspace = NULL;
     const ss_part *part = &slider->parts[0];
     float *points = bumped(&mesh, 0.5 * side, 0.5 * side, 0.15 * side, 0.15 * side), *slid = copy_points(&mesh);
@@ -123,7 +132,7 @@ static void print_lookups(int32_t side) {
 static void warm_up(void) {
     test_mesh mesh = quad_grid(99, 99);
     for (double start = now(); now() - start < 0.5;)
-        measure(&mesh, 99);
+        measure(&mesh, 99, SKINSLIDE_RULE_UNIT);
     free_mesh(&mesh);
 }
 
@@ -133,6 +142,9 @@ int main(void) {
     printf("|---|---|---|---|---|---|---|---|---|---|\n");
     print_costs("quads", quad_grid);
     print_costs("triangles", triangle_grid);
+    printf("\n");
+    print_relaxed(31);
+    print_relaxed(99);
     printf("\n");
     print_lookups(31);
     print_lookups(99);
