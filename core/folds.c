@@ -4,9 +4,9 @@
 
 #define LOW_AREA   0.2 /* of that at rest, where the energy sets in */
 #define STIFFNESS  0.1
-#define LEAST_KEPT 0.2  /* of a face's area by one step */
+#define LEAST_AREA 0.01 /* of that at rest, which steps never take a face to */
+#define LEAST_KEPT 0.2  /* by one step, of what a face has more than that */
 #define SHARPNESS  4.0  /* of the limit that a vertex has from its faces */
-#define LEAST_AREA 0.01 /* of that at rest, where a face counts as turned over */
 
 static const int32_t *corners_of(const ss_relaxer *relaxer, int32_t face, int32_t *count) {
     const ss_faces *faces = &relaxer->chart->surface->patch->faces;
@@ -63,7 +63,8 @@ static double cross(const double a[2], const double b[2]) {
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* How much of the steps a face can take and keep its least share: the first root of its area, which is quadratic in that. */
+/* How much of the steps a face can take and surely keep its least share. Its area is quadratic in that; what makes it larger is
+ * left out, since where that only just saves a face the first root of the area is not continuous. */
 static double face_reach(const ss_relaxer *relaxer, int32_t face) {
     int32_t count;
     const int32_t *v = corners_of(relaxer, face, &count);
@@ -79,9 +80,9 @@ static double face_reach(const ss_relaxer *relaxer, int32_t face) {
     }
     if (!(now > 0) || !(relaxer->chart->area[face] > 0))
         return INFINITY;
-    now *= 1 - LEAST_KEPT;
-    double root = slope * slope - 4 * bend * now, below = root >= 0 ? sqrt(root) - slope : 0;
-    return below > 0 ? 2 * now / below : INFINITY;
+    now = (1 - LEAST_KEPT) * fmax(0, now - 2 * LEAST_AREA * relaxer->chart->area[face]);
+    slope = fmax(0, -slope), bend = fmax(0, -bend);
+    return 2 * now / (slope + sqrt(slope * slope + 4 * bend * now));
 }
 
 /* Each vertex goes as far as its faces let all go together; then all as far as the shortened steps let them. */
@@ -109,7 +110,7 @@ void ss_limit_steps(ss_relaxer *relaxer) {
 
 bool ss_has_turned(const ss_relaxer *relaxer, int32_t face) {
     double rest = relaxer->chart->area[face];
-    return rest > 0 && area_now(relaxer, face) < LEAST_AREA * rest;
+    return rest > 0 && area_now(relaxer, face) < 0.5 * LEAST_AREA * rest;
 }
 
 /* ---- The result ---- */

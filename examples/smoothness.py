@@ -1,0 +1,113 @@
+"""Prints how smoothly each rule moves skin in the course of a motion: one line an example and a rule.
+
+usage: smoothness.py STAGE...
+The cache is sampled at sub-frames, a quarter of a frame apart as motion blur would, along the cubic spline through its
+samples: straight lines between them would have no second differences but at the samples. `ratio` is the largest second
+difference |p(t-h) - 2 p(t) + p(t+h)| of any vertex of the patch at any time in the result over that in the cache: of
+their largest, since a vertex that slides through a place where the cache is at rest moves like its neighbours. `above 2`
+is how many of the times are more than twice as rough as the cache ever is. Then the worst: its size as a share of the
+mean rest edge, its vertex and time, and by how much it shrinks where the sub-frames there are four times as short:
+by 16 a smooth motion, by 4 one that turns sharply, as skin must that slides over the edge between two flat faces, by 1
+one that jumps. Measured is the rule itself: interpolation linear, slide weights and largest distances left out.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from pxr import Usd
+from scipy.interpolate import CubicSpline
+
+from skinslide.meshes import SlidMesh, read_meshes
+
+RULES = ("unit", "relaxed")
+HEADINGS = ("example", "rule", "ratio", "above 2", "worst", "vertex", "frame", "shrinks")
+STEP = 0.25  # of a frame, between sub-frames
+SHORTER = 4
+
+Motion = Callable[[float], np.ndarray]  # points of the patch (V, 3) at a time
+
+
+@dataclass
+class Rough:
+    """Second differences of a motion at times (T,) a step apart: lengths (T, V)."""
+
+    times: np.ndarray
+    lengths: np.ndarray
+
+    @classmethod
+    def of(cls, motion: Motion, times: np.ndarray) -> "Rough":
+        points = np.stack([motion(time) for time in times])
+        return cls(times[1:-1], np.linalg.norm(np.diff(points, 2, axis=0), axis=2))
+
+    @property
+    def most(self) -> float:
+        return float(self.lengths.max())
+
+    @property
+    def worst(self) -> tuple[float, int]:
+        """Time and vertex."""
+        row, vertex = np.unravel_index(self.lengths.argmax(), self.lengths.shape)
+        return float(self.times[row]), int(vertex)
+
+
+def shrinks(motion: Motion, rough: Rough) -> float:
+    """By how much the worst second difference does with shorter steps near it."""
+    time, vertex = rough.worst
+    shorter = STEP / SHORTER
+    near = time + shorter * np.arange(-SHORTER - 1, SHORTER + 2)
+    near = near[(near >= rough.times[0] - STEP) & (near <= rough.times[-1] + STEP)]
+    return rough.most / float(Rough.of(motion, near).lengths[:, vertex].max())
+
+
+def motions(mesh: SlidMesh) -> tuple[np.ndarray, np.ndarray, dict[str, Motion]]:
+    """Mesh vertices of the first patch, the times of its sub-frames, and what moves it: "cache" or a rule."""
+    samples = np.array(mesh.sample_times())
+    spline = CubicSpline(samples, np.stack([mesh.points_at(Usd.TimeCode(time)) for time in samples]).astype(float))
+    patch = mesh.patches[0]
+    plain = replace(patch, interpolation="linear", controls=replace(patch.controls, weight=None, max_distance=None))
+    sliders = {rule: mesh.build([replace(plain, rule=rule)]) for rule in RULES}
+    vertices = sliders[RULES[0]].vertices(0)
+
+    def cached(time: float) -> np.ndarray:
+        return spline(time).astype(np.float32)
+
+    found: dict[str, Motion] = {"cache": lambda time: cached(time)[vertices].astype(float)}
+    for rule, slider in sliders.items():
+        found[rule] = lambda time, slider=slider: slider.slide(cached(time)).points[vertices].astype(float)
+    return vertices, np.arange(samples[0], samples[-1] + STEP / 2, STEP), found
+
+
+def mean_edge(mesh: SlidMesh, faces: np.ndarray) -> float:
+    starts = np.concatenate([[0], np.cumsum(mesh.face_counts)])
+    corners = [mesh.rest_points[mesh.face_indices[starts[face] : starts[face + 1]]] for face in faces]
+    sides = np.concatenate([points - np.roll(points, -1, axis=0) for points in corners])
+    return float(np.linalg.norm(sides, axis=1).mean())
+
+
+def rows(path: Path) -> list[list[str]]:
+    """The cells of one example, a row a rule."""
+    mesh = read_meshes(Usd.Stage.Open(str(path)))[0][0]
+    vertices, times, moves = motions(mesh)
+    edge, cache = mean_edge(mesh, mesh.patches[0].faces), Rough.of(moves["cache"], times)
+    found = []
+    for rule in RULES:
+        rough = Rough.of(moves[rule], times)
+        (time, vertex), above = rough.worst, (rough.lengths.max(axis=1) > 2 * cache.most).mean()
+        sizes = [f"{rough.most / cache.most:.2f}", f"{100 * above:.0f} %", f"{100 * rough.most / edge:.2f} %"]
+        where = [str(vertices[vertex]), f"{time:.2f}", f"{shrinks(moves[rule], rough):.1f}"]
+        found.append([path.parent.name, rule, *sizes, *where])
+    return found
+
+
+def main() -> None:
+    table = [list(HEADINGS), *(row for path in sys.argv[1:] for row in rows(Path(path)))]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for cells in table:
+        print("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+
+
+if __name__ == "__main__":
+    main()
