@@ -33,5 +33,8 @@ say "Lookup by colour-ID rendering"
 say "How far the limit surface of the result is from that of the cache, as a share of the patch's size"
 "$python" "$root/examples/limit_distance.py" "$out"/*/stage.usda
 
+say "How smoothly each rule moves skin"
+"$python" "$root/examples/smoothness.py" "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/smoothness.txt"
+
 say "Share of the removable stretch that each rule removes"
 "$python" "$root/examples/share.py" "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/share.txt"

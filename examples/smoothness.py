@@ -2,13 +2,13 @@
 
 usage: smoothness.py STAGE...
 The cache is sampled at sub-frames, a quarter of a frame apart as motion blur would, along the cubic spline through its
-samples: straight lines between them would have no second differences but at the samples. `ratio` is the largest second
+samples: straight lines between them would have no second differences but at them. `ratio` is the largest second
 difference |p(t-h) - 2 p(t) + p(t+h)| of any vertex of the patch at any time in the result over that in the cache: of
-their largest, since a vertex that slides through a place where the cache is at rest moves like its neighbours. `above 2`
-is how many of the times are more than twice as rough as the cache ever is. Then the worst: its size as a share of the
-mean rest edge, its vertex and time, and by how much it shrinks where the sub-frames there are four times as short:
-by 16 a smooth motion, by 4 one that turns sharply, as skin must that slides over the edge between two flat faces, by 1
-one that jumps. Measured is the rule itself: interpolation linear, slide weights and largest distances left out.
+their largest, since skin may well slide over a place where the cache is at rest. `above 2` is how many of the times
+are more than twice as rough as the cache ever is. Then the worst: its size as a share of the mean rest edge, its vertex
+and time, and by how much it shrinks where the sub-frames there are four times as short: by 16 a smooth motion, by 4 one
+that turns sharply, as skin must that slides over the edge between two flat faces, by 1 one that jumps. Measured is the
+rule itself: interpolation linear, slide weights and largest distances left out.
 """
 
 import sys

@@ -137,9 +137,11 @@ typedef enum skinslide_holes {
 typedef enum skinslide_rule {
     SKINSLIDE_RULE_UNIT,   /* 1/l */
     SKINSLIDE_RULE_FAST,   /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
-    SKINSLIDE_RULE_RELAXED /* to where every edge is as near its rest length as the deformed surface allows: a minimum of the
-                              sum of k log^2(l / rest l), k the painted force density; no face turns over. The patch is always
-                              laid out in the circle, holes pinned, and that at rest: corners and boundary count for nothing */
+    SKINSLIDE_RULE_RELAXED /* to where every edge is as near its rest length as the deformed surface allows: towards a minimum
+                              of the sum of k log^2(l / rest l), k the painted force density; no face turns over. Every step
+                              there is continuous in the pose, so a slide does not jump from one minimum to another, but may
+                              go there fast. The patch is always laid out in the circle, holes pinned, and that at rest:
+                              corners and boundary count for nothing */
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
@@ -326,8 +328,8 @@ typedef struct skinslide_patch_result {
     int32_t walked_vertices;   /* found by walking */
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
     int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was walked for */
-    int32_t relax_steps;       /* of the relaxed rule: each solves for all vertices at once. Done when one more would lower the
-                                  sum by less than a thousandth of what it is in the cache */
+    int32_t relax_steps;       /* of the relaxed rule: each solves for all vertices at once. 13 at most; done when one more
+                                  would lower the sum by less than 0.0003 of what it is in the cache */
     int64_t walk_steps;        /* faces entered by walking, in all */
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
