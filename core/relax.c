@@ -40,7 +40,10 @@ skinslide_status ss_relaxer_create(const ss_chart *chart, const ss_system *syste
     relaxer->slope = ss_new(memory, vertices, sizeof *relaxer->slope);
     relaxer->step = ss_new(memory, vertices, sizeof *relaxer->step);
     relaxer->reach = SS_NEW(memory, double, vertices);
+    relaxer->rest_paint = SS_NEW(memory, double, chart->surface->patch->faces.edge_count);
     skinslide_status status = memory->failed ? ss_out_of_memory(error) : ss_blocks_create(system, &relaxer->blocks, error);
+    if (!status)
+        status = ss_blocks_create(system, &relaxer->rest, error);
     if (status)
         ss_relaxer_destroy(relaxer);
     else
@@ -52,6 +55,7 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
     if (!relaxer)
         return;
     ss_blocks_destroy(relaxer->blocks);
+    ss_blocks_destroy(relaxer->rest);
     ss_free(&relaxer->memory);
     free(relaxer);
 }
@@ -125,27 +129,48 @@ static void start(ss_relaxer *relaxer, const float *points) {
 
 /* ---- A step ---- */
 
-/* Solves for the step, whole. Returns what the model says it lowers E by. */
-static double solve(ss_relaxer *relaxer, void (*model)(ss_relaxer *)) {
+/* Empties the blocks. The second unknown of a vertex of a free loop, which does nothing, gets a stiffness. */
+static void clear(const ss_relaxer *relaxer, ss_blocks *blocks) {
     const ss_patch *patch = relaxer->chart->surface->patch;
-    double lowers = 0, (*right)[2] = relaxer->blocks->right;
-    ss_blocks_clear(relaxer->blocks);
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        int32_t v = patch->free_vertex[i];
-        set_axes(relaxer, v);
-        if (patch->vertex_loop[v] >= 0)
-            ss_blocks_own(relaxer->blocks, ss_blocks_unknown(relaxer->blocks, v))[3] = 1;
-    }
-    model(relaxer);
-    memcpy(relaxer->slope, right, (size_t)patch->free_count * sizeof *right);
-    if (!ss_blocks_factor(relaxer->blocks))
-        return 0;
-    ss_blocks_solve(relaxer->blocks);
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        const double *along = right[i], *slope = relaxer->slope[i];
-        lowers += slope[0] * along[0] + slope[1] * along[1];
-    }
+    ss_blocks_clear(blocks);
+    for (int32_t i = 0; i < patch->free_count; i++)
+        if (patch->vertex_loop[patch->free_vertex[i]] >= 0)
+            ss_blocks_own(blocks, ss_blocks_unknown(blocks, patch->free_vertex[i]))[3] = 1;
+}
+
+/* Turns forces into the step, whole. Returns what the model says it lowers E by. */
+static double solve(ss_relaxer *relaxer, ss_blocks *blocks) {
+    int32_t count = relaxer->chart->surface->patch->free_count;
+    double lowers = 0;
+    memcpy(relaxer->slope, blocks->right, (size_t)count * sizeof *blocks->right);
+    ss_blocks_solve(blocks);
+    for (int32_t i = 0; i < count; i++)
+        lowers += relaxer->slope[i][0] * blocks->right[i][0] + relaxer->slope[i][1] * blocks->right[i][1];
     return lowers;
+}
+
+/* The first step: its matrix is the same in every frame with the same paint. */
+static double solve_rest(ss_relaxer *relaxer) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    size_t bytes = (size_t)patch->faces.edge_count * sizeof *relaxer->rest_paint;
+    if (memcmp(relaxer->rest_paint, relaxer->paint, bytes) != 0) {
+        memset(relaxer->rest_paint, 0, bytes);
+        clear(relaxer, relaxer->rest);
+        ss_rest_stiffness(relaxer);
+        if (!ss_blocks_factor(relaxer->rest))
+            return 0;
+        memcpy(relaxer->rest_paint, relaxer->paint, bytes);
+    }
+    memset(relaxer->rest->right, 0, (size_t)patch->free_count * sizeof *relaxer->rest->right);
+    ss_rest_forces(relaxer);
+    return solve(relaxer, relaxer->rest);
+}
+
+static double solve_now(ss_relaxer *relaxer) {
+    clear(relaxer, relaxer->blocks);
+    ss_stretch_model(relaxer);
+    ss_fold_model(relaxer);
+    return ss_blocks_factor(relaxer->blocks) ? solve(relaxer, relaxer->blocks) : 0;
 }
 
 static void walk(ss_relaxer *relaxer, int32_t vertex) {
@@ -178,11 +203,11 @@ static bool put_back(ss_relaxer *relaxer, int32_t face) {
 
 /* Takes a part of the step found. Steps are limited so that no face turns over, but walks end at holes: a face that turns over
  * for that goes back, and so on, until none is left. */
-static void take(ss_relaxer *relaxer, double part) {
+static void take(ss_relaxer *relaxer, const ss_blocks *found, double part) {
     const ss_patch *patch = relaxer->chart->surface->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         int32_t v = patch->free_vertex[i];
-        const double *along = relaxer->blocks->right[ss_blocks_unknown(relaxer->blocks, v)];
+        const double *along = found->right[ss_blocks_unknown(found, v)];
         for (int k = 0; k < 2; k++)
             relaxer->step[v][k] = part * (along[0] * relaxer->way[v][0][k] + along[1] * relaxer->way[v][1][k]);
     }
@@ -198,11 +223,6 @@ static void take(ss_relaxer *relaxer, double part) {
 }
 
 /* ---- The slide ---- */
-
-static void forces_now(ss_relaxer *relaxer) {
-    ss_stretch_model(relaxer);
-    ss_fold_model(relaxer);
-}
 
 /* How much of a step to take, given what it lowers E by in tolerances: from none at 1 smoothly to all at EASE. */
 static double ease(double lowers) {
@@ -227,17 +247,20 @@ static void write_locations(const ss_relaxer *relaxer, ss_location *locations) {
 }
 
 int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, ss_location *locations) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
     int32_t steps = 0;
     double part = 1;
     relaxer->paint = paint;
     start(relaxer, points);
     double first = ss_stretch_energy(relaxer);
     for (; first > 0 && steps < MOST_STEPS; steps++) {
-        double lowers = solve(relaxer, steps == 0 ? ss_rest_model : forces_now) / first;
+        for (int32_t i = 0; i < patch->free_count; i++)
+            set_axes(relaxer, patch->free_vertex[i]);
+        double lowers = (steps == 0 ? solve_rest : solve_now)(relaxer) / first;
         part *= ease(lowers / TOLERANCE);
         if (part < LEAST_PART)
             break;
-        take(relaxer, part);
+        take(relaxer, steps == 0 ? relaxer->rest : relaxer->blocks, part);
     }
     write_locations(relaxer, locations);
     return steps;

@@ -10,7 +10,8 @@
 typedef struct ss_relaxer {
     ss_memory memory;
     const ss_chart *chart;
-    ss_blocks *blocks;
+    ss_blocks *blocks, *rest; /* of where the vertices are; of rest, factored for rest_paint */
+    double *rest_paint;       /* [edge_count], 0 before the first frame */
     const double *paint;      /* [edge_count] */
     double (*point)[3];       /* [vertex_count] of the pose */
     double (*gradient)[2][3]; /* [vertex_count] of the pose over the chart */
@@ -37,9 +38,11 @@ int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, 
 
 /* Where the vertices are now. */
 double ss_stretch_energy(const ss_relaxer *relaxer);
-/* Adds Hessian and slope to the blocks: of where the vertices are now, or of the cache as if lengths changed as they do at rest. */
+/* Adds stiffness and forces where the vertices are now to the blocks. */
 void ss_stretch_model(ss_relaxer *relaxer);
-void ss_rest_model(ss_relaxer *relaxer);
+/* Adds those of the cache, as if lengths changed as they do at rest, to the blocks of rest. */
+void ss_rest_stiffness(ss_relaxer *relaxer);
+void ss_rest_forces(ss_relaxer *relaxer);
 
 /* ---- folds.c: faces must not turn over ---- */
 

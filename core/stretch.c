@@ -98,30 +98,36 @@ static double way_dot(const double a[2], const double b[2]) {
     return a[0] * b[0] + a[1] * b[1];
 }
 
-/* One end of an edge: its own block and its slope. */
-static void add_end(ss_relaxer *relaxer, int32_t vertex, int end, const edge_model *model) {
-    int32_t unknown = ss_blocks_unknown(relaxer->blocks, vertex);
-    const double(*axis)[3] = (const double(*)[3])relaxer->axis[vertex], (*way)[2] = (const double(*)[2])relaxer->way[vertex];
-    if (unknown < 0)
-        return;
-    double *own = ss_blocks_own(relaxer->blocks, unknown), *right = relaxer->blocks->right[unknown];
-    const double *slope = model->slope[end];
-    for (int j = 0; j < 2; j++) {
-        right[j] -= model->pull * slope[j] + (end ? 1 : -1) * way_dot(way[j], model->hold);
-        for (int k = 0; k < 2; k++)
-            own[2 * j + k] += model->more * slope[j] * slope[k] + model->across * ss_dot(axis[j], axis[k]) +
-                              model->spring * way_dot(way[j], way[k]);
+static void add_forces(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t edge, const edge_model *model) {
+    for (int end = 0; end < 2; end++) {
+        int32_t v = relaxer->chart->surface->patch->edge_vertex[edge][end], unknown = ss_blocks_unknown(blocks, v);
+        for (int j = 0; j < 2 && unknown >= 0; j++)
+            blocks->right[unknown][j] -=
+                model->pull * model->slope[end][j] + (end ? 1 : -1) * way_dot(relaxer->way[v][j], model->hold);
     }
 }
 
-static void add_edge(ss_relaxer *relaxer, int32_t edge, const edge_model *model) {
+static void add_own(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t vertex, int end, const edge_model *model) {
+    const double(*axis)[3] = (const double(*)[3])relaxer->axis[vertex], (*way)[2] = (const double(*)[2])relaxer->way[vertex];
+    const double *slope = model->slope[end];
+    int32_t unknown = ss_blocks_unknown(blocks, vertex);
+    if (unknown < 0)
+        return;
+    double *own = ss_blocks_own(blocks, unknown);
+    for (int j = 0; j < 2; j++)
+        for (int k = 0; k < 2; k++)
+            own[2 * j + k] += model->more * slope[j] * slope[k] + model->across * ss_dot(axis[j], axis[k]) +
+                              model->spring * way_dot(way[j], way[k]);
+}
+
+static void add_stiffness(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t edge, const edge_model *model) {
     const int32_t *v = relaxer->chart->surface->patch->edge_vertex[edge];
     bool first_is_row;
-    add_end(relaxer, v[0], 0, model);
-    add_end(relaxer, v[1], 1, model);
-    if (ss_blocks_unknown(relaxer->blocks, v[0]) < 0 || ss_blocks_unknown(relaxer->blocks, v[1]) < 0)
+    add_own(relaxer, blocks, v[0], 0, model);
+    add_own(relaxer, blocks, v[1], 1, model);
+    if (ss_blocks_unknown(blocks, v[0]) < 0 || ss_blocks_unknown(blocks, v[1]) < 0)
         return;
-    double *between = ss_blocks_between(relaxer->blocks, edge, &first_is_row);
+    double *between = ss_blocks_between(blocks, edge, &first_is_row);
     for (int j = 0; j < 2; j++)
         for (int k = 0; k < 2; k++)
             between[first_is_row ? 2 * j + k : 2 * k + j] =
@@ -130,19 +136,31 @@ static void add_edge(ss_relaxer *relaxer, int32_t edge, const edge_model *model)
                 model->spring * way_dot(relaxer->way[v[0]][j], relaxer->way[v[1]][k]);
 }
 
-static void add_edges(ss_relaxer *relaxer, edge_model (*model)(const ss_relaxer *, int32_t)) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++)
-        if (counts(patch, e)) {
-            edge_model own = model(relaxer, e);
-            add_edge(relaxer, e, &own);
-        }
-}
-
 void ss_stretch_model(ss_relaxer *relaxer) {
-    add_edges(relaxer, model_edge);
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        if (!counts(patch, e))
+            continue;
+        edge_model model = model_edge(relaxer, e);
+        add_stiffness(relaxer, relaxer->blocks, e, &model);
+        add_forces(relaxer, relaxer->blocks, e, &model);
+    }
 }
 
-void ss_rest_model(ss_relaxer *relaxer) {
-    add_edges(relaxer, model_rest_edge);
+void ss_rest_stiffness(ss_relaxer *relaxer) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        edge_model model = model_rest_edge(relaxer, e);
+        if (counts(patch, e))
+            add_stiffness(relaxer, relaxer->rest, e, &model);
+    }
+}
+
+void ss_rest_forces(ss_relaxer *relaxer) {
+    const ss_patch *patch = relaxer->chart->surface->patch;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        edge_model model = model_rest_edge(relaxer, e);
+        if (counts(patch, e))
+            add_forces(relaxer, relaxer->rest, e, &model);
+    }
 }
