@@ -36,19 +36,21 @@ void ss_chart_gradient(const ss_chart *chart, const double (*points)[3], double 
 
 /* ---- Creation ---- */
 
-static double angle_at(const ss_chart *chart, const int32_t v[3], int k) {
-    double a[3], b[3], product[3];
+/* The sine of half the angle at a corner, which plain arithmetic gives. */
+static double half_angle(const ss_chart *chart, const int32_t v[3], int k) {
+    double a[3], b[3];
     ss_subtract(chart->plane.point[v[(k + 1) % 3]], chart->plane.point[v[k]], a);
     ss_subtract(chart->plane.point[v[(k + 2) % 3]], chart->plane.point[v[k]], b);
-    ss_cross(a, b, product);
-    return atan2(fabs(product[2]), ss_dot(a, b));
+    ss_normalise(a);
+    ss_normalise(b);
+    return sqrt(fmax(0, 0.5 - 0.5 * ss_dot(a, b)));
 }
 
 static void set_shares(ss_chart *chart, double *sums) {
     const ss_surface *surface = chart->surface;
     for (int32_t t = 0; t < surface->triangle_count; t++)
         for (int k = 0; k < 3 && chart->plane.facet[t].has_area; k++) {
-            chart->share[t][k] = angle_at(chart, surface->vertex[t], k);
+            chart->share[t][k] = half_angle(chart, surface->vertex[t], k);
             sums[surface->vertex[t][k]] += chart->share[t][k];
         }
     for (int32_t t = 0; t < surface->triangle_count; t++)

@@ -10,7 +10,7 @@ typedef struct ss_chart {
     const ss_surface *surface;
     const double (*uv)[2];  /* [vertex_count] an embedding of the patch */
     ss_shape plane;         /* the same as a pose */
-    double (*share)[3];     /* [triangle_count] of its corners in what surrounds their vertices, by angle; 0 without area */
+    double (*share)[3];     /* [triangle_count] of its corners in what surrounds their vertices; 0 without area */
     double (*slope)[2][2];  /* [edge_count] of the logarithm of the edge's length, at rest, as either end moves in the plane */
     double *inverse_square; /* [edge_count] of the edge's length in the plane */
     double *area;           /* [face_count] in the plane */

@@ -6,7 +6,6 @@
 #define STIFFNESS  0.1
 #define LEAST_AREA 0.01 /* of that at rest, which steps never take a face to */
 #define LEAST_KEPT 0.2  /* by one step, of what a face has more than that */
-#define SHARPNESS  4.0  /* of the limit that a vertex has from its faces */
 
 static const int32_t *corners_of(const ss_relaxer *relaxer, int32_t face, int32_t *count) {
     const ss_faces *faces = &relaxer->chart->surface->patch->faces;
@@ -85,7 +84,8 @@ static double face_reach(const ss_relaxer *relaxer, int32_t face) {
     return 2 * now / (slope + sqrt(slope * slope + 4 * bend * now));
 }
 
-/* Each vertex goes as far as its faces let all go together; then all as far as the shortened steps let them. */
+/* Each vertex goes about as far as its faces let all go together, (1 + sum r^-4)^-1/4 of the step: a smooth minimum of the
+ * whole and of the r of its faces. Then all go as far as the shortened steps let them. */
 void ss_limit_steps(ss_relaxer *relaxer) {
     const ss_patch *patch = relaxer->chart->surface->patch;
     double all = 1;
@@ -96,10 +96,10 @@ void ss_limit_steps(ss_relaxer *relaxer) {
         const int32_t *v = corners_of(relaxer, f, &count);
         double reach = face_reach(relaxer, f);
         for (int32_t k = 0; k < count; k++)
-            relaxer->reach[v[k]] += pow(reach, -SHARPNESS);
+            relaxer->reach[v[k]] += 1 / (reach * reach * reach * reach);
     }
     for (int32_t v = 0; v < patch->vertex_count; v++) {
-        double part = pow(relaxer->reach[v], -1.0 / SHARPNESS);
+        double part = 1 / sqrt(sqrt(relaxer->reach[v]));
         relaxer->step[v][0] *= part, relaxer->step[v][1] *= part;
     }
     for (int32_t f = 0; f < patch->faces.face_count; f++)

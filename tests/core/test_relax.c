@@ -92,6 +92,29 @@ static void blocks_are_solved(void **state) {
     free_mesh(&mesh);
 }
 
+/* ---- The chart ---- */
+
+/* A pose that is a linear map of the chart has that map for its gradient everywhere: shares sum to 1. */
+static void gradients_of_a_linear_map(void **state) {
+    (void)state;
+    static const double map[2][3] = {{2, -1, 0.5}, {0.25, 3, -4}};
+    test_mesh mesh = grid_with_holes(false);
+    rig r = rig_of(&mesh, relaxed());
+    const ss_chart *chart = r.slider->parts[0].chart;
+    int32_t count = chart->surface->patch->vertex_count;
+    double(*points)[3] = malloc((size_t)count * sizeof *points), (*gradient)[2][3] = malloc((size_t)count * sizeof *gradient);
+    for (int32_t v = 0; v < count; v++)
+        for (int k = 0; k < 3; k++)
+            points[v][k] = chart->uv[v][0] * map[0][k] + chart->uv[v][1] * map[1][k];
+    ss_chart_gradient(chart, (const double(*)[3])points, gradient);
+    for (int32_t v = 0; v < count; v++)
+        for (int i = 0; i < 6; i++)
+            assert_near(gradient[v][i / 3][i % 3], map[i / 3][i % 3], 1e-12);
+    free(points), free(gradient);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
 /* ---- The answer ---- */
 
 /* Four quads whose right column is three wide. The middle vertex slides along its row, to x, between 0 and 4; all four of its
@@ -363,6 +386,7 @@ static void free_loops_slide_along_themselves(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_are_solved),
+        cmocka_unit_test(gradients_of_a_linear_map),
         cmocka_unit_test(a_slide_by_hand),
         cmocka_unit_test(stretch_is_less_than_by_force_density),
         cmocka_unit_test(slides_stay_on_the_surface),
