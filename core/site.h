@@ -1,4 +1,4 @@
-/* Sliding on the deformed patch itself: what triangles.c and site.c give to relax.c and travel.c. */
+/* Points that slide on a patch: what triangles.c and site.c give to chart.c, relax.c and travel.c. */
 #ifndef SKINSLIDE_SITE_H
 #define SKINSLIDE_SITE_H
 
