@@ -199,6 +199,12 @@ def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
         assert len(set(files)) == 1
 
 
+@pytest.mark.parametrize("size", [(2, 1), (64, 3), (3, 64)])
+def test_pictures_too_small_for_what_stands_on_them(size, shot, tmp_path):
+    draw(shot, tmp_path, views="stretch", size=size, frames="1003")
+    assert picture(tmp_path, "stretch").shape == (size[1], size[0], 3)
+
+
 def test_exr_is_the_same_picture_in_linear_light(shot, tmp_path):
     """A level of sRGB is at most 0.6 % of full light, half floats are finer, and the edges of cells blend otherwise."""
     draw(shot, tmp_path, frames="1003")
@@ -398,12 +404,33 @@ def test_an_unwritable_folder(public_folder, capfd):
     assert f"output {closed}: is not writable" in capfd.readouterr().err
 
 
+def test_a_patch_that_cannot_be_followed(tmp_path, capfd):
+    """At a frame where all of it is in one place."""
+    stage, mesh = sheet()
+    scale = UsdGeom.Xformable(mesh).AddScaleOp()
+    scale.Set((1, 1, 1), 1002)
+    scale.Set((0, 0, 0), 1003)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x32", "--follow"]) == 1
+    assert f"error: {stages.MESH}: patch {PATCH}: frame 1003: no camera can have" in capfd.readouterr().err
+    assert (tmp_path / "out" / f"{NAME}.chequer.1002.png").exists()
+
+
+@pytest.mark.parametrize("aperture", ["horizontalAperture", "verticalAperture"])
+def test_a_camera_without_a_view(aperture, tmp_path, capfd):
+    stage, _mesh = sheet()
+    UsdGeom.Camera.Define(stage, "/World/cam").GetPrim().GetAttribute(aperture).Set(0.0)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x32", "--camera", "/World/cam"]) == 1
+    said = capfd.readouterr().err
+    assert f"error: {stages.MESH}: patch {PATCH}: frame 1001: camera /World/cam: its apertures are " in said
+
+
 def test_a_bad_frame_leaves_the_others_whole(tmp_path, capfd):
     stage, mesh = sheet()
     points = np.array(mesh.GetPointsAttr().Get(1003.0))
     points[5] = np.nan
     mesh.GetPointsAttr().Set(stages.vectors(points), 1003.0)
-    path = str(stages.save(stage, tmp_path / "shot.usda"))
     out = tmp_path / "out"
     camera = UsdGeom.Camera.Define(stage, "/World/cam")
     camera.AddTranslateOp().Set((0, 0, 2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -18,7 +19,8 @@ _MOST_POSES = 24  # that a camera of a whole shot is framed by
 class Eye(Protocol):
     """Gives the camera of a time."""
 
-    def camera(self, time: Usd.TimeCode) -> Camera: ...
+    def camera(self, time: Usd.TimeCode) -> Camera:
+        """Raises Fault, SliderError and FrameProblem where there is none."""
 
 
 class StageCamera:
@@ -34,6 +36,8 @@ class StageCamera:
     def camera(self, time: Usd.TimeCode) -> Camera:
         frustum = self._camera.GetCamera(time).frustum
         window, seen = frustum.GetWindow(), frustum.ComputeAspectRatio()
+        if not (seen > 0 and math.isfinite(seen)):
+            raise Fault(f"camera {self._camera.GetPath()}: its apertures are {_apertures(self._camera, time)}")
         wider, taller = max(1.0, self._aspect / seen), max(1.0, seen / self._aspect)
         half = Gf.CompMult(window.GetSize() / 2, Gf.Vec2d(wider, taller))
         frustum.SetWindow(Gf.Range2d(window.GetMidpoint() - half, window.GetMidpoint() + half))
@@ -65,6 +69,11 @@ class FollowingCamera:
 def to_world(mesh: SlidMesh, time: Usd.TimeCode) -> np.ndarray:
     """The way of a mesh to the world, (4, 4)."""
     return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
+
+
+def _apertures(camera: UsdGeom.Camera, time: Usd.TimeCode) -> str:
+    across, up = camera.GetHorizontalApertureAttr().Get(time), camera.GetVerticalApertureAttr().Get(time)
+    return f"{across:g} by {up:g}, which no picture can have"
 
 
 def _framed(mesh: SlidMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:

@@ -16,9 +16,9 @@ from skinslide.meshes import SlidMesh
 from skinslide.options import PictureOptions
 from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation
 from skinslide.plan import frame_of
-from skinslide.problems import Fault, frame_text
+from skinslide.problems import Fault, FrameProblem, frame_text
 from skinslide.report import PatchReport
-from skinslide.slider import Slider
+from skinslide.slider import Slider, SliderError
 from skinslide.subdivision import read_subdivision
 
 _SQUARES = 16  # of the chequer, across a patch
@@ -47,6 +47,7 @@ class Series:
 
     mesh: SlidMesh
     place: int  # among the slider's patches
+    patch: str  # its name
     label: str
     tessellation: Tessellation
     eye: Eye
@@ -55,7 +56,7 @@ class Series:
 
     @classmethod
     def of(cls, mesh: SlidMesh, slider: Slider, place: int, options: PictureOptions, columns: int = 2) -> Series:
-        """Raises Fault, SliderError and UsageError for what cannot be drawn."""
+        """Raises Fault, SliderError and FrameProblem for what cannot be drawn."""
         faces = slider.faces(place)
         st = _st_of(mesh, options.st)
         shape = Shape(mesh.face_counts, mesh.face_indices)
@@ -63,6 +64,7 @@ class Series:
         return cls(
             mesh,
             place,
+            slider.patches[place].name,
             PatchReport(slider.patches[place]).label,
             Tessellation(shape, mesh.rest_points, st, faces, subdivision),
             _eye(mesh, faces, options, columns),
@@ -71,9 +73,14 @@ class Series:
         )
 
     def moment(self, time: Usd.TimeCode) -> Moment:
+        """Raises FrameProblem where the patch cannot be seen."""
         frame = frame_of(time)
         title = "" if frame is None else f"frame {frame_text(frame)}"
-        return Moment(title, self.eye.camera(time), to_world(self.mesh, time))
+        try:
+            camera = self.eye.camera(time)
+        except (Fault, SliderError) as fault:
+            raise FrameProblem(self.mesh.problem(str(fault), time, self.patch)) from fault
+        return Moment(title, camera, to_world(self.mesh, time))
 
     def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
         """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
