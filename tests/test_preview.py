@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -439,6 +440,25 @@ def test_a_bad_frame_leaves_the_others_whole(tmp_path, capfd):
     assert f"{stages.MESH}: frame 1003: " in capfd.readouterr().err
     for file in out.iterdir():
         Image.open(io.BytesIO(file.read_bytes())).load()
+
+
+@pytest.mark.parametrize(
+    ("option", "place", "said"),
+    [("-o", "out", "; every file in {} is whole"), ("--html", "page.html", "; nothing was written")],
+)
+def test_an_ended_command_says_what_there_is(option, place, said, tmp_path, shot):
+    program = """
+        import os, signal, sys
+        from skinslide import cli, progress
+        progress._lines = lambda: lambda done, total: os.kill(os.getpid(), signal.SIGTERM)
+        sys.exit(cli.main(["preview", sys.argv[1], sys.argv[2], sys.argv[3], "--size", "64x32"]))
+    """
+    output = tmp_path / place
+    command = [sys.executable, "-c", textwrap.dedent(program), str(shot), option, str(output)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 143
+    assert done.stderr.endswith(f"ended by a signal{said.format(output)}\n")
+    assert not output.is_file()
 
 
 def test_no_egl(shot, tmp_path):

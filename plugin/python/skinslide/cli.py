@@ -34,21 +34,31 @@ def main(argv: Sequence[str] | None = None) -> int:
         return failed(error, getattr(arguments, "json", False), _outcome(arguments, before))
 
 
+def _file(arguments: argparse.Namespace) -> str | None:
+    """The one file that a command writes, beside those in its folder; None where it writes none."""
+    return getattr(arguments, "output", None) or getattr(arguments, "html", None)
+
+
 def _state(arguments: argparse.Namespace) -> tuple | None:
     """Tells whether there is another file at the output than before."""
+    file = _file(arguments)
     try:
-        found = os.stat(arguments.output)
-    except (AttributeError, OSError, ValueError):  # the command has no output, or there is nothing yet
+        found = os.stat(file) if file else None
+    except (OSError, ValueError):  # there is nothing yet
+        found = None
+    if found is None:
         return None
     return found.st_dev, found.st_ino, found.st_mtime_ns, found.st_size
 
 
 def _outcome(arguments: argparse.Namespace, before: tuple | None) -> str:
-    if hasattr(arguments, "folder"):
-        return f"; every map in {arguments.folder} is whole"
-    if not hasattr(arguments, "output"):
-        return ""
-    return "; nothing was written" if _state(arguments) == before else f" after {arguments.output} was written"
+    """What became of the files, for where that is in question."""
+    file = _file(arguments)
+    if file and _state(arguments) != before:
+        return f" after {file} was written"
+    if getattr(arguments, "folder", None):
+        return f"; every file in {arguments.folder} is whole"
+    return "; nothing was written" if file else ""
 
 
 def _bake(arguments: argparse.Namespace) -> Result:
