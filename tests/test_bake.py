@@ -530,9 +530,9 @@ def bad_outputs(shot: Shot, tmp_path: Path) -> dict[str, Path]:
         "is a folder": tmp_path / "folder.usda",
         "does not exist": tmp_path / "missing" / "out.usda",
         "the stage reads": shot.path,
-        "reads this layer": shot.cache_path,
+        "reads this file": shot.cache_path,
         "stage reads this": tmp_path / "link.usda",
-        "stage reads this layer": tmp_path / "hard.usdc",
+        "stage reads this file": tmp_path / "hard.usdc",
         "not exist": tmp_path / "file" / "out.usda",
     }
 

@@ -19,7 +19,7 @@ def shot(tmp_path):
     return stages.save(stage, tmp_path / "shot.usda")
 
 
-def refused(shot: Path, output: Path, message: str = "the stage reads this layer") -> None:
+def refused(shot: Path, output: Path, message: str = "the stage reads this file") -> None:
     """Neither a bake nor a set-up replaces the output."""
     before = output.read_bytes() if os.path.isfile(output) else None
     with pytest.raises(UsageError, match=message):
@@ -68,7 +68,7 @@ def test_value_clips(clips, template, name, tmp_path):
     (tmp_path / name).write_text(stage.GetRootLayer().ExportToString())
     for read in ("clip.1001.usda", "clip.1003.usda", "manifest.usda"):
         before = (tmp_path / read).read_bytes()
-        with pytest.raises(UsageError, match="the stage reads this layer"):
+        with pytest.raises(UsageError, match="the stage reads this file"):
             bake_to_file(tmp_path / name, tmp_path / read)
         assert (tmp_path / read).read_bytes() == before
     # Not of the template, for all that it looks like it: twice, since the second time it is there.
@@ -104,7 +104,7 @@ def test_an_input_that_appears_while_it_is_read(shot, tmp_path, monkeypatch):
     read: list[Sdf.Layer] = []
     used = Usd.Stage.GetUsedLayers
     monkeypatch.setattr(Usd.Stage, "GetUsedLayers", lambda stage: [*used(stage), *read])
-    with pytest.raises(UsageError, match="the stage reads this layer"):
+    with pytest.raises(UsageError, match="the stage reads this file"):
         bake_to_file(shot, output, progress=read_late)
     assert output.read_text().startswith("#usda")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["late.usda", "shot.usda"]

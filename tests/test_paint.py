@@ -317,7 +317,7 @@ def test_the_rules_of_setup_for_the_output(shot, tmp_path):
     (tmp_path / "other.usda").write_text("#usda 1.0\n")
     with pytest.raises(UsageError, match="--force"):
         paint(shot, tmp_path / "other.usda", MESH, PATCH, 2, subset="seam")
-    with pytest.raises(UsageError, match="the stage reads this layer"):
+    with pytest.raises(UsageError, match="the stage reads this file"):
         paint(shot, shot, MESH, PATCH, 2, subset="seam")
     paint(shot, tmp_path / "other.usda", MESH, PATCH, 2, subset="seam", force=True)
     assert len(painted(tmp_path / "other.usda")) == 3

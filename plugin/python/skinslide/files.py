@@ -8,7 +8,7 @@ import shutil
 import signal
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -25,8 +25,13 @@ def check_output(output: Path, extensions: Sequence[str]) -> None:
     """Raises UsageError for an output that cannot be, before any work is done."""
     if output.suffix.lower() not in extensions:
         raise UsageError(f"output {output}: the name must end in {', '.join(extensions)}")
+    check_place(output, _fault)
+
+
+def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
+    """Raises UsageError where something is wrong with an output: with what it says, or with being looked at."""
     try:
-        fault = _fault(output)
+        fault = find_fault(output)
     except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
         fault = getattr(error, "strerror", None) or str(error)
     if fault:
@@ -61,17 +66,16 @@ def partial_name(output: Path, token: str = 8 * "0") -> str:
 def check_not_input(output: Path, stage: Usd.Stage, *others: str | os.PathLike) -> None:
     """Raises UsageError where the output is a file that the stage may read, in whatever variant and clip."""
     if output.exists():
-        _refuse(output, [*map(os.fspath, others), *_dependencies(stage)])
-        check_not_read(output, stage)
+        Inputs(stage, *others).refuse(output)
 
 
 def check_not_read(output: Path, stage: Usd.Stage) -> None:
     """Raises UsageError where the output is a file that the stage has read so far."""
-    _refuse(output, [layer.realPath for layer in stage.GetUsedLayers()])
+    _refuse(output, _read_so_far(stage))
 
 
 class Inputs:
-    """The files that a stage may read, in whatever variant and clip, for a folder of outputs."""
+    """The files that a stage may read, in whatever variant and clip."""
 
     def __init__(self, stage: Usd.Stage, *others: str | os.PathLike):
         self._stage = stage
@@ -79,26 +83,26 @@ class Inputs:
 
     def refuse(self, output: Path) -> None:
         """Raises UsageError where the output is one of them, or one that the stage has read so far."""
-        found = _identities([str(output)])
-        if found and found & (self._known | _identities([layer.realPath for layer in self._stage.GetUsedLayers()])):
-            raise UsageError(f"output {output}: the stage reads this file; name another folder")
+        _refuse(output, self._known | _read_so_far(self._stage))
+
+
+def _read_so_far(stage: Usd.Stage) -> set[tuple[int, int]]:
+    return _identities([layer.realPath for layer in stage.GetUsedLayers()])
+
+
+def _refuse(output: Path, files: set[tuple[int, int]]) -> None:
+    if files & _identities([str(output)]):
+        raise UsageError(f"output {output}: the stage reads this file; name another, or open the stage without it")
 
 
 def _identities(files: Sequence[str]) -> set[tuple[int, int]]:
-    """Of those that are there: whatever they are called, and through links."""
+    """Of those that are there: whatever they are called, and through links. What cannot be looked at cannot be read."""
     found = set()
     for file in files:
         with suppress(OSError, ValueError):
             status = os.stat(file)
             found.add((status.st_dev, status.st_ino))
     return found
-
-
-def _refuse(output: Path, files: Sequence[str]) -> None:
-    for file in files:
-        with suppress(OSError):  # what cannot be looked at cannot be read either
-            if os.path.samefile(output, file):
-                raise UsageError(f"output {output}: the stage reads this layer; name another, or bake without it")
 
 
 def _dependencies(stage: Usd.Stage) -> list[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from pxr import Sdf, Usd
 
 from skinslide import names
-from skinslide.files import Inputs, check_output, replacing, writing
+from skinslide.files import Inputs, check_output, check_place, replacing, writing
 from skinslide.frames import UsageError
 from skinslide.problems import frame_text
 from skinslide.sampled import map_files
@@ -29,7 +29,7 @@ class OutputFolder:
         maps = [file for prim in prims for patch in names.patch_names(prim) for file in map_files(prim, patch)]
         self._inputs = Inputs(stage, *maps, *([] if stage_path is None else [stage_path]))
         self._names = _mesh_names(prims)
-        _check_folder(folder)
+        check_place(folder, _fault)
 
     def path(self, mesh: Sdf.Path, words: Sequence[str], frame: float | None, extension: str) -> Path:
         """MESH.WORD.FRAME.extension, of each word; of no frame for the default time."""
@@ -88,15 +88,6 @@ def _depth(own: list[str], all_words: list[list[str]]) -> int:
         if sum(other[-depth:] == own[-depth:] for other in all_words) == 1:
             return depth
     return len(own)
-
-
-def _check_folder(folder: Path) -> None:
-    try:
-        fault = _fault(folder)
-    except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
-        fault = getattr(error, "strerror", None) or str(error)
-    if fault:
-        raise UsageError(f"output {folder}: {fault}")
 
 
 def _fault(folder: Path) -> str | None:
