@@ -6,7 +6,7 @@ import numpy as np
 
 from skinslide._core import ffi, lib
 from skinslide.images import Corners
-from skinslide.native import Arguments, call, writable
+from skinslide.native import Arguments, call, device_number, writable
 
 FIRST_TILE = 1001
 MOST_SIDE = 16384
@@ -18,7 +18,7 @@ class MapCanvas:
     def __init__(self, side: int, device: int | None = None):
         out = ffi.new("skinslide_map_canvas **")
         wanted = min(max(side, 0), MOST_SIDE + 1)  # the core says what is wrong with others
-        call(lib.skinslide_map_canvas_create, wanted, -1 if device is None else device, out)
+        call(lib.skinslide_map_canvas_create, wanted, device_number(device), out)
         self._handle = ffi.gc(out[0], lib.skinslide_map_canvas_destroy)
         self.side = side
 

@@ -140,7 +140,7 @@ def _meshes(plan: Plan, options: MapOptions, place: OutputFolder) -> list[MeshMa
     for planned in plan.meshes:
         if not any(map(options.draws, planned.mesh.patches)):
             continue
-        check_frames([time.GetValue() for time in planned.times if not time.IsDefault()])
+        check_frames(planned.frames)
         try:
             meshes.append(MeshMaps(planned, options, place))
         except StageProblems as bad:

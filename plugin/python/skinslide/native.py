@@ -1,4 +1,4 @@
-"""Between numpy arrays and the structs of `skinslide.h`: shapes and types checked, statuses raised, tokens looked up.
+"""Between numpy arrays and the public headers' structs: shapes and types checked, statuses raised, tokens looked up.
 
 Fields and enums are read from the declarations; only what C cannot see, the lengths of arrays, is checked here.
 """
@@ -80,13 +80,19 @@ class Lookup:
         return lookup if isinstance(lookup, Lookup) else Lookup(lookup)
 
     def options(self) -> Any:
-        method = enum_value("lookup", self.method, "")
-        device = -1 if self.device is None else self.device
-        if self.device is not None and not 0 <= self.device < 2**31:
-            raise SliderError("BAD_ARGUMENT", f"no such device: {self.device}")
+        method, device = enum_value("lookup", self.method, ""), device_number(self.device)
         if not 0 <= self.resolution < 2**31:
             raise SliderError("BAD_ARGUMENT", f"no such resolution: {self.resolution}")
         return ffi.new("skinslide_workspace_options *", (method, device, self.resolution))
+
+
+def device_number(device: int | None) -> int:
+    """One of EGL's devices as the core has it; SliderError for a number that none can have."""
+    if device is None:
+        return -1
+    if not 0 <= device < 2**31:
+        raise SliderError("BAD_ARGUMENT", f"no such device: {device}")
+    return device
 
 
 def _tuple_of(struct: str, name: str) -> type:
@@ -101,7 +107,7 @@ LookupInfo: Any = _tuple_of("skinslide_lookup_info", "LookupInfo")
 
 def tokens(setting: str) -> tuple[str, ...]:
     """The tokens of a setting: boundary, holes, rule, interpolation, lookup, normals_layout, scheme, boundary_rule,
-    triangle_rule."""
+    triangle_rule, pixels."""
     return tuple(_values_by_token(setting))
 
 

@@ -71,23 +71,27 @@ class PictureOptions:
     @classmethod
     def checked(
         cls,
-        patches: Sequence[str] | str | None,
+        *,
         views: Sequence[str] | str,
-        camera: str | None,
-        follow: bool,
         size: tuple[int, int],
-        form: str,
-        st: str | None,
-        squares: float | None,
         most_stretch: float,
+        patches: Sequence[str] | str | None = None,
+        camera: str | None = None,
+        follow: bool = False,
+        form: str = "png",
+        st: str | None = None,
+        squares: float | None = None,
     ) -> "PictureOptions":
         """Raises UsageError for what cannot be."""
+        shown = listed(views)
+        if not shown:
+            raise UsageError("views: there are none in it")
         if camera is not None and follow:
             raise UsageError("a camera of the stage does not follow a patch: give one or the other")
         width, height = size
         return cls(
             patches=listed(patches),
-            views=[_one_of("view", view, VIEWS) for view in dict.fromkeys(listed(views) or ())],
+            views=[_one_of("view", view, VIEWS) for view in dict.fromkeys(shown)],
             camera=camera,
             follow=bool(follow),
             width=whole_number("width", width, 2),

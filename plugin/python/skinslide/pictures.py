@@ -8,7 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.native import Arguments, LookupInfo, SliderError, Subdivision, as_array, call, enum_value, read, writable
+from skinslide.native import (
+    Arguments,
+    LookupInfo,
+    SliderError,
+    Subdivision,
+    as_array,
+    call,
+    device_number,
+    enum_value,
+    read,
+    writable,
+)
 
 
 class Viewport(NamedTuple):
@@ -74,10 +85,9 @@ class Canvas:
     """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light)."""
 
     def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None):
-        out, wanted = ffi.new("skinslide_canvas **"), -1 if device is None else device
-        if device is not None and device < 0:
-            raise SliderError("BAD_ARGUMENT", f"no such device: {device}")
-        options = _struct("canvas_options", (width, height, enum_value("pixels", pixels, ""), wanted))
+        out = ffi.new("skinslide_canvas **")
+        settings = (width, height, enum_value("pixels", pixels, ""), device_number(device))
+        options = _struct("canvas_options", settings)
         call(lib.skinslide_canvas_create, options, out)
         self._handle = ffi.gc(out[0], lib.skinslide_canvas_destroy)
         self.width, self.height = width, height

@@ -20,6 +20,11 @@ class PlannedMesh(NamedTuple):
     slider: Slider
     times: list[Usd.TimeCode]  # ascending
 
+    @property
+    def frames(self) -> list[float]:
+        """The times, without the default time."""
+        return [time.GetValue() for time in self.times if not time.IsDefault()]
+
 
 @dataclass(frozen=True)
 class Plan:

@@ -48,7 +48,7 @@ def preview(
     prims: Sequence[str] | str | None = None,
     patches: Sequence[str] | str | None = None,
     frames: Frames = None,
-    views: Sequence[str] = VIEWS,
+    views: Sequence[str] | str = VIEWS,
     camera: str | None = None,
     follow: bool = False,
     size: tuple[int, int] = (1920, 1080),
@@ -75,7 +75,17 @@ def preview(
     most_stretch  what the highest colour stands for
     Raises UsageError, StageProblems, FrameProblem, StageError. Each picture is written whole or not at all.
     """
-    pictures = PictureOptions.checked(patches, views, camera, follow, size, form, st, squares, most_stretch)
+    pictures = PictureOptions.checked(
+        patches=patches,
+        views=views,
+        camera=camera,
+        follow=follow,
+        size=size,
+        form=form,
+        st=st,
+        squares=squares,
+        most_stretch=most_stretch,
+    )
     options = BakeOptions.checked(prims, frames, lookup, jobs)
     if folder is None and html is None:
         raise UsageError("no folder for pictures, and no page")
@@ -153,7 +163,8 @@ class _Shot:
         plan.check_patches(options.patches)
         meshes, problems = [], []
         for planned in plan.meshes:
-            check_frames([time.GetValue() for time in planned.times if not time.IsDefault()])
+            if place.folder:
+                check_frames(planned.frames)
             try:
                 meshes.append(MeshPictures(planned, options, place.wanted))
             except StageProblems as bad:
