@@ -234,9 +234,14 @@ void ss_locator_destroy(ss_locator *locator);
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
                      const ss_candidates *candidates, ss_location *locations);
 
+/* ---- normals.c ---- */
+
+/* Twice the area vector of a polygon of 3 or more vertices: the sum of its fan's cross products. */
+void ss_area_vector(const int32_t *vertices, int32_t count, const float *points, double out[3]);
+
 /* ---- map.c ---- */
 
-/* UDIM tiles, numbered by rows of ten; the rows that have room in four digits and the one after. */
+/* UDIM tiles, numbered by rows of ten: 1001 to 10000. */
 enum { SS_FIRST_TILE = 1001, SS_TILE_COLUMNS = 10, SS_TILE_ROWS = 900 };
 
 /* ---- egl.c: the only file that knows EGL ---- */

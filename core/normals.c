@@ -20,8 +20,7 @@ static bool vertex_moved(const float *cached, const float *slid, int32_t vertex)
     return false;
 }
 
-/* Twice the area vector of a polygon: the sum of its fan's cross products. */
-static void area_vector(const int32_t *vertices, int32_t count, const float *points, double out[3]) {
+void ss_area_vector(const int32_t *vertices, int32_t count, const float *points, double out[3]) {
     const float *o = points + 3 * (int64_t)vertices[0];
     out[0] = out[1] = out[2] = 0;
     for (int32_t k = 1; k + 1 < count; k++) {
@@ -40,7 +39,7 @@ static void measure_faces(work *w, const float *cached, const float *slid, doubl
         for (int32_t k = 0; k < mesh->face_counts[f] && !w->face_moved[f]; k++)
             w->face_moved[f] = vertex_moved(cached, slid, vertices[k]);
         if (mesh->face_counts[f] >= 3)
-            area_vector(vertices, mesh->face_counts[f], slid, w->area[f]);
+            ss_area_vector(vertices, mesh->face_counts[f], slid, w->area[f]);
         for (int k = 0; k < 3; k++)
             w->area[f][k] *= sign;
     }

@@ -42,15 +42,8 @@ void ss_blend(const skinslide_tessellation *own, const ss_piece *piece, int32_t 
 
 /* Weighted by area, from fans of all faces, for those that are drawn flat. */
 static void add_fan_normal(const int32_t *vertices, int32_t n, const float *points, double (*normals)[3]) {
-    double area[3] = {0, 0, 0};
-    const float *o = points + 3 * (int64_t)vertices[0];
-    for (int32_t k = 1; k + 1 < n; k++) {
-        const float *p = points + 3 * (int64_t)vertices[k], *q = points + 3 * (int64_t)vertices[k + 1];
-        double a[3] = {(double)p[0] - o[0], (double)p[1] - o[1], (double)p[2] - o[2]};
-        double b[3] = {(double)q[0] - o[0], (double)q[1] - o[1], (double)q[2] - o[2]};
-        for (int i = 0; i < 3; i++)
-            area[i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
+    double area[3];
+    ss_area_vector(vertices, n, points, area);
     for (int32_t k = 0; k < n; k++)
         for (int i = 0; i < 3; i++)
             normals[vertices[k]][i] += area[i];
