@@ -143,6 +143,11 @@ skinslide_status ss_gl_enter(const ss_egl *egl, ss_egl_before *before, skinslide
 skinslide_status ss_gl_leave(const ss_egl *egl, const ss_egl_before *before, const char *what, skinslide_error *error);
 /* Whether the context, which is current, has an extension. */
 bool ss_gl_has(const ss_egl_api *gl, const char *extension);
+enum { SS_BAND_ROWS = 16 };
+/* Reads texels [low, high) of whole numbers, the lowest row first, by bands of rows, in the one format that every device reads
+ * them in: four numbers a texel. band is scratch [SS_BAND_ROWS * width]. */
+void ss_gl_read_numbers(const ss_egl_api *gl, const int32_t low[2], const int32_t high[2], uint32_t (*band)[4],
+                        uint32_t *texels);
 /* Links a program, capturing the outputs [captured_count] of its vertex shader where there are any. */
 skinslide_status ss_gl_program(const ss_egl_api *gl, const char *vertex, const char *fragment, const char *const *captured,
                                int32_t captured_count, GLuint *program, skinslide_error *error);

@@ -260,9 +260,9 @@ static skinslide_status open_context(ss_idbuffer *buffer, skinslide_error *error
         return status;
     take_info(buffer);
     status = settle_sides(buffer, error);
-    if (!status && !ss_egl_enter(buffer->egl, &before))
-        status = ss_fail(error, SKINSLIDE_DEVICE_FAILED, "eglMakeCurrent: %s", ss_egl_error_name(before.failure));
-    else if (!status) {
+    if (!status)
+        status = ss_gl_enter(buffer->egl, &before, error);
+    if (!status) {
         status = make_objects(buffer, error);
         ss_egl_leave(buffer->egl, &before);
     }
@@ -425,28 +425,18 @@ bool ss_idbuffer_candidates(ss_idbuffer *buffer, int32_t patch, ss_candidates *c
 
 /* ---- The picture ---- */
 
-/* By bands of rows, in the one format that every device reads integers in: four numbers a texel. */
-static void read_texels(const ss_egl_api *gl, int32_t side, uint32_t (*band)[4], int32_t rows, uint32_t *texels) {
-    for (int32_t row = 0; row < side; row += rows) {
-        int32_t count = rows < side - row ? rows : side - row;
-        gl->glReadPixels(0, row, side, count, GL_RGBA_INTEGER, GL_UNSIGNED_INT, band);
-        for (int64_t i = 0; i < (int64_t)count * side; i++)
-            texels[(int64_t)row * side + i] = band[i][0];
-    }
-}
-
 skinslide_status ss_idbuffer_read(ss_idbuffer *buffer, int32_t patch, const double (*uv)[2], uint32_t *texels,
                                   skinslide_error *error) {
-    enum { ROWS = 16 };
     const drawing *drawn = &buffer->drawings[patch];
+    const int32_t low[2] = {0, 0}, high[2] = {drawn->side, drawn->side};
     ss_memory scratch = {0};
     ss_egl_before before;
-    uint32_t(*band)[4] = ss_new(&scratch, (int64_t)ROWS * drawn->side, sizeof *band);
+    uint32_t(*band)[4] = ss_new(&scratch, (int64_t)SS_BAND_ROWS * drawn->side, sizeof *band);
     uint32_t *read = SS_NEW(&scratch, uint32_t, (int64_t)drawn->side * drawn->side);
     skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status && enter_anew(buffer, &before)) {
         draw_faces(buffer, drawn, uv);
-        read_texels(&buffer->egl->api, drawn->side, band, ROWS, read);
+        ss_gl_read_numbers(&buffer->egl->api, low, high, band, read);
         leave(buffer, &before, "reading the ID buffer", true);
     }
     if (!status && !buffer->egl)

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SIDE = 16384, DILATION = 4, ROWS = 16 };
+enum { MOST_SIDE = 16384, DILATION = 4 };
 static const uint32_t uncovered = 0xffffffffu; /* in the shaders, too */
 
 /* A triangle as the shaders read it. */
@@ -380,19 +380,6 @@ static void dilate(const skinslide_map_canvas *canvas) {
     }
 }
 
-/* By bands of rows, in the one format that every device reads whole numbers in: four a texel. */
-static void read_texels(const skinslide_map_canvas *canvas, const box *reach, uint32_t (*band)[4], uint32_t *texels) {
-    const ss_egl_api *gl = &canvas->egl->api;
-    int32_t width = reach->high[0] - reach->low[0], height = reach->high[1] - reach->low[1];
-    gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->framebuffers[0]);
-    for (int32_t row = 0; row < height; row += ROWS) {
-        int32_t count = ROWS < height - row ? ROWS : height - row;
-        gl->glReadPixels(reach->low[0], reach->low[1] + row, width, count, GL_RGBA_INTEGER, GL_UNSIGNED_INT, band);
-        for (int64_t i = 0; i < (int64_t)count * width; i++)
-            texels[(int64_t)row * width + i] = band[i][0];
-    }
-}
-
 /* texels: those of the reach, the lowest row first. */
 static skinslide_status draw(const skinslide_map_canvas *canvas, const drawing *d, uint32_t (*band)[4], uint32_t *texels,
                              skinslide_error *error) {
@@ -406,7 +393,8 @@ static skinslide_status draw(const skinslide_map_canvas *canvas, const drawing *
     gl->glScissor(reach->low[0], reach->low[1], reach->high[0] - reach->low[0], reach->high[1] - reach->low[1]);
     draw_triangles(canvas, d);
     dilate(canvas);
-    read_texels(canvas, reach, band, texels);
+    gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->framebuffers[0]);
+    ss_gl_read_numbers(gl, reach->low, reach->high, band, texels);
     return ss_gl_leave(canvas->egl, &before, "drawing a map", error);
 }
 
@@ -443,8 +431,8 @@ skinslide_status skinslide_map_draw(skinslide_map_canvas *canvas, const skinslid
     status = find_triangles(&d, values, error);
     int64_t width = d.reach.high[0] - d.reach.low[0], height = d.reach.high[1] - d.reach.low[1];
     if (!status && d.triangle_count > 0) {
-        uint32_t(*band)[4] = ss_new(&d.memory, ROWS * width, sizeof *band),
-        *drawn = SS_NEW(&d.memory, uint32_t, width * height);
+        uint32_t(*band)[4] = ss_new(&d.memory, SS_BAND_ROWS * width, sizeof *band);
+        uint32_t *drawn = SS_NEW(&d.memory, uint32_t, width * height);
         status = d.memory.failed ? ss_out_of_memory(error) : draw(canvas, &d, band, drawn, error);
         if (!status)
             write_map(&d, drawn, texels);

@@ -1,4 +1,4 @@
-/* OpenGL ES programs, and what a device says of its failures. */
+/* What all that draw ask of OpenGL ES: programs, texels of whole numbers, and what a device says of its failures. */
 #include "egl.h"
 
 #include <stdio.h>
@@ -21,6 +21,17 @@ skinslide_status ss_gl_leave(const ss_egl *egl, const ss_egl_before *before, con
     bool did = ss_gl_did(&egl->api, failure, sizeof failure);
     ss_egl_leave(egl, before);
     return did ? SKINSLIDE_OK : ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s: %s", what, failure);
+}
+
+void ss_gl_read_numbers(const ss_egl_api *gl, const int32_t low[2], const int32_t high[2], uint32_t (*band)[4],
+                        uint32_t *texels) {
+    int32_t width = high[0] - low[0];
+    for (int32_t row = low[1]; row < high[1]; row += SS_BAND_ROWS) {
+        int32_t count = SS_BAND_ROWS < high[1] - row ? SS_BAND_ROWS : high[1] - row;
+        gl->glReadPixels(low[0], row, width, count, GL_RGBA_INTEGER, GL_UNSIGNED_INT, band);
+        for (int64_t i = 0; i < (int64_t)count * width; i++)
+            texels[(int64_t)(row - low[1]) * width + i] = band[i][0];
+    }
 }
 
 static void attach_shader(const ss_egl_api *gl, GLuint program, GLenum kind, const char *source) {
