@@ -81,7 +81,7 @@ bool ss_join_seams(skinslide_tessellation *tessellation, const ss_faces *faces);
 void ss_blend(const skinslide_tessellation *tessellation, const ss_piece *piece, int32_t vertex, const float *values,
               int32_t width, bool by_corner, double *weights, float *out);
 
-/* Of the box of the vertices that faces have: places in float, less it, are as exact as they can be. */
+/* The middle of the box of the vertices that faces have, to be taken off places before they are rounded to float. */
 void ss_find_middle(const skinslide_tessellation *tessellation, const float *points, double middle[3]);
 bool ss_tessellation_work_allocate(const skinslide_tessellation *tessellation, ss_tessellation_work *work);
 /* The mesh in a pose, less the origin: work->vertices, whose values are 0 where values is NULL. */

@@ -79,15 +79,16 @@ struct Shape {
     dvec3 normal{0}; /* the sum of area vectors, outwards */
     double area = 0;
     dmat3 spread{0}; /* the sum of area vectors' squares: least along the direction in which the faces are seen least */
-    dvec3 first{0}, farthest{0}; /* corners: the first, and the one farthest from it */
+    dvec3 first{NAN}, farthest{NAN}; /* corners: the first, and the one farthest from it */
 
     explicit Shape(const Subject &subject) {
-        bool any = false;
         each_face(subject, [&](const int32_t *v, int32_t n, auto place, double turn) {
             for (int32_t k = 0; k < n; k++) {
                 dvec3 p = place(v[k]);
-                first = any ? first : p, any = true;
-                farthest = glm::distance(p, first) >= glm::distance(farthest, first) || box.size() == 0 ? p : farthest;
+                if (std::isnan(first.x))
+                    first = farthest = p;
+                if (glm::distance(p, first) >= glm::distance(farthest, first))
+                    farthest = p;
                 box.add(p);
             }
             dvec3 sum(0);

@@ -83,8 +83,8 @@ typedef struct skinslide_subject {
 } skinslide_subject;
 
 /* A camera that has a subject in sight in each of its poses, as near as all of it fits, and no nearer than half the diagonal of
- * its box, along the picture and into it. It looks against the mean of the faces' normals over the poses; where those cancel out, as round a limb, from where
- * the faces are widest.
+ * its box, along the picture and into it. It looks against the mean of the faces' normals over the poses; where those cancel
+ * out, as round a limb, from where the faces are widest.
  *   up      in  the world's, a direction
  *   aspect  in  width of the picture by its height
  * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite, or no camera can see them: all in one place), OUT_OF_MEMORY. */
