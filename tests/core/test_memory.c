@@ -115,7 +115,24 @@ static skinslide_mesh view_of_scene(const scene *s) {
     return view;
 }
 
-static skinslide_status run_all(scene *s, skinslide_error *error) {
+/* Runs until no allocation fails, of which there are so many at least. */
+static void fail_in_turn(skinslide_status (*run)(void *subject, skinslide_error *error), void *subject, int32_t least) {
+    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
+    int32_t n = 0;
+    for (; status != SKINSLIDE_OK && n < 10000; n++) {
+        skinslide_error error;
+        left_to_give = n, live = 0, watching = true;
+        status = run(subject, &error);
+        watching = false;
+        assert_int_equal(live, 0);
+        if (status != SKINSLIDE_OK)
+            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+    }
+    assert_in_range(n, least, 9999);
+}
+
+static skinslide_status run_all(void *subject, skinslide_error *error) {
+    scene *s = subject;
     const skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 64};
     skinslide_slider *slider = NULL;
     skinslide_workspace *workspace = NULL;
@@ -143,23 +160,13 @@ static void each_allocation_fails_in_turn(void **state) {
     (void)state;
     scene s;
     make_scene(&s);
-    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
-    int32_t n = 0;
-    for (; status != SKINSLIDE_OK && n < 10000; n++) {
-        skinslide_error error;
-        left_to_give = n, live = 0, watching = true;
-        status = run_all(&s, &error);
-        watching = false;
-        assert_int_equal(live, 0);
-        if (status != SKINSLIDE_OK)
-            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
-    }
-    assert_in_range(n, 100, 9999);
+    fail_in_turn(run_all, &s, 100);
     assert_true(memcmp(s.slid, s.points, POINT_BYTES(&s.mesh)) != 0);
     free_scene(&s);
 }
 
-static skinslide_status run_images(const float *pixels, skinslide_error *error) {
+static skinslide_status run_images(void *subject, skinslide_error *error) {
+    const float *pixels = subject;
     enum { SIDE = 40 };
     const skinslide_channel channels[2] = {{"R", pixels}, {"G", pixels}};
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
@@ -194,22 +201,12 @@ static void each_allocation_for_images_fails_in_turn(void **state) {
     float pixels[1600];
     for (int i = 0; i < 1600; i++)
         pixels[i] = (float)(i % 37);
-    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
-    int32_t n = 0;
-    for (; status != SKINSLIDE_OK && n < 10000; n++) {
-        skinslide_error error;
-        left_to_give = n, live = 0, watching = true;
-        status = run_images(pixels, &error);
-        watching = false;
-        assert_int_equal(live, 0);
-        if (status != SKINSLIDE_OK)
-            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
-    }
-    assert_in_range(n, 30, 9999);
+    fail_in_turn(run_images, pixels, 30);
 }
 
 /* A tessellation along a limit surface, a camera for it, and a picture. */
-static skinslide_status run_pictures(const scene *s, skinslide_error *error) {
+static skinslide_status run_pictures(void *own, skinslide_error *error) {
+    const scene *s = own;
     enum { SIDE = 32 };
     static uint8_t pixels[SIDE * SIDE * 4];
     const skinslide_canvas_options options = {SIDE, SIDE, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE};
@@ -240,18 +237,7 @@ static void each_allocation_for_pictures_fails_in_turn(void **state) {
     (void)state;
     scene s;
     make_scene(&s);
-    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
-    int32_t n = 0;
-    for (; status != SKINSLIDE_OK && n < 10000; n++) {
-        skinslide_error error;
-        left_to_give = n, live = 0, watching = true;
-        status = run_pictures(&s, &error);
-        watching = false;
-        assert_int_equal(live, 0);
-        if (status != SKINSLIDE_OK)
-            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
-    }
-    assert_in_range(n, 30, 9999);
+    fail_in_turn(run_pictures, &s, 30);
     free_scene(&s);
 }
 
