@@ -15,13 +15,30 @@ typedef float pixel[4];
 static const float blue[3] = {0, 0, 1};
 static const skinslide_viewport whole = {0, 0, WIDTH, HEIGHT};
 
+/* One of each kind for all tests: a context takes longer to make than most pictures. */
+enum { MOST_CANVASES = 8 };
+static skinslide_canvas *canvases[MOST_CANVASES];
+
+/* Cleared to blue. A test draws on several only where they differ in size or pixels. */
 static skinslide_canvas *canvas_of(int32_t width, int32_t height, skinslide_pixels pixels) {
     const skinslide_canvas_options options = {width, height, pixels, SKINSLIDE_ANY_DEVICE};
-    skinslide_canvas *canvas = NULL;
     skinslide_error error;
-    assert_ok(skinslide_canvas_create(&options, &canvas, &error), &error);
-    assert_ok(skinslide_canvas_clear(canvas, blue, &error), &error);
-    return canvas;
+    int i = 0;
+    while (i < MOST_CANVASES && canvases[i] &&
+           (canvases[i]->width != width || canvases[i]->height != height || canvases[i]->pixels != pixels))
+        i++;
+    assert_in_range(i, 0, MOST_CANVASES - 1);
+    if (!canvases[i])
+        assert_ok(skinslide_canvas_create(&options, &canvases[i], &error), &error);
+    assert_ok(skinslide_canvas_clear(canvases[i], blue, &error), &error);
+    return canvases[i];
+}
+
+static int destroy_canvases(void **state) {
+    (void)state;
+    for (int i = 0; i < MOST_CANVASES; i++)
+        skinslide_canvas_destroy(canvases[i]);
+    return 0;
 }
 
 /* Looks along -z at 0..width by 0..height, z from -1000 to 1000. */
@@ -45,7 +62,6 @@ static void draw(skinslide_canvas *canvas, const skinslide_figure *figure) {
 static void read_all(skinslide_canvas *canvas, void *pixels) {
     skinslide_error error;
     assert_ok(skinslide_canvas_read(canvas, pixels, &error), &error);
-    skinslide_canvas_destroy(canvas);
 }
 
 /* ---- Sheets ---- */
@@ -637,5 +653,5 @@ int main(void) {
         cmocka_unit_test(pictures_do_not_know_sizes_or_places),
         cmocka_unit_test(a_million_faces),
     };
-    return cmocka_run_group_tests_name("figure", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("figure", tests, NULL, destroy_canvases);
 }
