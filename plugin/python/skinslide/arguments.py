@@ -185,8 +185,8 @@ def _add_preview(command: argparse.ArgumentParser) -> None:
         "--output",
         dest="folder",
         metavar="DIR",
-        help="folder for MESH.PATCH.VIEW.FRAME.png and contact_sheet.png, made where there is none; each file is "
-        "replaced in one step",
+        help="folder for MESH.PATCH.VIEW.FRAME.png (MESH.PATCH.PIECE.VIEW.FRAME.png where a patch falls into pieces) "
+        "and contact_sheet.png, made where it is missing; each file is replaced in one step. This, --html, or both",
     )
     command.add_argument(
         "--html",
