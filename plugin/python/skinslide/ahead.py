@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from typing import TypeVar
 
 from pxr import Usd
@@ -15,6 +16,16 @@ from skinslide.problems import FrameProblem, StageError, core_problem
 from skinslide.slider import SliderError
 
 T = TypeVar("T")
+
+
+@contextmanager
+def pool_of(jobs: int, frame_count: int) -> Iterator[ThreadPoolExecutor]:
+    """Threads for frames; when the block ends, those that have not begun never do."""
+    pool = ThreadPoolExecutor(min(jobs, frame_count), "skinslide")
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def work_ahead(

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.ahead import work_ahead
+from skinslide.ahead import pool_of, work_ahead
 from skinslide.derived import Derived, Solved
 from skinslide.earlier import replacing_earlier_bake
 from skinslide.files import check_not_input, check_output
@@ -109,8 +109,7 @@ def bake(
 def _run(plan: Plan, overs: OverLayer, progress: Progress | None) -> BakeReport:
     """Authors every mesh into overs."""
     report = BakeReport(list(plan.problems))
-    pool = ThreadPoolExecutor(min(plan.options.jobs, plan.frame_count), "skinslide")
-    try:
+    with pool_of(plan.options.jobs, plan.frame_count) as pool:
         for mesh, slider, times in plan.meshes:
             work = _MeshBake(mesh, slider, pool, plan.options)
             report.meshes.append(work.report)
@@ -118,8 +117,6 @@ def _run(plan: Plan, overs: OverLayer, progress: Progress | None) -> BakeReport:
                 if progress:
                     progress(report.frame_count, plan.frame_count)
             report.warnings.extend(work.derived.problems)
-    finally:
-        pool.shutdown(cancel_futures=True)
     return report
 
 

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pxr import Usd
 
+from skinslide.ahead import pool_of
 from skinslide.canvases import Canvases
 from skinslide.charts import MapCanvas
 from skinslide.files import signals_as_exceptions
@@ -99,18 +99,14 @@ def maps(
     meshes = _meshes(plan, options, place)
     report = MapsReport(list(plan.problems), folder=str(folder), size=options.size)
     frame_count = sum(mesh.frame_count for mesh in meshes)
-    pool = ThreadPoolExecutor(min(options.bake.jobs, frame_count), "skinslide")
-    with signals_as_exceptions():
-        try:
-            for mesh in meshes:
-                report.meshes.append(mesh.report)
-                for written in mesh.run(canvases, pool):
-                    report.maps.extend(written)
-                    if progress:
-                        progress(report.frame_count, frame_count)
-                report.warnings.extend(mesh.problems())
-        finally:
-            pool.shutdown(cancel_futures=True)
+    with signals_as_exceptions(), pool_of(options.bake.jobs, frame_count) as pool:
+        for mesh in meshes:
+            report.meshes.append(mesh.report)
+            for written in mesh.run(canvases, pool):
+                report.maps.extend(written)
+                if progress:
+                    progress(report.frame_count, frame_count)
+            report.warnings.extend(mesh.problems())
     return report
 
 

@@ -14,13 +14,13 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from pxr import Usd
 
+from skinslide.ahead import pool_of
 from skinslide.canvases import Canvases
 from skinslide.files import check_not_input, check_output, replacing, signals_as_exceptions, writing
 from skinslide.frames import UsageError
@@ -180,16 +180,13 @@ class _Shot:
         with canvases.taken() as canvas:
             report.device = canvas.device.renderer
         jobs, total, start = self.plan.options.jobs, sum(mesh.frame_count for mesh in self.meshes), time.monotonic()
-        pool = ThreadPoolExecutor(min(jobs, total), "skinslide")
-        try:
+        with pool_of(jobs, total) as pool:
             for mesh in self.meshes:
                 report.meshes.append(mesh.report)
                 for frame, pictures in mesh.run(canvases, pool, jobs):
                     self._write(mesh, frame, pictures, report)
                     if progress:
                         progress(report.frame_count, total)
-        finally:
-            pool.shutdown(cancel_futures=True)
         report.seconds = time.monotonic() - start
         self._write_sheets(report)
         self._write_page(stage, report)
