@@ -76,13 +76,13 @@ class MeshPictures:
     def frame_count(self) -> int:
         return len(self._times) if self._series else 0
 
-    def _make_series(self, place: int) -> Series | None:
+    def _make_series(self, index: int) -> Series | None:
         """The series of a piece of a patch; what cannot be drawn joins the problems."""
-        name = self._slider.patches[place].name
+        name = self._slider.patches[index].name
         if self._options.patches is not None and name not in self._options.patches:
             return None
         try:
-            series = Series.of(self._mesh, self._slider, place, self._options)
+            series = Series.of(self._mesh, self._slider, index, self._options)
         except (Fault, SliderError) as fault:
             self.problems.append(Problem("error", self._mesh.path, name, None, str(fault)))
             return None
@@ -129,7 +129,7 @@ class MeshPictures:
     ) -> Iterator[np.ndarray]:
         """Before and after, series by series, view by view."""
         for series, moment in zip(self._series, moments, strict=True):
-            result = results[series.place]
+            result = results[series.index]
             columns = [
                 Column("before", poses[0], measured.stretch_before, result.stretch_before),
                 Column("after", poses[1], measured.stretch_after, result.stretch_after),
@@ -156,7 +156,7 @@ class MeshPictures:
                 yield Picture(words, self._options.form, picture.file)
 
     def _words(self, series: Series) -> list[str]:
-        info = self._slider.patches[series.place]
+        info = self._slider.patches[series.index]
         return [info.name, *([str(info.piece + 1)] if info.piece_count > 1 else [])]
 
     @property
@@ -172,7 +172,7 @@ class MeshPictures:
         """What a page shows of each series."""
         views = self._options.views
         for number, series in enumerate(self._series):
-            patch = self.report.patches[series.place]
+            patch = self.report.patches[series.index]
             own = self._jpegs[number * len(views) : (number + 1) * len(views)]
             settings = settings_of(self._mesh, patch.info.setup)
             yield Strip(self._mesh.path, patch, dict(zip(views, own, strict=True)), settings)

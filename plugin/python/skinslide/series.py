@@ -46,7 +46,7 @@ class Series:
     """Immutable: any number of threads may draw it, each on its own canvas."""
 
     mesh: SlidMesh
-    place: int  # among the slider's patches
+    index: int  # among the slider's patches
     patch: str  # its name
     label: str
     tessellation: Tessellation
@@ -55,17 +55,17 @@ class Series:
     double_sided: bool
 
     @classmethod
-    def of(cls, mesh: SlidMesh, slider: Slider, place: int, options: PictureOptions, columns: int = 2) -> Series:
+    def of(cls, mesh: SlidMesh, slider: Slider, index: int, options: PictureOptions, columns: int = 2) -> Series:
         """Raises Fault, SliderError and FrameProblem for what cannot be drawn."""
-        faces = slider.faces(place)
+        faces = slider.faces(index)
         st = _st_of(mesh, options.st)
         shape = Shape(mesh.face_counts, mesh.face_indices)
         subdivision = read_subdivision(UsdGeom.Mesh(mesh.prim))
         return cls(
             mesh,
-            place,
-            slider.patches[place].name,
-            PatchReport(slider.patches[place]).label,
+            index,
+            slider.patches[index].name,
+            PatchReport(slider.patches[index]).label,
             Tessellation(shape, mesh.rest_points, st, faces, subdivision),
             _eye(mesh, faces, options, columns),
             options.squares or _suitable_squares(mesh, faces, st),
