@@ -363,6 +363,11 @@ def test_usage(words, message, shot, tmp_path, capfd):
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
 
+def test_no_views(shot, tmp_path):
+    with pytest.raises(skinslide.UsageError, match="views: there are none"):
+        draw(shot, tmp_path / "out", views=[])
+
+
 def test_neither_folder_nor_page(shot, capfd):
     assert main(["preview", str(shot)]) == 2
     assert "no folder for pictures, and no page" in capfd.readouterr().err
