@@ -466,6 +466,18 @@ def test_an_ended_command_says_what_there_is(option, place, said, tmp_path, shot
     assert not output.is_file()
 
 
+def test_a_fault_of_the_mesh_is_said_once(tmp_path):
+    """And at which frame, though it is a camera of the whole shot that meets it, of either patch."""
+    stage, mesh = sheet()
+    stages.add_patch(mesh, stages.block(24, range(3, 6), range(3, 6)), "other")
+    points = np.array(mesh.GetPointsAttr().Get(1003.0))
+    points[5] = np.nan
+    mesh.GetPointsAttr().Set(stages.vectors(points), 1003.0)
+    with pytest.raises(skinslide.StageProblems) as raised:
+        draw(stage, tmp_path / "out")
+    assert str(raised.value) == f"error: {stages.MESH}: frame 1003: points: vertex 5 is not finite: (nan, nan, nan)"
+
+
 def test_no_egl(shot, tmp_path):
     """A machine whose EGL has no vendor at all."""
     empty = tmp_path / "vendors"

@@ -11,7 +11,8 @@ from pxr import Gf, Usd, UsdGeom
 
 from skinslide.meshes import SlidMesh
 from skinslide.pictures import Camera, Shape, frame_faces
-from skinslide.problems import Fault
+from skinslide.problems import Fault, FrameProblem
+from skinslide.slider import SliderError
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
 
@@ -48,9 +49,19 @@ class ShotCamera:
     """Stands still, with a patch in sight all through the shot: the same camera whichever frames are drawn."""
 
     def __init__(self, mesh: SlidMesh, faces: np.ndarray, aspect: float):
+        """Raises FrameProblem for a time that no camera could show."""
         times = [Usd.TimeCode(time) for time in mesh.sample_times()] or [Usd.TimeCode.Default()]
-        chosen = np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))
-        self._camera = _framed(mesh, faces, [times[i] for i in chosen], aspect)
+        places = np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))
+        chosen = [times[i] for i in places]
+        try:
+            self._camera = _framed(mesh, faces, chosen, aspect)
+        except SliderError:
+            for time in chosen:  # the core does not know which it is
+                try:
+                    _framed(mesh, faces, [time], aspect)
+                except SliderError as alone:
+                    raise FrameProblem(mesh.problem(str(alone), time)) from alone
+            raise
 
     def camera(self, time: Usd.TimeCode) -> Camera:
         return self._camera

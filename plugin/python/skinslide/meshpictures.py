@@ -65,6 +65,7 @@ class MeshPictures:
         self._options, self._wanted = options, wanted
         self.problems: list[Problem] = []
         self._series = [made for made in map(self._make_series, range(len(self._slider.patches))) if made]
+        self.problems = list(dict.fromkeys(self.problems))  # a fault of the mesh is found with each of its patches
         if errors(self.problems):
             raise StageProblems(self.problems)
         mesh, count = self._mesh, len(self._series) * len(options.views)
