@@ -355,6 +355,7 @@ def test_the_command_reports(shot, tmp_path, capfd):
         (["--squares", "-1"], "squares is -1"),
         (["--most-stretch", "nan"], "most_stretch is nan"),
         (["--view", "wire"], "invalid choice"),
+        (["--st", ""], "st: the name of the primvar with texture coordinates is empty"),
     ],
 )
 def test_usage(words, message, shot, tmp_path, capfd):

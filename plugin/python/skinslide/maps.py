@@ -22,9 +22,8 @@ from skinslide.ahead import pool_of
 from skinslide.canvases import Canvases
 from skinslide.charts import MapCanvas
 from skinslide.files import signals_as_exceptions
-from skinslide.frames import UsageError
 from skinslide.meshmaps import KINDS, MapOptions, MeshMaps, WrittenMap
-from skinslide.options import BakeOptions, Frames, listed, whole_number
+from skinslide.options import BakeOptions, Frames, coordinates_name, listed, whole_number
 from skinslide.outputs import OutputFolder, check_frames
 from skinslide.plan import Plan
 from skinslide.problems import StageProblems
@@ -119,13 +118,11 @@ def _checked(
     lookup: str | Lookup,
     jobs: int,
 ) -> MapOptions:
-    if not st:
-        raise UsageError("st: the name of the primvar with texture coordinates is empty")
     return MapOptions(
         bake=BakeOptions.checked(prims, frames, lookup, jobs),
         patches=listed(patches),
         size=whole_number("size", size, 1),
-        st=st,
+        st=coordinates_name(st),
     )
 
 

@@ -97,7 +97,7 @@ class PictureOptions:
             width=whole_number("width", width, 2),
             height=whole_number("height", height, 1),
             form=_one_of("format", form, FORMATS),
-            st=st,
+            st=None if st is None else coordinates_name(st),
             squares=None if squares is None else _positive("squares", squares),
             most_stretch=_positive("most_stretch", most_stretch),
         )
@@ -105,6 +105,12 @@ class PictureOptions:
 
 def listed(words: Sequence[str] | str | None) -> list[str] | None:
     return [words] if isinstance(words, str) else None if words is None else [str(word) for word in words]
+
+
+def coordinates_name(st: str) -> str:
+    if not st:
+        raise UsageError("st: the name of the primvar with texture coordinates is empty")
+    return st
 
 
 def whole_number(name: str, number: int, least: int) -> int:
