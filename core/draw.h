@@ -1,4 +1,4 @@
-/* What the files that draw share: tessellation.c, seams.c, tessellate.c, view.cpp, canvas.c, figure.c, shading.c. */
+/* What the files that draw share: tessellation.c, seams.c, pose.c, view.cpp, canvas.c, figure.c, shading.c. */
 #ifndef SKINSLIDE_DRAW_H
 #define SKINSLIDE_DRAW_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* ---- tessellation.c, seams.c, tessellate.c ---- */
+/* ---- tessellation.c, seams.c, pose.c ---- */
 
 /* Part of a face: the fan of all of it, where side is 0, or a grid of side by side cells on its limit surface. */
 typedef struct ss_piece {

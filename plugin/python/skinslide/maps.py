@@ -20,8 +20,8 @@ from pxr import Usd
 
 from skinslide.ahead import pool_of
 from skinslide.canvases import Canvases
-from skinslide.charts import MapCanvas
 from skinslide.files import signals_as_exceptions
+from skinslide.mapcanvas import MapCanvas
 from skinslide.meshmaps import KINDS, MapOptions, MeshMaps, WrittenMap
 from skinslide.options import BakeOptions, Frames, coordinates_name, listed, whole_number
 from skinslide.outputs import OutputFolder, check_frames

@@ -13,9 +13,9 @@ from pxr import Usd, UsdGeom
 
 from skinslide.ahead import work_ahead
 from skinslide.canvases import Canvases
-from skinslide.charts import FIRST_TILE, MapCanvas
 from skinslide.coordinates import read_coordinates
 from skinslide.images import Corners, encode_exr, map_tiles
+from skinslide.mapcanvas import FIRST_TILE, MapCanvas
 from skinslide.meshes import SlidMesh
 from skinslide.options import BakeOptions
 from skinslide.outputs import OutputFolder
