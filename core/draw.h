@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* ---- tessellation.c, seams.c, pose.c ---- */
+/* ---- tessellation.c, seams.c, outline.c, pose.c ---- */
 
 /* Part of a face: the fan of all of it, where side is 0, or a grid of side by side cells on its limit surface. */
 typedef struct ss_piece {
@@ -24,7 +24,6 @@ typedef struct ss_piece {
 /* What of a vertex never changes. */
 typedef struct ss_fixed_vertex {
     float coordinates[3]; /* st, or the place at rest */
-    float inside;         /* 1 in the patch, else 0 */
 } ss_fixed_vertex;
 
 /* What does. */
@@ -32,7 +31,16 @@ typedef struct ss_posed_vertex {
     float place[3]; /* less the origin */
     float normal[3];
     float value;
+    float inside; /* 1 in the patch, else 0 */
 } ss_posed_vertex;
+
+struct skinslide_outline {
+    ss_memory memory;
+    const skinslide_tessellation *tessellation;
+    uint8_t *inside; /* [mesh_face_count] the face is in the patch */
+    int32_t segment_count;
+    uint32_t (*segments)[2]; /* vertices of the tessellation */
+};
 
 struct skinslide_tessellation {
     ss_memory memory;
@@ -40,14 +48,15 @@ struct skinslide_tessellation {
     int32_t mesh_vertex_count, mesh_face_count, largest_face;
     int32_t *face_start;    /* [mesh_face_count + 1] */
     int32_t *corner_vertex; /* [mesh index_count] mesh vertices */
+    ss_faces faces;         /* the same, with faces and edges of corners */
     bool in_space;          /* coordinates are places at rest */
-    int32_t piece_count, vertex_count, triangle_count, segment_count, flat_faces;
+    int32_t piece_count, vertex_count, triangle_count, flat_faces;
     ss_piece *pieces;  /* [piece_count] */
     ss_parameter *at;  /* [vertex_count] in its face; of grids */
     uint32_t *same_as; /* [vertex_count] the vertex, itself or one before it, whose place it has */
     uint32_t (*triangles)[3];
-    uint32_t (*segments)[2]; /* of the outline */
-    ss_fixed_vertex *fixed;  /* [vertex_count] */
+    ss_fixed_vertex *fixed;     /* [vertex_count] */
+    skinslide_outline *outline; /* of the faces that it was made for */
 };
 
 /* Scratch of one thread for ss_tessellate. */
@@ -74,8 +83,12 @@ static inline int32_t ss_triangles_of(const skinslide_tessellation *tessellation
 
 /* The vertex on side k of a grid, step cells on: the sides go round it as those of a face do, from its first corner on. */
 uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step);
-/* Fills same_as. faces are those of the mesh, with their edges. False where memory is short. */
-bool ss_join_seams(skinslide_tessellation *tessellation, const ss_faces *faces);
+/* Fills same_as. False where memory is short. */
+bool ss_join_seams(skinslide_tessellation *tessellation);
+/* Of faces that are the mesh's. */
+skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces, int32_t face_count,
+                                   skinslide_outline **out, skinslide_error *error);
+skinslide_status ss_check_patch(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error);
 /* Blends values [width] at the corners of a piece's face linearly at one of its vertices: values are of the mesh's vertices, or
  * of its corners. */
 void ss_blend(const skinslide_tessellation *tessellation, const ss_piece *piece, int32_t vertex, const float *values,

@@ -11,13 +11,14 @@ typedef struct drawing {
     const skinslide_canvas *canvas;
     const skinslide_figure *figure;
     const skinslide_tessellation *mesh;
+    const skinslide_outline *outline;
     ss_view view;
     ss_tessellation_work work;
     double origin[3];
     uint8_t *in_sight;        /* [mesh->piece_count] */
     uint32_t (*triangles)[3]; /* [triangle_count] of pieces in sight, of room for all */
     int32_t triangle_count;
-    float (*ends)[2][3]; /* [mesh->segment_count] */
+    float (*ends)[2][3]; /* [outline->segment_count] */
     float line;          /* pixels that the outline is wide */
     float line_on_screen[2];
 } drawing;
@@ -51,7 +52,7 @@ static bool in_sight(const drawing *drawn, const ss_piece *piece) {
     unsigned all = ~0u;
     for (int32_t i = 0; i < count && all; i++)
         all &= beyond(drawn, vertices[i]);
-    return !all || mesh->fixed[piece->first_vertex].inside > 0;
+    return !all || drawn->outline->inside[piece->face];
 }
 
 static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
@@ -87,6 +88,21 @@ static void list_triangles(drawing *drawn) {
         drawn->triangle_count += drawn->in_sight[p] ? own : 0;
         first += own;
     }
+}
+
+static void mark_inside(drawing *drawn) {
+    for (int32_t p = 0; p < drawn->mesh->piece_count; p++) {
+        const ss_piece *piece = &drawn->mesh->pieces[p];
+        for (int32_t v = 0; v < ss_piece_size(drawn->mesh, piece) && drawn->in_sight[p]; v++)
+            drawn->work.vertices[piece->first_vertex + v].inside = drawn->outline->inside[piece->face];
+    }
+}
+
+static void list_ends(drawing *drawn) {
+    const skinslide_outline *outline = drawn->outline;
+    for (int32_t i = 0; i < outline->segment_count; i++)
+        for (int end = 0; end < 2; end++)
+            memcpy(drawn->ends[i][end], drawn->work.vertices[outline->segments[i][end]].place, sizeof drawn->ends[i][end]);
 }
 
 /* ---- Drawing ---- */
@@ -143,8 +159,8 @@ static void draw_outline(const drawing *drawn) {
     gl->glUniform2f(objects->half_width, drawn->line_on_screen[0] / 2, drawn->line_on_screen[1] / 2);
     gl->glUniform3fv(objects->line_colour, 1, colour);
     gl->glBindVertexArray(objects->outline_array);
-    fill(gl, GL_ARRAY_BUFFER, objects->segment_buffer, drawn->ends, drawn->mesh->segment_count, sizeof *drawn->ends);
-    gl->glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, drawn->mesh->segment_count);
+    fill(gl, GL_ARRAY_BUFFER, objects->segment_buffer, drawn->ends, drawn->outline->segment_count, sizeof *drawn->ends);
+    gl->glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, drawn->outline->segment_count);
 }
 
 /* ---- What can be drawn ---- */
@@ -165,6 +181,8 @@ static skinslide_status check(const skinslide_canvas *canvas, const skinslide_vi
                               const skinslide_camera *camera, const skinslide_figure *figure, skinslide_error *error) {
     if (!canvas || !viewport || !camera || !figure || !figure->tessellation)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, viewport, camera, or figure");
+    if (figure->outline && figure->outline->tessellation != figure->tessellation)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the outline is another tessellation's");
     if (viewport->width < 1 || viewport->height < 1 || viewport->x < 0 || viewport->y < 0 ||
         viewport->x > canvas->width - viewport->width || viewport->y > canvas->height - viewport->height)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the viewport is not on the canvas of %d by %d pixels", canvas->width,
@@ -187,15 +205,14 @@ static skinslide_status prepare(drawing *drawn, const skinslide_viewport *viewpo
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
     drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->piece_count);
     drawn->triangles = ss_new(&work->memory, mesh->triangle_count, sizeof *drawn->triangles);
-    drawn->ends = ss_new(&work->memory, mesh->segment_count, sizeof *drawn->ends);
+    drawn->ends = ss_new(&work->memory, drawn->outline->segment_count, sizeof *drawn->ends);
     if (!ss_tessellation_work_allocate(mesh, work))
         return ss_out_of_memory(error);
     skip_out_of_sight(drawn);
     ss_tessellate(mesh, figure->points, figure->values, drawn->origin, work);
     list_triangles(drawn);
-    for (int32_t i = 0; i < mesh->segment_count; i++)
-        for (int end = 0; end < 2; end++)
-            memcpy(drawn->ends[i][end], work->vertices[mesh->segments[i][end]].place, sizeof drawn->ends[i][end]);
+    mark_inside(drawn);
+    list_ends(drawn);
     drawn->line = fmaxf(1.5f, (float)viewport->height / 450);
     drawn->line_on_screen[0] = 2 * drawn->line / (float)viewport->width;
     drawn->line_on_screen[1] = 2 * drawn->line / (float)viewport->height;
@@ -209,6 +226,7 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
     if (status)
         return status;
     drawing drawn = {.canvas = canvas, .figure = figure, .mesh = figure->tessellation};
+    drawn.outline = figure->outline ? figure->outline : drawn.mesh->outline;
     status = prepare(&drawn, viewport, camera, error);
     if (!status)
         status = ss_gl_enter(canvas->egl, &before, error);

@@ -103,7 +103,8 @@ static void join_all(skinslide_tessellation *own, meeting *all) {
         own->same_as[v] = root(own->same_as, (uint32_t)v);
 }
 
-bool ss_join_seams(skinslide_tessellation *own, const ss_faces *faces) {
+bool ss_join_seams(skinslide_tessellation *own) {
+    const ss_faces *faces = &own->faces;
     ss_memory scratch = {0};
     meeting all = {.faces = faces};
     all.first_piece = SS_NEW(&scratch, const ss_piece *, own->mesh_face_count);

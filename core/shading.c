@@ -26,7 +26,7 @@ static const char surface_vertex[] = "#version 300 es\n"
                                      "uniform mat4 to_clip;\n"
                                      "uniform mat3 turn_normal;\n"
                                      "layout(location = 0) in vec3 fixed_coordinates;\n"
-                                     "layout(location = 1) in float fixed_inside;\n"
+                                     "layout(location = 1) in float posed_inside;\n"
                                      "layout(location = 2) in vec3 place;\n"
                                      "layout(location = 3) in vec3 surface_normal;\n"
                                      "layout(location = 4) in float posed_value;\n"
@@ -34,7 +34,7 @@ static const char surface_vertex[] = "#version 300 es\n"
                                      "out highp float inside, value;\n"
                                      "void main() {\n"
                                      "    coordinates = fixed_coordinates;\n"
-                                     "    inside = fixed_inside;\n"
+                                     "    inside = posed_inside;\n"
                                      "    normal = turn_normal * surface_normal;\n"
                                      "    value = posed_value;\n"
                                      "    gl_Position = to_clip * vec4(place, 1.0);\n"
@@ -134,11 +134,11 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     gl->glBindVertexArray(objects->surface_array);
     gl->glBindBuffer(GL_ARRAY_BUFFER, objects->fixed_buffer);
     point_to(gl, 0, 3, sizeof(ss_fixed_vertex), offsetof(ss_fixed_vertex, coordinates));
-    point_to(gl, 1, 1, sizeof(ss_fixed_vertex), offsetof(ss_fixed_vertex, inside));
     gl->glBindBuffer(GL_ARRAY_BUFFER, objects->posed_buffer);
     point_to(gl, 2, 3, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, place));
     point_to(gl, 3, 3, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, normal));
     point_to(gl, 4, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, value));
+    point_to(gl, 1, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, inside));
     gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
     gl->glGenVertexArrays(1, &objects->outline_array);
     gl->glBindVertexArray(objects->outline_array);

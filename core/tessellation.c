@@ -12,12 +12,10 @@ enum { RINGS = 2 }; /* of faces around the patch that are fine */
 
 /* What is to become of each face, while the tessellation is built. */
 typedef struct blueprint {
-    ss_faces faces;         /* of the mesh, with their edges */
     ss_face_surface *kinds; /* [face_count] */
     int32_t *surface_of;    /* [face_count] its surface, or -1 */
     uint8_t *inside;        /* [face_count] it is in the patch */
     uint8_t *fine;          /* [face_count] */
-    uint8_t *border;        /* [index_count] sides of the outline */
     uint8_t *coarse;        /* [index_count] sides with a coarse face beyond */
 } blueprint;
 
@@ -204,83 +202,27 @@ static void list_triangles(skinslide_tessellation *own) {
     }
 }
 
-/* ---- The outline ---- */
-
-static void add_side(skinslide_tessellation *own, const ss_piece *piece, int side) {
-    for (int32_t step = 0; step < piece->side; step++, own->segment_count++) {
-        own->segments[own->segment_count][0] = ss_on_side(piece, side, step);
-        own->segments[own->segment_count][1] = ss_on_side(piece, side, step + 1);
-    }
-}
-
-/* The part of side k of the face, which is on the outline, that the piece has. */
-static void outline_side(skinslide_tessellation *own, const ss_piece *piece, int32_t k) {
-    int32_t n = ss_face_size(own, piece->face);
-    if (!piece->side) {
-        own->segments[own->segment_count][0] = (uint32_t)(piece->first_vertex + k);
-        own->segments[own->segment_count++][1] = (uint32_t)(piece->first_vertex + (k + 1) % n);
-    } else if (piece->corner < 0) {
-        add_side(own, piece, k);
-    } else if (piece->corner == k) {
-        add_side(own, piece, 0);
-    } else if (piece->corner == (k + 1) % n) {
-        add_side(own, piece, 3);
-    }
-}
-
-static void list_outline(skinslide_tessellation *own, const uint8_t *border) {
-    for (int32_t p = 0; p < own->piece_count; p++)
-        for (int32_t k = 0; k < ss_face_size(own, own->pieces[p].face); k++)
-            if (border[own->face_start[own->pieces[p].face] + k])
-                outline_side(own, &own->pieces[p], k);
-}
-
-/* Which faces are inside; and their sides with no other of them beyond. count is scratch [edge_count], of zeros. */
-static void find_border(const int32_t *chosen, int32_t chosen_count, blueprint *plan, int32_t *count) {
-    const ss_faces *faces = &plan->faces;
-    for (int32_t i = 0; i < chosen_count; i++)
-        plan->inside[chosen[i]] = 1;
-    for (int32_t c = 0; c < faces->corner_count; c++)
-        count[faces->corner_edge[c]] += plan->inside[faces->corner_face[c]];
-    for (int32_t c = 0; c < faces->corner_count; c++)
-        plan->border[c] = plan->inside[faces->corner_face[c]] && count[faces->corner_edge[c]] == 1 &&
-                          faces->corner_vertex[c] != faces->corner_vertex[ss_next_corner(faces, c)];
-}
-
-static skinslide_status plan_border(const int32_t *chosen, int32_t chosen_count, blueprint *plan, skinslide_error *error) {
-    ss_memory scratch = {0};
-    int32_t *count = ss_number_edges(&plan->faces) ? SS_NEW(&scratch, int32_t, plan->faces.edge_count) : NULL;
-    if (count)
-        find_border(chosen, chosen_count, plan, count);
-    ss_free(&scratch);
-    return count ? SKINSLIDE_OK : ss_out_of_memory(error);
-}
-
 /* ---- What never changes ---- */
 
-static void fix_st(skinslide_tessellation *own, const float *st, const uint8_t *inside, double *weights) {
+static void fix_st(skinslide_tessellation *own, const float *st, double *weights) {
     for (int32_t p = 0; p < own->piece_count; p++) {
         const ss_piece *piece = &own->pieces[p];
-        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++) {
-            own->fixed[v].inside = inside[piece->face];
-            if (st)
-                ss_blend(own, piece, v, st, 2, true, weights, own->fixed[v].coordinates);
-        }
+        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++)
+            ss_blend(own, piece, v, st, 2, true, weights, own->fixed[v].coordinates);
     }
 }
 
 static skinslide_status fix_vertices(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st,
-                                     const uint8_t *inside, skinslide_error *error) {
+                                     skinslide_error *error) {
     double middle[3];
     ss_tessellation_work work = {0};
     bool allocated = ss_tessellation_work_allocate(own, &work);
-    if (allocated) {
-        fix_st(own, st, inside, work.weights);
-        if (!st) {
-            ss_find_middle(own, mesh->rest_points, middle);
-            ss_tessellate(own, mesh->rest_points, NULL, middle, &work);
-        }
-        for (int32_t v = 0; v < own->vertex_count && !st; v++)
+    if (allocated && st) {
+        fix_st(own, st, work.weights);
+    } else if (allocated) {
+        ss_find_middle(own, mesh->rest_points, middle);
+        ss_tessellate(own, mesh->rest_points, NULL, middle, &work);
+        for (int32_t v = 0; v < own->vertex_count; v++)
             for (int i = 0; i < 3; i++)
                 own->fixed[v].coordinates[i] = work.vertices[v].place[i];
     }
@@ -299,11 +241,8 @@ static skinslide_status check(const skinslide_mesh *mesh, const float *st, const
         status = ss_fail(error, SKINSLIDE_UNSUPPORTED, "%d face indices are too many to be drawn", mesh->index_count);
     if (!status && !st)
         status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
-    if (!status && (face_count < 0 || (face_count && !faces)))
-        status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces");
-    for (int32_t i = 0; !status && i < face_count; i++)
-        if (faces[i] < 0 || faces[i] >= mesh->face_count)
-            status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", faces[i], mesh->face_count);
+    if (!status)
+        status = ss_check_patch(mesh->face_count, faces, face_count, error);
     for (int32_t f = 0, c = 0; !status && st && f < mesh->face_count; c += mesh->face_counts[f++])
         for (int32_t k = 2 * c; k < 2 * (c + mesh->face_counts[f]) && !status; k++)
             if (!isfinite(st[k]))
@@ -315,6 +254,8 @@ static bool copy_faces(skinslide_tessellation *own, const skinslide_mesh *mesh) 
     own->mesh_vertex_count = mesh->vertex_count, own->mesh_face_count = mesh->face_count;
     own->face_start = SS_NEW(&own->memory, int32_t, (int64_t)mesh->face_count + 1);
     own->corner_vertex = SS_NEW(&own->memory, int32_t, mesh->index_count);
+    own->faces.corner_face = SS_NEW(&own->memory, int32_t, mesh->index_count);
+    own->faces.corner_edge = SS_NEW(&own->memory, int32_t, mesh->index_count);
     own->pieces = SS_NEW(&own->memory, ss_piece, (int64_t)mesh->index_count + mesh->face_count);
     if (own->memory.failed)
         return false;
@@ -328,61 +269,51 @@ static bool copy_faces(skinslide_tessellation *own, const skinslide_mesh *mesh) 
 }
 
 static bool allocate_pieces(skinslide_tessellation *own) {
-    int64_t segments = 0;
-    for (int32_t p = 0; p < own->piece_count; p++)
-        segments += own->pieces[p].side ? 4 * own->pieces[p].side : ss_face_size(own, own->pieces[p].face);
     own->at = SS_NEW(&own->memory, ss_parameter, own->vertex_count);
     own->same_as = SS_NEW(&own->memory, uint32_t, own->vertex_count);
     own->fixed = SS_NEW(&own->memory, ss_fixed_vertex, own->vertex_count);
     own->triangles = ss_new(&own->memory, own->triangle_count, sizeof *own->triangles);
-    own->segments = ss_new(&own->memory, segments, sizeof *own->segments);
     return !own->memory.failed;
 }
 
 static bool allocate_plan(const skinslide_mesh *mesh, ss_memory *memory, blueprint *plan) {
-    plan->faces.corner_face = SS_NEW(memory, int32_t, mesh->index_count);
-    plan->faces.corner_edge = SS_NEW(memory, int32_t, mesh->index_count);
     plan->kinds = SS_NEW(memory, ss_face_surface, mesh->face_count);
     plan->surface_of = SS_NEW(memory, int32_t, mesh->face_count);
     plan->inside = SS_NEW(memory, uint8_t, mesh->face_count);
     plan->fine = SS_NEW(memory, uint8_t, mesh->face_count);
-    plan->border = SS_NEW(memory, uint8_t, mesh->index_count);
     plan->coarse = SS_NEW(memory, uint8_t, mesh->index_count);
     return !memory->failed;
 }
 
-static void view_faces(const skinslide_tessellation *own, ss_faces *faces) {
+/* Faces of corners, and edges. False where memory is short. */
+static bool connect_faces(skinslide_tessellation *own) {
+    ss_faces *faces = &own->faces;
     faces->face_count = own->mesh_face_count, faces->corner_count = own->face_start[own->mesh_face_count];
     faces->face_start = own->face_start, faces->corner_vertex = own->corner_vertex;
     for (int32_t f = 0; f < own->mesh_face_count; f++)
         for (int32_t c = own->face_start[f]; c < own->face_start[f + 1]; c++)
             faces->corner_face[c] = f;
-}
-
-/* What is drawn of each face, and how finely. */
-static skinslide_status plan_faces(skinslide_tessellation *own, const skinslide_mesh *mesh, const int32_t *chosen,
-                                   int32_t chosen_count, blueprint *plan, skinslide_error *error) {
-    view_faces(own, &plan->faces);
-    skinslide_status status = take_surfaces(own, mesh, plan, error);
-    if (!status)
-        status = plan_border(chosen, chosen_count, plan, error);
-    return status ? status : plan_grids(own, plan, error);
+    return ss_number_edges(faces);
 }
 
 static skinslide_status build(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st, const int32_t *faces,
                               int32_t face_count, blueprint *plan, skinslide_error *error) {
     own->in_space = !st;
-    skinslide_status status = copy_faces(own, mesh) ? SKINSLIDE_OK : ss_out_of_memory(error);
+    if (!copy_faces(own, mesh) || !connect_faces(own))
+        return ss_out_of_memory(error);
+    for (int32_t i = 0; i < face_count; i++)
+        plan->inside[faces[i]] = 1;
+    skinslide_status status = take_surfaces(own, mesh, plan, error);
     if (!status)
-        status = plan_faces(own, mesh, faces, face_count, plan, error);
+        status = plan_grids(own, plan, error);
     if (status)
         return status;
     list_pieces(own, plan);
-    if (!allocate_pieces(own) || !ss_join_seams(own, &plan->faces))
+    if (!allocate_pieces(own) || !ss_join_seams(own))
         return ss_out_of_memory(error);
     list_triangles(own);
-    list_outline(own, plan->border);
-    return fix_vertices(own, mesh, st, plan->inside, error);
+    status = ss_outline_create(own, faces, face_count, &own->outline, error);
+    return status ? status : fix_vertices(own, mesh, st, error);
 }
 
 skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const float *st, const int32_t *faces,
@@ -410,6 +341,7 @@ skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const
 void skinslide_tessellation_destroy(skinslide_tessellation *own) {
     if (!own)
         return;
+    skinslide_outline_destroy(own->outline);
     ss_surfaces_destroy(own->surfaces);
     ss_free(&own->memory);
     free(own);

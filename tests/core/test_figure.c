@@ -362,7 +362,7 @@ static void where_normals_cancel_colours_are_plain(void **state) {
         double s = 1 / sizes[i], back[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1};
         for (int k = 0; k < 9; k++)
             (&scaled[0][0])[k] = (float)(sizes[i] * (&points[0][0])[k]);
-        skinslide_figure figure = {both, &scaled[0][0], back, values, 0, 1, 1, 1, 0};
+        skinslide_figure figure = {both, NULL, &scaled[0][0], back, values, 0, 1, 1, 1, 0};
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
         draw(canvas, &figure);
         read_all(canvas, pixels);
@@ -468,6 +468,37 @@ static bool is_near(double x, double y, const double a[4], const double b[4], do
     double dx = ends[1][0] - ends[0][0], dy = ends[1][1] - ends[0][1], length = dx * dx + dy * dy;
     double share = length > 0 ? fmin(fmax(((x - ends[0][0]) * dx + (y - ends[0][1]) * dy) / length, 0), 1) : 0;
     return hypot(ends[0][0] + share * dx - x, ends[0][1] + share * dy - y) < most;
+}
+
+/* A tessellation for all faces drawn with the outline of some is the picture of one for these, where both have the same
+ * triangles. */
+static void an_outline_of_its_own(void **state) {
+    (void)state;
+    static uint8_t apart[HEIGHT * WIDTH * 4], together[HEIGHT * WIDTH * 4];
+    const double box[4] = {10, 10, 70, 50};
+    sheet some = sheet_of(6, 4, box, 7, true), all = sheet_of(6, 4, box, 24, true);
+    skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
+    int32_t faces[7] = {0, 1, 2, 3, 4, 5, 6}, none[1] = {24};
+    skinslide_outline *outline = NULL;
+    skinslide_camera camera = in_pixels(WIDTH, HEIGHT);
+    skinslide_error error;
+    assert_ok(skinslide_outline_create(all.tessellation, faces, 7, &outline, &error), &error);
+    all.figure.outline = outline;
+    draw(canvas, &some.figure);
+    read_all(canvas, apart);
+    draw(canvas, &all.figure);
+    read_all(canvas, together);
+    assert_memory_equal(apart, together, sizeof apart);
+    some.figure.outline = outline;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &some.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "the outline is another tessellation's");
+    skinslide_outline_destroy(outline);
+    assert_fails(skinslide_outline_create(all.tessellation, none, 1, &outline, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "face 24 is not one of the mesh's 24");
+    assert_fails(skinslide_outline_create(NULL, faces, 7, &outline, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no tessellation, or no place for the outline");
+    skinslide_outline_destroy(NULL);
+    end_sheet(&some), end_sheet(&all);
 }
 
 /* From inside a cube, turned any way: every pixel of the outline is at an edge of the patch, and those of edges that reach behind
@@ -648,6 +679,7 @@ int main(void) {
         cmocka_unit_test(the_nearer_hides_the_farther),
         cmocka_unit_test(backs_are_left_out),
         cmocka_unit_test(the_outline_is_on_top),
+        cmocka_unit_test(an_outline_of_its_own),
         cmocka_unit_test(from_inside_nothing_smears),
         cmocka_unit_test(parts_of_pictures_are_theirs),
         cmocka_unit_test(pictures_do_not_know_sizes_or_places),

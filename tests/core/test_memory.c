@@ -216,10 +216,13 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     const skinslide_subject subject = {
         .mesh = &view, .faces = s->faces, .face_count = 20, .pose_count = 1, .poses = (const float *[]){s->points}};
     skinslide_tessellation *tessellation = NULL;
+    skinslide_outline *outline = NULL;
     skinslide_canvas *canvas = NULL;
     skinslide_camera camera;
     skinslide_status status = skinslide_tessellation_create(&view, NULL, s->faces, 20, &tessellation, error);
-    const skinslide_figure figure = {.tessellation = tessellation, .points = s->points, .squares = 1};
+    if (!status)
+        status = skinslide_outline_create(tessellation, s->faces, 10, &outline, error);
+    const skinslide_figure figure = {tessellation, outline, .points = s->points, .squares = 1};
     if (!status)
         status = skinslide_frame_faces(&subject, up, 1, &camera, error);
     if (!status)
@@ -229,6 +232,7 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     if (!status)
         status = skinslide_canvas_read(canvas, pixels, error);
     skinslide_canvas_destroy(canvas);
+    skinslide_outline_destroy(outline);
     skinslide_tessellation_destroy(tessellation);
     return status;
 }

@@ -407,7 +407,7 @@ static void check_blend_at(const made *m, const ss_piece *piece, int32_t i) {
     }
     for (int k = 0; k < 3; k++)
         assert_near(found[k], blend(corners[k], n, at.corner - start, at.s, at.t), 1e-6);
-    assert_true(fixed->inside == m->inside[piece->face]);
+    assert_true(m->own->outline->inside[piece->face] == m->inside[piece->face]);
 }
 
 static void check_blends(made *m) {
@@ -457,8 +457,9 @@ static int32_t uses_of_edge(const made *m, int32_t a, int32_t b) {
 
 static bool has_segment(const made *m, uint32_t a, uint32_t b) {
     const float *p = m->work.vertices[a].place, *q = m->work.vertices[b].place;
-    for (int32_t i = 0; i < m->own->segment_count; i++) {
-        const float *x = m->work.vertices[m->own->segments[i][0]].place, *y = m->work.vertices[m->own->segments[i][1]].place;
+    for (int32_t i = 0; i < m->own->outline->segment_count; i++) {
+        const float *x = m->work.vertices[m->own->outline->segments[i][0]].place,
+                    *y = m->work.vertices[m->own->outline->segments[i][1]].place;
         if (memcmp(p, x, sizeof(float[3])) == 0 && memcmp(q, y, sizeof(float[3])) == 0)
             return true;
     }
@@ -478,7 +479,7 @@ static void check_outline(made *m) {
             for (int32_t j = 0; j + 1 < count; j++)
                 assert_true(has_segment(m, line[j], line[j + 1]));
         }
-    assert_int_equal(m->own->segment_count, expected);
+    assert_int_equal(m->own->outline->segment_count, expected);
 }
 
 /* ---- How fine, and what is left out ---- */
@@ -631,10 +632,10 @@ static void any_faces_can_be_drawn(void **state) {
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 7, &drawn, &error), &error);
     assert_int_equal(drawn->triangle_count, 2 + 2 + 1 + 2);
     /* 1-2, 1-5, 5-4, 1-4, 2-0: sides of one face each. 2-2 is none. */
-    assert_int_equal(drawn->segment_count, 5);
+    assert_int_equal(drawn->outline->segment_count, 5);
     skinslide_tessellation_destroy(drawn);
     assert_ok(skinslide_tessellation_create(&mesh, NULL, NULL, 0, &drawn, &error), &error);
-    assert_int_equal(drawn->segment_count, 0);
+    assert_int_equal(drawn->outline->segment_count, 0);
     skinslide_tessellation_destroy(drawn);
 }
 

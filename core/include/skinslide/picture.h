@@ -35,8 +35,7 @@ typedef struct skinslide_tessellation_info {
  *   mesh   in  read during the call only
  *   st     in  [index_count][2] texture coordinates of the mesh's corners, face by face; NULL: rest_points take their place, as
  *              the coordinates of squares in space
- *   faces  in  [face_count] mesh faces: the patch, in any order, of any shape: it is outlined, and what is outside it is
- *              drawn paler
+ *   faces  in  [face_count] mesh faces: the patch, or all of several, in any order, of any shape
  * Fails with BAD_MESH, BAD_POINTS, BAD_CONTROL (st not finite: names the face), BAD_ARGUMENT, UNSUPPORTED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const float *st, const int32_t *faces,
                                                              int32_t face_count, skinslide_tessellation **out,
@@ -49,9 +48,21 @@ SKINSLIDE_API void skinslide_tessellation_destroy(skinslide_tessellation *tessel
 SKINSLIDE_API skinslide_status skinslide_tessellation_describe(const skinslide_tessellation *tessellation,
                                                                skinslide_tessellation_info *info, skinslide_error *error);
 
+typedef struct skinslide_outline skinslide_outline;
+
+/* Outlines some faces of a tessellated mesh; what is outside them is drawn paler. Immutable; the tessellation must outlive it.
+ *   faces  in  [face_count] mesh faces, as above
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces,
+                                                        int32_t face_count, skinslide_outline **out, skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_outline_destroy(skinslide_outline *outline);
+
 /* A mesh in one pose, and what it is painted with. */
 typedef struct skinslide_figure {
     const skinslide_tessellation *tessellation;
+    const skinslide_outline *outline; /* of the tessellation; NULL: of the faces that it was made for */
     const float *points;    /* [mesh vertex_count][3] */
     const double *to_world; /* [16] from the mesh's object space; NULL: it is the world's */
     const float *values;    /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */

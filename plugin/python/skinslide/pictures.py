@@ -73,6 +73,17 @@ class Tessellation:
         self.triangle_count, self.flat_faces = info.triangle_count, info.flat_faces
 
 
+class Outline:
+    """Some faces (n,) of a tessellated mesh, to be outlined; what is outside them is drawn paler. Immutable."""
+
+    def __init__(self, tessellation: Tessellation, faces: np.ndarray):
+        native, out = Arguments(), ffi.new("skinslide_outline **")
+        chosen = native.pointer(faces, np.int32, (-1,), "faces")
+        call(lib.skinslide_outline_create, tessellation.handle, chosen, len(faces), out)
+        # The default argument keeps the tessellation until the outline is gone, as the core asks.
+        self.handle = ffi.gc(out[0], lambda outline, mesh=tessellation: lib.skinslide_outline_destroy(outline))
+
+
 class Scale(NamedTuple):
     """What is drawn in false colours: values (V,), from the lowest to the highest colour."""
 
@@ -115,6 +126,7 @@ class Canvas:
         to_world: np.ndarray | None = None,
         squares: float = 1.0,
         scale: Scale | None = None,
+        outline: Outline | None = None,
         double_sided: bool = False,
         left_handed: bool = False,
     ) -> None:
@@ -122,6 +134,7 @@ class Canvas:
         native, figure = Arguments(), ffi.new("skinslide_figure *")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
         figure.tessellation = tessellation.handle
+        figure.outline = ffi.NULL if outline is None else outline.handle
         figure.points = native.points(points, tessellation.vertex_count, "points")
         figure.to_world = ffi.NULL if world is None else world
         figure.squares, figure.double_sided, figure.left_handed = squares, double_sided, left_handed
