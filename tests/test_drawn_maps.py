@@ -641,6 +641,6 @@ def test_an_ended_command_leaves_whole_files(number, code, word, tmp_path, shot)
     command = [sys.executable, "-c", textwrap.dedent(program), str(shot), str(tmp_path / "maps")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == code and word in done.stderr
-    assert done.stderr.endswith(f"; every map in {tmp_path / 'maps'} is whole\n")
+    assert done.stderr.endswith(f"; every file in {tmp_path / 'maps'} is whole\n")
     assert sorted(files(tmp_path / "maps")) == sorted(f"skin_GEO.{kind}.1001.exr" for kind in KINDS)
     assert all(decode_exr(data).pixels.shape == (64, 64) for data in files(tmp_path / "maps").values())

@@ -2,9 +2,11 @@
 
 import io
 import json
+import math
 import os
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -196,6 +198,12 @@ def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
         assert len(set(files)) == 1
 
 
+@pytest.mark.parametrize("size", [(2, 1), (2, 2), (3, 3), (100, 4), (101, 7), (16384, 2), (2, 2000)])
+def test_pictures_of_any_size(size, shot, tmp_path):
+    report = draw(shot, tmp_path, size=size, views=("chequer", "stretch"), frames="1002", html=tmp_path / "page.html")
+    assert report.pictures == 2 and picture(tmp_path, "stretch", "1002").shape == (size[1], size[0], 3)
+
+
 def test_exr_is_the_same_picture_in_linear_light(shot, tmp_path):
     """A level of sRGB is at most 0.6 % of full light, half floats are finer, and the edges of cells blend otherwise."""
     draw(shot, tmp_path, frames="1003")
@@ -268,6 +276,84 @@ def test_the_camera_does_not_depend_on_the_frames_drawn(shot, tmp_path):
     assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
+def camera_stage(**values):
+    """A sheet, and a camera that looks at it, with some attributes of its own."""
+    stage, _mesh = sheet()
+    camera = UsdGeom.Camera.Define(stage, "/World/cam")
+    camera.AddTransformOp().Set(values.pop("transform", Gf.Matrix4d().SetTranslate((0, 0, 2))))
+    for name, value in values.items():
+        camera.GetPrim().GetAttribute(name).Set(value)
+    return stage
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"horizontalAperture": 0.0}, "horizontalAperture is 0; it must be above 0"),
+        ({"verticalAperture": -20.0}, "verticalAperture is -20; it must be above 0"),
+        ({"horizontalAperture": math.nan}, "horizontalAperture is nan; it must be above 0"),
+        ({"verticalAperture": math.inf, "projection": "orthographic"}, "verticalAperture is inf; it must be above 0"),
+        ({"focalLength": 0.0}, "focalLength is 0; it must be above 0"),
+        ({"focalLength": math.nan}, "focalLength is nan; it must be above 0"),
+        ({"clippingRange": Gf.Vec2f(0, 100)}, "clippingRange is (0, 100); it must ascend, from above 0"),
+        ({"clippingRange": Gf.Vec2f(100, 1)}, "clippingRange is (100, 1); it must ascend, from above 0"),
+        ({"clippingRange": Gf.Vec2f(1, 1), "projection": "orthographic"}, "clippingRange is (1, 1); it must ascend"),
+        ({"clippingRange": Gf.Vec2f(1, math.inf)}, "clippingRange is (1, inf); it must ascend"),
+        ({"transform": Gf.Matrix4d(math.nan)}, "its transform to the world has no inverse"),
+        ({"transform": Gf.Matrix4d().SetScale((1, 1, 0))}, "its transform to the world has no inverse"),
+    ],
+)  # fmt: skip
+def test_a_camera_that_sees_nothing(values, message, tmp_path, capfd):
+    path = str(stages.save(camera_stage(**values), tmp_path / "shot.usda"))
+    words = ["--camera", "/World/cam", "--size", "64x32", "--frames", "1002"]
+    assert main(["preview", path, "-o", str(tmp_path / "out"), *words]) == 3
+    where = f"error: {stages.MESH}: patch {PATCH}: frame 1002: camera /World/cam: "
+    assert capfd.readouterr().err.startswith(where + message)
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_orthographic_camera_may_see_what_is_behind_it(tmp_path):
+    stage = camera_stage(projection="orthographic", clippingRange=Gf.Vec2f(-10, 10))
+    draw(stage, tmp_path, camera="/World/cam", frames="1001")
+    assert contrast(halves(picture(tmp_path, frame="1001"))[0]) > 100
+
+
+@pytest.mark.parametrize(
+    ("matrix", "message"),
+    [
+        (Gf.Matrix4d(math.nan), "its transform to the world is not finite"),
+        (Gf.Matrix4d(0), "no camera can have the faces in sight"),
+    ],
+)
+@pytest.mark.parametrize("frame", [None, 1001.0, 1003.0])
+def test_a_mesh_that_is_nowhere(frame, matrix, message, tmp_path, capfd):
+    """At all, or at a frame, which the message names."""
+    stage, mesh = sheet()
+    transform = UsdGeom.Xformable(mesh).AddTransformOp()
+    if frame is None:
+        transform.Set(matrix)
+    else:
+        transform.Set(Gf.Matrix4d(1), 1002.0)
+        transform.Set(matrix, frame)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    words = ["--size", "64x32", *([] if frame is None else ["--follow"])]
+    assert main(["preview", path, "-o", str(tmp_path / "out"), *words]) == (3 if frame is None else 1)
+    said = capfd.readouterr().err
+    assert f"error: {stages.MESH}: " in said and message in said
+    assert frame is None or f": frame {frame:g}: " in said
+
+
+def test_a_mesh_that_is_nowhere_at_a_frame_of_the_shot(tmp_path, capfd):
+    """The camera of a shot is framed by all of it."""
+    stage, mesh = sheet()
+    transform = UsdGeom.Xformable(mesh).AddTransformOp()
+    transform.Set(Gf.Matrix4d(1), 1002.0)
+    transform.Set(Gf.Matrix4d(math.nan), 1003.0)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x32", "--frames", "1001"]) == 3
+    assert f"error: {stages.MESH}: frame 1003: its transform to the world is not finite" in capfd.readouterr().err
+
+
 # ---- What the chequer follows ----
 
 
@@ -284,6 +370,17 @@ def test_a_named_primvar_must_be_there(tmp_path, capfd):
     assert main(["preview", path, "-o", str(tmp_path / "out"), "--st", "uv2", "--size", "64x64"]) == 3
     assert f"{stages.MESH}: patch {PATCH}: there is no primvars:uv2" in capfd.readouterr().err
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize("extent", [1e-42, 3e38])
+def test_texture_coordinates_of_any_extent(extent, tmp_path):
+    """As far as floats go, the chequer of a patch has squares that a figure may have."""
+    stage, mesh = sheet(st=False)
+    corners = np.repeat(np.sign(stages.grid(24, 24).points[stages.grid(24, 24).indices][:, :1]) * extent, 2, axis=1)
+    kind = Sdf.ValueTypeNames.TexCoord2fArray
+    stages.set_primvar(mesh, "st", kind, "faceVarying", Vt.Vec2fArray.FromNumpy(corners.astype(np.float32)))
+    with warnings.catch_warnings(action="error"):
+        assert draw(stage, tmp_path, frames="1002", squares=None).pictures == 1
 
 
 @pytest.mark.parametrize("fault", ["short", "index", "nan"])
@@ -324,7 +421,9 @@ def test_the_command_reports(shot, tmp_path, capfd):
         (["--size", "20000x20000"], "20000 by 20000 pixels"),
         (["--size", "ten"], "not a size such as 1920x1080"),
         (["--squares", "-1"], "squares is -1"),
+        (["--squares", "1e39"], "squares is 1e+39"),
         (["--most-stretch", "nan"], "most_stretch is nan"),
+        (["--most-stretch", "1e-38"], "most_stretch is 1e-38"),
         (["--view", "wire"], "invalid choice"),
     ],
 )
@@ -332,6 +431,23 @@ def test_usage(words, message, shot, tmp_path, capfd):
     assert main(["preview", str(shot), "-o", str(tmp_path / "out"), *words]) == 2
     assert message in capfd.readouterr().err
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize("rate", [0.0, -24.0, math.nan])
+def test_a_stage_that_cannot_be_played_has_no_page(rate, tmp_path, capfd):
+    stage, _mesh = sheet()
+    stage.SetTimeCodesPerSecond(rate)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    words = ["--size", "64x32", "--frames", "1002", "-o", str(tmp_path / "out")]
+    assert main(["preview", path, *words, "--html", str(tmp_path / "page.html")]) == 3
+    assert f"error: the stage has {rate:g} time codes per second" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists() and not (tmp_path / "page.html").exists()
+    assert main(["preview", path, *words]) == 0
+
+
+def test_no_views(shot, tmp_path):
+    with pytest.raises(skinslide.UsageError, match="views: there are none"):
+        draw(shot, tmp_path / "out", views=[])
 
 
 def test_neither_folder_nor_page(shot, capfd):
@@ -374,6 +490,34 @@ def test_an_unwritable_folder(public_folder, capfd):
     with stages.as_nobody():
         assert main(["preview", path, "-o", str(closed)]) == 2
     assert f"output {closed}: is not writable" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("name", [f"{NAME}.stretch.1003.png", "contact_sheet.png"])
+def test_a_folder_in_the_way_of_a_picture(name, shot, tmp_path, capfd):
+    """Known before a frame is slid."""
+    (tmp_path / "out" / name).mkdir(parents=True)
+    assert main(["preview", str(shot), "-o", str(tmp_path / "out"), "--size", "64x32"]) == 2
+    assert f"output {tmp_path / 'out' / name}: is a folder" in capfd.readouterr().err
+    assert os.listdir(tmp_path / "out") == [name]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["-o", "out"], "; every file in out is whole"),
+        (["-o", "out", "--html", "page.html"], "; every file in out is whole"),
+        (["--html", "page.html"], "; nothing was written"),
+    ],
+)
+def test_an_interrupted_command_says_what_it_left(words, said, shot, tmp_path, capfd, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("skinslide.meshpictures.work_ahead", interrupt)
+    assert main(["preview", str(shot), "--size", "64x32", *words]) == 130
+    assert capfd.readouterr().err == f"error: interrupted{said}\n"
+    assert not list(tmp_path.glob("**/.*")) and not (tmp_path / "page.html").exists()
 
 
 def test_a_bad_frame_leaves_the_others_whole(tmp_path, capfd):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -10,7 +11,7 @@ from pxr import Gf, Usd, UsdGeom
 
 from skinslide.meshes import SlidMesh
 from skinslide.pictures import Camera, Shape, frame_faces
-from skinslide.problems import Fault
+from skinslide.problems import Fault, FrameProblem
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
 
@@ -22,7 +23,10 @@ class Eye(Protocol):
 
 
 class StageCamera:
-    """A UsdGeomCamera, whatever it does over time; what the picture is wider or taller by is added around its view."""
+    """A UsdGeomCamera, whatever it does over time; what the picture is wider or taller by is added around its view.
+
+    Gives Fault where there is none, or where it can see nothing.
+    """
 
     def __init__(self, stage: Usd.Stage, path: str, aspect: float):
         prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
@@ -32,12 +36,31 @@ class StageCamera:
         self._camera, self._aspect = UsdGeom.Camera(prim), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:
-        frustum = self._camera.GetCamera(time).frustum
+        own = self._camera.GetCamera(time)
+        fault = _blindness(own)
+        if fault:
+            raise Fault(f"camera {self._camera.GetPath()}: {fault}")
+        frustum = own.frustum
         window, seen = frustum.GetWindow(), frustum.ComputeAspectRatio()
         wider, taller = max(1.0, self._aspect / seen), max(1.0, seen / self._aspect)
         half = Gf.CompMult(window.GetSize() / 2, Gf.Vec2d(wider, taller))
         frustum.SetWindow(Gf.Range2d(window.GetMidpoint() - half, window.GetMidpoint() + half))
         return Camera(np.array(frustum.ComputeViewMatrix()), np.array(frustum.ComputeProjectionMatrix()))
+
+
+def _blindness(camera: Gf.Camera) -> str | None:
+    """Why a camera sees nothing; None where it does."""
+    flat = camera.projection == Gf.Camera.Orthographic
+    lengths = ("horizontalAperture", "verticalAperture", *([] if flat else ["focalLength"]))
+    for name in lengths:
+        length = getattr(camera, name)
+        if not (length > 0 and math.isfinite(length)):
+            return f"{name} is {length:g}; it must be above 0"
+    near, far = camera.clippingRange.min, camera.clippingRange.max
+    if not (near < far and math.isfinite(far - near) and (flat or near > 0)):
+        return f"clippingRange is ({near:g}, {far:g}); it must ascend{'' if flat else ', from above 0'}"
+    size = abs(camera.transform.GetDeterminant3())
+    return None if size > 0 and math.isfinite(size) else "its transform to the world has no inverse"
 
 
 class ShotCamera:
@@ -63,8 +86,11 @@ class FollowingCamera:
 
 
 def to_world(mesh: SlidMesh, time: Usd.TimeCode) -> np.ndarray:
-    """The way of a mesh to the world, (4, 4)."""
-    return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
+    """The way of a mesh to the world, (4, 4). Raises FrameProblem."""
+    matrix = np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
+    if not np.isfinite(matrix).all():
+        raise FrameProblem(mesh.problem("its transform to the world is not finite", time))
+    return matrix
 
 
 def _framed(mesh: SlidMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:

@@ -37,18 +37,24 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _state(arguments: argparse.Namespace) -> tuple | None:
     """Tells whether there is another file at the output than before."""
     try:
-        found = os.stat(arguments.output)
-    except (AttributeError, OSError, ValueError):  # the command has no output, or there is nothing yet
+        found = os.stat(_file(arguments))
+    except (TypeError, OSError, ValueError):  # the command has no output, or there is nothing yet
         return None
     return found.st_dev, found.st_ino, found.st_mtime_ns, found.st_size
 
 
 def _outcome(arguments: argparse.Namespace, before: tuple | None) -> str:
-    if hasattr(arguments, "folder"):
-        return f"; every map in {arguments.folder} is whole"
-    if not hasattr(arguments, "output"):
+    if getattr(arguments, "folder", None):
+        return f"; every file in {arguments.folder} is whole"
+    file = _file(arguments)
+    if not file:
         return ""
-    return "; nothing was written" if _state(arguments) == before else f" after {arguments.output} was written"
+    return "; nothing was written" if _state(arguments) == before else f" after {file} was written"
+
+
+def _file(arguments: argparse.Namespace) -> str | None:
+    """The one file that a command writes, unless it fills a folder."""
+    return getattr(arguments, "output", None) or getattr(arguments, "html", None)
 
 
 def _bake(arguments: argparse.Namespace) -> Result:

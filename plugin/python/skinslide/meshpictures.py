@@ -65,6 +65,7 @@ class MeshPictures:
         self._options, self._wanted = options, wanted
         self.problems: list[Problem] = []
         self._series = [made for made in map(self._make_series, range(len(self._slider.patches))) if made]
+        self._look()
         if errors(self.problems):
             raise StageProblems(self.problems)
         mesh, count = self._mesh, len(self._series) * len(options.views)
@@ -94,6 +95,22 @@ class MeshPictures:
             message = f"{flat} faces are drawn flat: OpenSubdiv before 3.5.1 cannot subdivide them"
             self.problems.append(Problem("warning", self._mesh.path, name, None, message))
         return series
+
+    def _look(self) -> None:
+        """Finds whether a camera of the stage sees at every time; all series have the same."""
+        for time in self._times if self._options.camera is not None and self._series else ():
+            try:
+                self._series[0].moment(time)
+            except FrameProblem as bad:
+                self.problems.append(bad.problem)
+                return
+
+    def files(self) -> Iterator[tuple[list[str], float | None]]:
+        """The words and the frame of every picture's name."""
+        for time in self._times[: self.frame_count]:
+            for series in self._series:
+                for view in self._options.views:
+                    yield [*self._words(series), view], frame_of(time)
 
     def run(
         self, canvases: Canvases[Canvas], pool: ThreadPoolExecutor, jobs: int

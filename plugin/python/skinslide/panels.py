@@ -47,7 +47,7 @@ def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_
 def write_scale(pixels: np.ndarray, highest: float, place: Viewport) -> None:
     """Puts the scale of stretch, from none to `highest`, into the lower left corner of a part of a picture."""
     font = font_of(place.height)
-    pad, wide, tall = round(font.size * _GAP), round(place.height * 0.34), round(font.size * 0.7)
+    pad, wide, tall = round(font.size * _GAP), max(2, round(place.height * 0.34)), round(font.size * 0.7)
     card = Image.new("RGBA", (wide + 4 * pad, round(font.size * 3.2) + tall), _SHADE)
     draw = ImageDraw.Draw(card)
     for x in range(wide):

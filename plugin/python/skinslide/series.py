@@ -13,12 +13,12 @@ from skinslide import panels
 from skinslide.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
 from skinslide.coordinates import read_coordinates
 from skinslide.meshes import SlidMesh
-from skinslide.options import PictureOptions
+from skinslide.options import MOST, PictureOptions
 from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation
 from skinslide.plan import frame_of
-from skinslide.problems import Fault, frame_text
+from skinslide.problems import Fault, FrameProblem, frame_text
 from skinslide.report import PatchReport
-from skinslide.slider import Slider
+from skinslide.slider import Slider, SliderError
 from skinslide.subdivision import read_subdivision
 
 _SQUARES = 16  # of the chequer, across a patch
@@ -71,9 +71,14 @@ class Series:
         )
 
     def moment(self, time: Usd.TimeCode) -> Moment:
+        """Raises FrameProblem where the patch cannot be seen."""
         frame = frame_of(time)
         title = "" if frame is None else f"frame {frame_text(frame)}"
-        return Moment(title, self.eye.camera(time), to_world(self.mesh, time))
+        place = to_world(self.mesh, time)
+        try:
+            return Moment(title, self.eye.camera(time), place)
+        except (Fault, SliderError) as fault:
+            raise FrameProblem(self.mesh.problem(str(fault), time, self.label)) from fault
 
     def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
         """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
@@ -114,8 +119,8 @@ def _st_of(mesh: SlidMesh, asked: str | None) -> np.ndarray | None:
 def _suitable_squares(mesh: SlidMesh, faces: np.ndarray, st: np.ndarray | None) -> float:
     inside = np.repeat(np.isin(np.arange(mesh.topology.face_count), faces), mesh.face_counts)
     places = mesh.rest_points[mesh.face_indices[inside]] if st is None else st[inside]
-    extent = float(np.ptp(places, axis=0).max())
-    return _SQUARES / extent if extent > 0 else 1.0
+    extent = float(np.ptp(places.astype(np.float64), axis=0).max())
+    return min(_SQUARES / extent, MOST) if extent > 0 else 1.0
 
 
 def _eye(mesh: SlidMesh, faces: np.ndarray, options: PictureOptions, columns: int) -> Eye:
