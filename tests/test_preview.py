@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -481,6 +482,41 @@ def test_a_folder_that_cannot_be(shot, tmp_path, capfd):
     for folder, code in ((tmp_path / "file", 2), (tmp_path / "file" / "below", 2), ("/proc/none", 1)):
         assert main(["preview", str(shot), "-o", str(folder)]) == code
         assert f"output {folder}: " in capfd.readouterr().err
+
+
+def test_a_folder_without_a_name(shot, tmp_path, capfd, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for words in (["preview", "--size", "64x32"], ["maps", "--size", "8"]):
+        assert main([*words, str(shot), "-o", ""]) == 2
+        assert capfd.readouterr().err == "error: output: the name of the folder is empty\n"
+    assert os.listdir(tmp_path) == [shot.name]
+
+
+def test_a_link_to_a_folder_that_is_not_there_yet(shot, tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "disk" / "pictures")
+    draw(shot, tmp_path / "link", frames="1003")
+    assert picture(tmp_path / "disk" / "pictures").shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_a_page_in_the_folder_of_the_pictures(shot, tmp_path):
+    """Which is made for both."""
+    draw(shot, tmp_path / "out", frames="1003", html=tmp_path / "out" / "page.html")
+    assert sorted(os.listdir(tmp_path / "out")) == ["contact_sheet.png", "page.html", f"{NAME}.chequer.1003.png"]
+
+
+def test_a_name_that_is_too_long(tmp_path, capfd):
+    """For a file of a folder that is not there yet."""
+    stage, _mesh = sheet()
+    path = f"{stages.MESH}{'x' * 250}"
+    other = stages.add_mesh(stage, stages.grid(), path)
+    stages.add_patch(other, stages.grid().all_faces)
+    add_st(other, stages.grid())
+    shot, out = str(stages.save(stage, tmp_path / "shot.usda")), tmp_path / "out"
+    for words in (["preview", "--size", "64x32"], ["maps", "--size", "8"]):
+        assert main([*words, shot, "-o", str(out)]) == 2
+        said = capfd.readouterr().err
+        assert said.startswith(f"error: output {out / Path(path).name}.") and said.endswith("the name is too long\n")
+    assert not out.exists()
 
 
 def test_an_unwritable_folder(public_folder, capfd):

@@ -21,22 +21,27 @@ from skinslide.problems import StageError, usd_message
 _ABANDONED = 24 * 60 * 60  # seconds
 
 
-def check_output(output: Path, extensions: Sequence[str]) -> None:
-    """Raises UsageError for an output that cannot be, before any work is done."""
+def check_output(output: Path, extensions: Sequence[str], made: Path | None = None) -> None:
+    """Raises UsageError for an output that cannot be, before any work is done.
+
+    made  a folder that will be made, where it is missing, before the output is written
+    """
     if output.suffix.lower() not in extensions:
         raise UsageError(f"output {output}: the name must end in {', '.join(extensions)}")
     try:
-        fault = _fault(output)
+        fault = _fault(output, made)
     except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
         fault = getattr(error, "strerror", None) or str(error)
     if fault:
         raise UsageError(f"output {output}: {fault}")
 
 
-def _fault(output: Path) -> str | None:
+def _fault(output: Path, made: Path | None) -> str | None:
     """Why a file cannot be put at the output."""
     target = output.resolve()  # what a link leads to is what is replaced
     folder = target.parent
+    if made and folder == made.resolve():
+        folder = nearest_folder(folder)
     if target.suffix.lower() != output.suffix.lower():
         return f"is a link to {target}, whose name says that it is in another format"
     if not folder.is_dir():
@@ -51,6 +56,14 @@ def _fault(output: Path) -> str | None:
     if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
         return "is not writable"
     return None
+
+
+def nearest_folder(folder: Path) -> Path:
+    """The folder itself, or the nearest above it that is there; else what is there in its place."""
+    nearest = folder.resolve()
+    while not nearest.exists():
+        nearest = nearest.parent
+    return nearest
 
 
 def partial_name(output: Path, token: str = 8 * "0") -> str:

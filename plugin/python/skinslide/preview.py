@@ -132,10 +132,10 @@ class _Place(NamedTuple):
         stage_path: str | os.PathLike | None,
     ) -> _Place:
         """Raises UsageError and StageProblems for what cannot be written."""
-        files = None if folder is None else OutputFolder(Path(folder), stage, stage_path)
+        files = None if folder is None else OutputFolder(folder, stage, stage_path)
         page = None if html is None else Path(html)
         if page:
-            check_output(page, (".html", ".htm"))
+            check_output(page, (".html", ".htm"), made=files and files.folder)
             check_not_input(page, stage, *([] if stage_path is None else [stage_path]))
             _check_clock(stage)
         return cls(files, page)
