@@ -133,6 +133,7 @@ class _MeshBake:
         self._limits = {"folded_faces": options.max_folded, "clamped_vertices": options.max_clamped}
         self._in_flight = options.jobs + 1  # one is read while the others are slid
         self._diagnostics = options.diagnostics
+        self._blocked = _indices(mesh) if options.diagnostics else []
 
     def run(self, times: list[Usd.TimeCode], overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Authors the mesh at `times`, ascending; yields each once it is done."""
@@ -147,7 +148,7 @@ class _MeshBake:
             yield time
             for old in [other for other in solved if last_use[other] <= index]:
                 del solved[old]
-        for attribute in self.derived.blocked:
+        for attribute in [*self.derived.blocked, *self._blocked]:
             overs.block(attribute)
 
     def _read(self, time: Usd.TimeCode) -> Callable[[], Solved]:
@@ -181,6 +182,12 @@ class _MeshBake:
                 if most is not None and count > most:
                     message = f"{count} {field.replace('_', ' ')}, where at most {most} are allowed"
                     raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
+
+
+def _indices(mesh: SlidMesh) -> list[Usd.Attribute]:
+    """Those of primvars that the stage has under these names: they would choose among the values that are written."""
+    primvars = [UsdGeom.Primvar(mesh.prim.GetAttribute(name)) for name in DIAGNOSTICS if mesh.prim.HasAttribute(name)]
+    return [primvar.GetIndicesAttr() for primvar in primvars if primvar.IsIndexed()]
 
 
 def _hidden(meshes: list[PlannedMesh], target: Sdf.Layer) -> Iterator[Problem]:
