@@ -304,6 +304,19 @@ def test_a_primvar_of_another_type(baker, tmp_path):
     bake_to_file(shot, tmp_path / "out.usda")
 
 
+@pytest.mark.parametrize("what", ["a relationship", "of elementSize 3"])
+def test_what_no_primvar_can_be_written_over(what, tmp_path):
+    stage, mesh = edited("root")
+    if what == "a relationship":
+        mesh.GetPrim().CreateRelationship(SLIDE)
+    else:
+        UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("skinSlide:slide", Types.FloatArray, "vertex", 3).Set([0.5] * 147)
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    with pytest.raises(StageProblems, match=f"{MESH}: {SLIDE} is {what}; a bake with diagnostics writes"):
+        bake_to_file(shot, tmp_path / "out.usda", diagnostics=True)
+    assert not (tmp_path / "out.usda").exists()
+
+
 def test_through_a_skinslide_file(tmp_path):
     """Baked from one, and into the session above its text, again and again."""
     stage, _mesh = stages.patched_stage()

@@ -205,12 +205,22 @@ def _check_primvars(plan: Plan) -> None:
     found = []
     for mesh, _slider, _times in plan.meshes if plan.options.diagnostics else []:
         for name in DIAGNOSTICS:
-            attr = mesh.prim.GetAttribute(name)
-            if attr and attr.GetTypeName() != Sdf.ValueTypeNames.FloatArray:
-                message = f"{name} is {attr.GetTypeName()}; a bake with diagnostics writes float[] there"
+            other = _what_else(mesh.prim.GetProperty(name)) if mesh.prim.HasProperty(name) else None
+            if other:
+                message = f"{name} is {other}; a bake with diagnostics writes float[] there, one a vertex"
                 found.append(Problem("error", mesh.path, None, None, message))
     if found:
         raise StageProblems(found)
+
+
+def _what_else(found: Usd.Property) -> str | None:
+    """What a property is, other than a primvar of a float for each element."""
+    if not isinstance(found, Usd.Attribute):
+        return "a relationship"
+    if found.GetTypeName() != Sdf.ValueTypeNames.FloatArray:
+        return str(found.GetTypeName())
+    size = UsdGeom.Primvar(found).GetElementSize()
+    return None if size == 1 else f"of elementSize {size}"
 
 
 def _check_target(target: Usd.EditTarget, plan: Plan) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -12,6 +13,7 @@ from pxr import Gf, Usd, UsdGeom
 from skinslide.meshes import SlidMesh
 from skinslide.pictures import Camera, Shape, frame_faces
 from skinslide.problems import Fault, FrameProblem
+from skinslide.slider import SliderError
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
 
@@ -94,8 +96,15 @@ def to_world(mesh: SlidMesh, time: Usd.TimeCode) -> np.ndarray:
 
 
 def _framed(mesh: SlidMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:
+    """Raises FrameProblem for a pose that cannot be, and SliderError where no camera sees them."""
     up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
     poses = [mesh.points_at(time) for time in times]
     matrices = np.array([to_world(mesh, time) for time in times])
     shape = Shape(mesh.face_counts, mesh.face_indices)
-    return frame_faces(shape, faces, poses, matrices, up, aspect, left_handed=mesh.left_handed)
+    try:
+        return frame_faces(shape, faces, poses, matrices, up, aspect, left_handed=mesh.left_handed)
+    except SliderError as error:
+        pose = re.match(r"pose (\d+): ", str(error))
+        if not pose:
+            raise
+        raise FrameProblem(mesh.problem(str(error)[pose.end() :], times[int(pose[1])])) from error
