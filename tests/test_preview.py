@@ -394,10 +394,12 @@ def test_texture_coordinates_of_any_extent(extent, tmp_path):
         assert draw(stage, tmp_path, frames="1002", squares=None).pictures == 1
 
 
+@pytest.mark.parametrize("name", ["st", "uv2"])
 @pytest.mark.parametrize("fault", ["short", "index", "nan"])
-def test_bad_texture_coordinates(fault, tmp_path, capfd):
-    stage, mesh = sheet()
-    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st")
+def test_bad_texture_coordinates(fault, name, tmp_path, capfd):
+    stage, mesh = sheet(st=False)
+    add_st(mesh, stages.grid(24, 24), name)
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar(name)
     values = np.array(primvar.Get())
     if fault == "short":
         primvar.Set(Vt.Vec2fArray.FromNumpy(values[:-1]))
@@ -406,10 +408,11 @@ def test_bad_texture_coordinates(fault, tmp_path, capfd):
         primvar.Set(Vt.Vec2fArray.FromNumpy(values))
     else:
         primvar.SetIndices(Vt.IntArray.FromNumpy(np.full(len(values), len(values), np.int32)))
+    words = [] if name == "st" else ["--st", name]
     path = str(stages.save(stage, tmp_path / "shot.usda"))
-    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x64"]) == 3
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x64", *words]) == 3
     said = capfd.readouterr().err
-    assert f"error: {stages.MESH}: patch {PATCH}: " in said and "st" in said
+    assert f"error: {stages.MESH}: patch {PATCH}: primvars:{name}" in said
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
 
@@ -454,6 +457,17 @@ def test_a_stage_that_cannot_be_played_has_no_page(rate, tmp_path, capfd):
     assert f"error: the stage has {rate:g} time codes per second" in capfd.readouterr().err
     assert not (tmp_path / "out").exists() and not (tmp_path / "page.html").exists()
     assert main(["preview", path, *words]) == 0
+
+
+@pytest.mark.parametrize("size", [None, 64, (64, 32, 3), "64x32"])
+def test_what_is_no_size(size, shot, tmp_path):
+    with pytest.raises(skinslide.UsageError, match=r"size is .*; it must be a width and a height"):
+        draw(shot, tmp_path / "out", size=size)
+
+
+def test_a_camera_by_a_path_of_usd(tmp_path):
+    draw(camera_stage(), tmp_path, camera=Sdf.Path("/World/cam"), frames="1001")
+    assert contrast(halves(picture(tmp_path, frame="1001"))[0]) > 100
 
 
 def test_no_views(shot, tmp_path):

@@ -84,11 +84,11 @@ class PictureOptions:
         """Raises UsageError for what cannot be."""
         if camera is not None and follow:
             raise UsageError("a camera of the stage does not follow a patch: give one or the other")
-        width, height = size
+        width, height = _pair("size", size)
         return cls(
             patches=listed(patches),
             views=_views(views),
-            camera=camera,
+            camera=None if camera is None else str(camera),
             follow=bool(follow),
             width=whole_number("width", width, 2),
             height=whole_number("height", height, 1),
@@ -97,6 +97,14 @@ class PictureOptions:
             squares=None if squares is None else _positive("squares", squares),
             most_stretch=_positive("most_stretch", most_stretch),
         )
+
+
+def _pair(name: str, pair: Sequence[int]) -> tuple[int, int]:
+    try:
+        first, second = pair
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {pair!r}; it must be a width and a height") from error
+    return first, second
 
 
 def _views(asked: Sequence[str] | str) -> list[str]:

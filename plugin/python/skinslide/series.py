@@ -21,6 +21,7 @@ from skinslide.report import PatchReport
 from skinslide.slider import Slider, SliderError
 from skinslide.subdivision import read_subdivision
 
+_ST = "st"
 _SQUARES = 16  # of the chequer, across a patch
 
 
@@ -60,11 +61,17 @@ class Series:
         st = _st_of(mesh, options.st)
         shape = Shape(mesh.face_counts, mesh.face_indices)
         subdivision = read_subdivision(UsdGeom.Mesh(mesh.prim))
+        try:
+            tessellation = Tessellation(shape, mesh.rest_points, st, faces, subdivision)
+        except SliderError as error:
+            if error.status == "BAD_CONTROL":  # st
+                raise Fault(f"primvars:{options.st or _ST}: {error}") from error
+            raise
         return cls(
             mesh,
             place,
             PatchReport(slider.patches[place]).label,
-            Tessellation(shape, mesh.rest_points, st, faces, subdivision),
+            tessellation,
             _eye(mesh, faces, options, columns),
             options.squares or _suitable_squares(mesh, faces, st),
             bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get()),
@@ -108,7 +115,7 @@ class Series:
 
 def _st_of(mesh: SlidMesh, asked: str | None) -> np.ndarray | None:
     """Texture coordinates for the chequer; None where there are none and none were asked for."""
-    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(asked or "st")
+    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(asked or _ST)
     if primvar and primvar.HasAuthoredValue():
         return read_coordinates(primvar, Usd.TimeCode.EarliestTime(), mesh.topology)
     if asked:
