@@ -191,6 +191,29 @@ def test_a_cache_without_samples_has_one_picture(tmp_path):
     assert [os.path.basename(file) for file in report.files] == [f"{NAME}.chequer.png", "contact_sheet.png"]
 
 
+def test_what_is_kept_for_a_sheet_is_small(shot, tmp_path, monkeypatch):
+    """Of each patch and view some pictures are kept to the end: in far less than their pixels would take."""
+    kept = []
+    module = sys.modules["skinslide.preview"]  # skinslide.preview is the function
+    monkeypatch.setattr(module, "contact_sheets", lambda strips: kept.extend(strips) or [])
+    draw(shot, tmp_path, views=("chequer", "stretch"))
+    assert [len(strip) for strip in kept] == [len(FRAMES)] * 2
+    assert sum(len(file) for strip in kept for file in strip) < 0.25 * 6 * 3 * SIZE[0] * SIZE[1]
+
+
+def test_a_contact_sheet_has_a_row_of_each_view(shot, tmp_path):
+    """Thumbnails are as wide as these pictures: each stands there as it is."""
+    draw(shot, tmp_path, views=("chequer", "stretch"))
+    with Image.open(tmp_path / "contact_sheet.png") as image:
+        found = np.array(image)
+    (width, height), margin = SIZE, 12
+    for row, view in enumerate(("chequer", "stretch")):
+        for column, frame in enumerate(("1001", "1002", "1003")):
+            top, left = margin + row * (height + margin), margin + column * (width + margin)
+            part = found[top : top + height, left : left + width]
+            np.testing.assert_array_equal(part, picture(tmp_path, view, frame))
+
+
 def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
     for folder, options in {"all": {"jobs": 3}, "one": {"jobs": 1}, "alone": {"frames": "1003"}}.items():
         draw(shot, tmp_path / folder, views=("chequer", "stretch"), **options)

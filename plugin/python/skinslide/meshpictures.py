@@ -7,7 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
-from PIL import Image
 from pxr import Sdf, Usd
 
 from skinslide import panels
@@ -45,7 +44,7 @@ class _Encoded(NamedTuple):
     """A picture as it is wanted."""
 
     file: bytes | None
-    thumbnail: Image.Image | None
+    thumbnail: bytes | None
     jpeg: bytes | None
 
 
@@ -70,7 +69,7 @@ class MeshPictures:
             raise StageProblems(self.problems)
         mesh, count = self._mesh, len(self._series) * len(options.views)
         self.report = MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, self._slider.patches)
-        self.thumbnails: list[list[Image.Image]] = [[] for _ in range(count)]  # a strip for each series and view
+        self.thumbnails: list[list[bytes]] = [[] for _ in range(count)]  # a strip for each series and view
         self._jpegs: list[list[bytes]] = [[] for _ in range(count)]
 
     @property
