@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from pxr import Gf, Sdf, Usd, UsdGeom, Vt
+from pxr import Gf, Sdf, Ts, Usd, UsdGeom, Vt
 from scipy import ndimage
 
 import skinslide
@@ -212,6 +212,22 @@ def test_a_contact_sheet_has_a_row_of_each_view(shot, tmp_path):
             top, left = margin + row * (height + margin), margin + column * (width + margin)
             part = found[top : top + height, left : left + width]
             np.testing.assert_array_equal(part, picture(tmp_path, view, frame))
+
+
+def test_a_spline_without_knots_is_no_sample(tmp_path):
+    """It might vary, for all that USD says, but gives no frame: a bake and maps have one value, pictures one frame."""
+    stage, mesh = sheet()
+    mesh.GetPointsAttr().Set(mesh.GetPointsAttr().Get(1003.0))
+    for frame in FRAMES:
+        mesh.GetPointsAttr().ClearAtTime(frame)
+    mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(Ts.Spline("float"))
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    for report in (
+        draw(shot, tmp_path / "out"),
+        skinslide.maps(shot, tmp_path / "out", size=16),
+        skinslide.bake_to_file(shot, tmp_path / "slid.usda"),
+    ):
+        assert report.meshes[0].patches[0].frames == [None]
 
 
 def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
