@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 
@@ -43,6 +44,21 @@ class OutputFolder:
         if self.folder.is_dir() or not self.folder.exists():  # else making the folder fails, and says why
             check_output(output, [output.suffix], made=self.folder)
             self._inputs.refuse(output)
+
+    def check_all(self, outputs: Iterable[Path]) -> None:
+        """`check` of files that may be very many: those that are there already, and the one with the longest name."""
+        there: set[str] = set()
+        with suppress(OSError):  # nothing there yet, or nothing to be seen
+            there.update(os.listdir(self.folder))
+        longest: tuple[int, Path] | None = None
+        for output in outputs:
+            if output.name in there:
+                self.check(output)
+            length = len(os.fsencode(output.name))
+            if longest is None or length > longest[0]:
+                longest = length, output
+        if longest:
+            self.check(longest[1])
 
     def write(self, output: Path, data: bytes) -> None:
         """Raises UsageError, StageError; the file is then as it was."""

@@ -11,6 +11,7 @@ a contact sheet of some frames of each series, and a page of all
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import time
@@ -182,10 +183,9 @@ class _Shot:
         folder = self.place.folder
         if not folder:
             return
-        folder.check(folder.folder / _sheet_name(0))
-        for mesh in self.meshes:
-            for words, frame in mesh.files():
-                folder.check(folder.path(mesh.path, words, frame, form))
+        names = ((mesh.path, words, frame) for mesh in self.meshes for words, frame in mesh.files())
+        pictures = (folder.path(path, words, frame, form) for path, words, frame in names)
+        folder.check_all(itertools.chain([folder.folder / _sheet_name(0)], pictures))
 
     def draw(self, stage: Usd.Stage, canvases: Canvases[Canvas], progress: Progress | None) -> PreviewReport:
         """Draws every mesh, then what is made of all pictures."""
