@@ -66,7 +66,7 @@ static const char surface_vertex[] = "#version 300 es\n"
 static const char chequer_fragment[] = SURFACE_FRAGMENT(
     "uniform vec2 scale;\n"
     "vec3 base() {\n"
-    "    vec3 p = coordinates * scale.x + 0.317 * scale.y, w = max(fwidth(p), 1e-4);\n"
+    "    vec3 p = clamp(coordinates * scale.x + 0.317 * scale.y, -1e30, 1e30), w = max(fwidth(p), 1e-4);\n"
     "    vec3 mean = 2.0 * (abs(fract(0.5 * (p - 0.5 * w)) - 0.5) - abs(fract(0.5 * (p + 0.5 * w)) - 0.5)) / w;\n"
     "    float share = 0.5 - 0.5 * mean.x * mean.y * mix(1.0, mean.z, scale.y);\n"
     "    return mix(mix(vec3(0.045, 0.055, 0.09), vec3(0.78, 0.74, 0.68), share), plain, 0.7 * (1.0 - inside));\n"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -203,8 +204,11 @@ const int32_t *list_starts(const skinslide_mesh &mesh, ss_memory *scratch) {
 
 skinslide_status check_poses(const skinslide_subject &own, skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
-    for (int32_t pose = 0; pose < own.pose_count && !status; pose++)
-        status = ss_check_points(own.poses[pose], own.mesh->vertex_count, "points", error);
+    char what[32];
+    for (int32_t pose = 0; pose < own.pose_count && !status; pose++) {
+        std::snprintf(what, sizeof what, "pose %d: points", pose);
+        status = ss_check_points(own.poses[pose], own.mesh->vertex_count, what, error);
+    }
     for (int32_t pose = 0; pose < own.pose_count && own.to_world && !status; pose++)
         if (!all_finite(own.to_world + 16 * int64_t(pose), 16))
             status = ss_fail(error, SKINSLIDE_BAD_POINTS, "pose %d: its way to the world is not finite", pose);

@@ -16,7 +16,7 @@ from pxr import Usd
 from skinslide.meshes import SlidMesh, read_meshes
 from skinslide.options import PictureOptions
 from skinslide.pictures import Canvas
-from skinslide.series import Column, Series
+from skinslide.series import Column, Series, Skin
 
 COLUMN, HEIGHT = 480, 480
 MOST_STRETCH = 0.5
@@ -43,7 +43,7 @@ def draw(path: Path, rules: Sequence[str], views: Sequence[str]) -> np.ndarray:
     times = [Usd.TimeCode(time) for time in mesh.sample_times()]
     worst = max(times, key=lambda time: slider.slide(mesh.points_at(time)).patches[0].stretch_before)
     options = PictureOptions.checked(views=views, follow=True, size=size, most_stretch=MOST_STRETCH)
-    series = Series.of(mesh, slider, 0, options, columns=1 + len(rules))
+    series = Series.of(Skin.of(mesh, slider.faces(0), None), slider, 0, options, columns=1 + len(rules))
     canvas, shown = Canvas(*size), columns(mesh, worst, rules)
     rows = [series.draw(canvas, view, series.moment(worst), shown, MOST_STRETCH) for view in views]
     return np.concatenate(rows)[..., :3]

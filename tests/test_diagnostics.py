@@ -227,6 +227,50 @@ def test_a_primvar_of_that_name_comes_back(where):
     assert primvar.GetInterpolation() == "uniform" and list(primvar.Get(FRAMES[1])) == [0.5] * 36
 
 
+def indexed_stage() -> tuple[Usd.Stage, UsdGeom.Mesh]:
+    """A cache that has stretch of its own, one value for all faces, by index."""
+    stage, mesh = edited("root")
+    stages.set_primvar(mesh, "skinSlide:stretch", Types.FloatArray, "uniform", [0.5])
+    UsdGeom.PrimvarsAPI(mesh).GetPrimvar("skinSlide:stretch").SetIndices([0] * 36)
+    return stage, mesh
+
+
+def assert_by_vertex(mesh: UsdGeom.Mesh) -> None:
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("skinSlide:stretch")
+    for frame in FRAMES:
+        assert len(primvar.ComputeFlattened(frame)) == 49
+        assert list(primvar.ComputeFlattened(frame)) == list(mesh.GetPrim().GetAttribute(STRETCH).Get(frame))
+
+
+@pytest.mark.parametrize("where", PLACES)
+def test_indices_of_a_primvar_of_that_name(where):
+    """They would choose among the values that the bake writes, so they go with what they chose from, and come back."""
+    stage, mesh = indexed_stage()
+    if where == "session":
+        stage.SetEditTarget(stage.GetSessionLayer())
+    bake(stage, diagnostics=True)
+    assert_by_vertex(mesh)
+    bake(stage, diagnostics=True)
+    assert_by_vertex(mesh)
+    bake(stage)
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("skinSlide:stretch")
+    assert list(primvar.ComputeFlattened(FRAMES[1])) == [0.5] * 36
+
+
+def test_indices_of_a_primvar_of_that_name_below_a_layer(tmp_path):
+    """In one bake, and in chunks that are stitched."""
+    stage, _mesh = indexed_stage()
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    bake_to_file(shot, tmp_path / "whole.usda", diagnostics=True)
+    for chunk, frames in ("a", "1001"), ("b", "1002-1003"):
+        bake_to_file(shot, tmp_path / f"{chunk}.usda", diagnostics=True, frames=frames)
+    stitch([tmp_path / "a.usda", tmp_path / "b.usda"], tmp_path / "stitched.usda")
+    assert (tmp_path / "whole.usda").read_bytes() == (tmp_path / "stitched.usda").read_bytes()
+    opened = Usd.Stage.Open(str(shot))
+    opened.GetSessionLayer().subLayerPaths.append(str(tmp_path / "whole.usda"))
+    assert_by_vertex(UsdGeom.Mesh(opened.GetPrimAtPath(MESH)))
+
+
 @pytest.mark.parametrize("where", PLACES)
 @pytest.mark.parametrize("baked", [False, True])
 def test_a_bake_that_fails_leaves_nothing(where, baked, monkeypatch):
@@ -258,6 +302,19 @@ def test_a_primvar_of_another_type(baker, tmp_path):
             bake(stage, diagnostics=True)
     assert texts(stage) == before and not (tmp_path / "out.usda").exists()
     bake_to_file(shot, tmp_path / "out.usda")
+
+
+@pytest.mark.parametrize("what", ["a relationship", "of elementSize 3"])
+def test_what_no_primvar_can_be_written_over(what, tmp_path):
+    stage, mesh = edited("root")
+    if what == "a relationship":
+        mesh.GetPrim().CreateRelationship(SLIDE)
+    else:
+        UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("skinSlide:slide", Types.FloatArray, "vertex", 3).Set([0.5] * 147)
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    with pytest.raises(StageProblems, match=f"{MESH}: {SLIDE} is {what}; a bake with diagnostics writes"):
+        bake_to_file(shot, tmp_path / "out.usda", diagnostics=True)
+    assert not (tmp_path / "out.usda").exists()
 
 
 def test_through_a_skinslide_file(tmp_path):

@@ -569,6 +569,15 @@ def test_no_stretch_is_no_change(show, report):
         assert read_axis(shown, chart, "y")[1][[0, -1]].tolist() == [0, 1]
 
 
+def test_frames_as_far_apart_as_numbers_go(show, report):
+    patch = longer(report.meshes[0].patches[0], [-1.5e308, 0.0, 1.5e308])
+    shown = show([strip(SHEET, patch)])
+    for line in shown.all("polyline"):
+        x = [float(pair.split(",")[0]) for pair in line.get_attribute("points").split()]
+        assert x[0] < x[1] < x[2] and x[2] - x[1] == pytest.approx(x[1] - x[0])
+    assert [tick.text for tick in shown.all(".chart:first-child .x.tick text")] == ["-1.5e+308", "1.5e+308"]
+
+
 def test_no_patches(show):
     warned = BakeReport([Problem("warning", "", None, None, "there is no mesh with a patch")])
     shown = show([], warned)

@@ -3,16 +3,18 @@
 import importlib.util
 import io
 import json
+import math
 import os
 import subprocess
 import sys
 import textwrap
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from pxr import Gf, Sdf, Usd, UsdGeom, Vt
+from pxr import Gf, Sdf, Ts, Usd, UsdGeom, Vt
 from scipy import ndimage
 
 import skinslide
@@ -192,6 +194,45 @@ def test_a_cache_without_samples_has_one_picture(tmp_path):
     assert [os.path.basename(file) for file in report.files] == [f"{NAME}.chequer.png", "contact_sheet.png"]
 
 
+def test_what_is_kept_for_a_sheet_is_small(shot, tmp_path, monkeypatch):
+    """Of each patch and view some pictures are kept to the end: in far less than their pixels would take."""
+    kept = []
+    module = sys.modules["skinslide.preview"]  # skinslide.preview is the function
+    monkeypatch.setattr(module, "contact_sheets", lambda strips: kept.extend(strips) or [])
+    draw(shot, tmp_path, views=("chequer", "stretch"))
+    assert [len(strip) for strip in kept] == [len(FRAMES)] * 2
+    assert sum(len(file) for strip in kept for file in strip) < 0.25 * 6 * 3 * SIZE[0] * SIZE[1]
+
+
+def test_a_contact_sheet_has_a_row_of_each_view(shot, tmp_path):
+    """Thumbnails are as wide as these pictures: each stands there as it is."""
+    draw(shot, tmp_path, views=("chequer", "stretch"))
+    with Image.open(tmp_path / "contact_sheet.png") as image:
+        found = np.array(image)
+    (width, height), margin = SIZE, 12
+    for row, view in enumerate(("chequer", "stretch")):
+        for column, frame in enumerate(("1001", "1002", "1003")):
+            top, left = margin + row * (height + margin), margin + column * (width + margin)
+            part = found[top : top + height, left : left + width]
+            np.testing.assert_array_equal(part, picture(tmp_path, view, frame))
+
+
+def test_a_spline_without_knots_is_no_sample(tmp_path):
+    """It might vary, for all that USD says, but gives no frame: a bake and maps have one value, pictures one frame."""
+    stage, mesh = sheet()
+    mesh.GetPointsAttr().Set(mesh.GetPointsAttr().Get(1003.0))
+    for frame in FRAMES:
+        mesh.GetPointsAttr().ClearAtTime(frame)
+    mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(Ts.Spline("float"))
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    for report in (
+        draw(shot, tmp_path / "out"),
+        skinslide.maps(shot, tmp_path / "out", size=16),
+        skinslide.bake_to_file(shot, tmp_path / "slid.usda"),
+    ):
+        assert report.meshes[0].patches[0].frames == [None]
+
+
 def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
     for folder, options in {"all": {"jobs": 3}, "one": {"jobs": 1}, "alone": {"frames": "1003"}}.items():
         draw(shot, tmp_path / folder, views=("chequer", "stretch"), **options)
@@ -200,10 +241,10 @@ def test_pictures_do_not_depend_on_their_neighbours(shot, tmp_path):
         assert len(set(files)) == 1
 
 
-@pytest.mark.parametrize("size", [(2, 1), (64, 3), (3, 64)])
-def test_pictures_too_small_for_what_stands_on_them(size, shot, tmp_path):
-    draw(shot, tmp_path, views="stretch", size=size, frames="1003")
-    assert picture(tmp_path, "stretch").shape == (size[1], size[0], 3)
+@pytest.mark.parametrize("size", [(2, 1), (2, 2), (3, 3), (100, 4), (101, 7), (16384, 2), (2, 2000)])
+def test_pictures_of_any_size(size, shot, tmp_path):
+    report = draw(shot, tmp_path, size=size, views=("chequer", "stretch"), frames="1002", html=tmp_path / "page.html")
+    assert report.pictures == 2 and picture(tmp_path, "stretch", "1002").shape == (size[1], size[0], 3)
 
 
 def test_exr_is_the_same_picture_in_linear_light(shot, tmp_path):
@@ -297,6 +338,94 @@ def test_the_camera_does_not_depend_on_the_frames_drawn(shot, tmp_path):
     assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
+def camera_stage(**values):
+    """A sheet, and a camera that looks at it, with some attributes of its own."""
+    stage, _mesh = sheet()
+    camera = UsdGeom.Camera.Define(stage, "/World/cam")
+    camera.AddTransformOp().Set(values.pop("transform", Gf.Matrix4d().SetTranslate((0, 0, 2))))
+    for name, value in values.items():
+        camera.GetPrim().GetAttribute(name).Set(value)
+    return stage
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"horizontalAperture": 0.0}, "horizontalAperture is 0; it must be above 0"),
+        ({"verticalAperture": -20.0}, "verticalAperture is -20; it must be above 0"),
+        ({"horizontalAperture": math.nan}, "horizontalAperture is nan; it must be above 0"),
+        ({"verticalAperture": math.inf, "projection": "orthographic"}, "verticalAperture is inf; it must be above 0"),
+        ({"focalLength": 0.0}, "focalLength is 0; it must be above 0"),
+        ({"focalLength": math.nan}, "focalLength is nan; it must be above 0"),
+        ({"clippingRange": Gf.Vec2f(0, 100)}, "clippingRange is (0, 100); it must ascend, from above 0"),
+        ({"clippingRange": Gf.Vec2f(100, 1)}, "clippingRange is (100, 1); it must ascend, from above 0"),
+        ({"clippingRange": Gf.Vec2f(1, 1), "projection": "orthographic"}, "clippingRange is (1, 1); it must ascend"),
+        ({"clippingRange": Gf.Vec2f(1, math.inf)}, "clippingRange is (1, inf); it must ascend"),
+        ({"transform": Gf.Matrix4d(math.nan)}, "its transform to the world has no inverse"),
+        ({"transform": Gf.Matrix4d().SetScale((1, 1, 0))}, "its transform to the world has no inverse"),
+    ],
+)  # fmt: skip
+def test_a_camera_that_sees_nothing(values, message, tmp_path, capfd):
+    path = str(stages.save(camera_stage(**values), tmp_path / "shot.usda"))
+    words = ["--camera", "/World/cam", "--size", "64x32", "--frames", "1002"]
+    assert main(["preview", path, "-o", str(tmp_path / "out"), *words]) == 3
+    where = f"error: {stages.MESH}: patch {PATCH}: frame 1002: camera /World/cam: "
+    assert capfd.readouterr().err.startswith(where + message)
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_orthographic_camera_may_see_what_is_behind_it(tmp_path):
+    stage = camera_stage(projection="orthographic", clippingRange=Gf.Vec2f(-10, 10))
+    draw(stage, tmp_path, camera="/World/cam", frames="1001")
+    assert contrast(halves(picture(tmp_path, frame="1001"))[0]) > 100
+
+
+@pytest.mark.parametrize(
+    ("matrix", "message"),
+    [
+        (Gf.Matrix4d(math.nan), "its transform to the world is not finite"),
+        (Gf.Matrix4d(0), "no camera can have the faces in sight"),
+    ],
+)
+@pytest.mark.parametrize("frame", [None, 1001.0, 1003.0])
+def test_a_mesh_that_is_nowhere(frame, matrix, message, tmp_path, capfd):
+    """At all, or at a frame, which the message names."""
+    stage, mesh = sheet()
+    transform = UsdGeom.Xformable(mesh).AddTransformOp()
+    if frame is None:
+        transform.Set(matrix)
+    else:
+        transform.Set(Gf.Matrix4d(1), 1002.0)
+        transform.Set(matrix, frame)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    words = ["--size", "64x32", *([] if frame is None else ["--follow"])]
+    assert main(["preview", path, "-o", str(tmp_path / "out"), *words]) == (3 if frame is None else 1)
+    said = capfd.readouterr().err
+    assert f"error: {stages.MESH}: " in said and message in said
+    assert frame is None or f": frame {frame:g}: " in said
+
+
+def test_a_pose_that_no_camera_of_a_shot_can_have(tmp_path, capfd):
+    stage, mesh = sheet()
+    points = np.array(mesh.GetPointsAttr().Get(1003.0))
+    points[5] = np.nan
+    mesh.GetPointsAttr().Set(stages.vectors(points), 1003.0)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x32"]) == 3
+    assert f"error: {stages.MESH}: frame 1003: points: vertex 5 is not finite" in capfd.readouterr().err
+
+
+def test_a_mesh_that_is_nowhere_at_a_frame_of_the_shot(tmp_path, capfd):
+    """The camera of a shot is framed by all of it."""
+    stage, mesh = sheet()
+    transform = UsdGeom.Xformable(mesh).AddTransformOp()
+    transform.Set(Gf.Matrix4d(1), 1002.0)
+    transform.Set(Gf.Matrix4d(math.nan), 1003.0)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x32", "--frames", "1001"]) == 3
+    assert f"error: {stages.MESH}: frame 1003: its transform to the world is not finite" in capfd.readouterr().err
+
+
 # ---- What the chequer follows ----
 
 
@@ -315,10 +444,23 @@ def test_a_named_primvar_must_be_there(tmp_path, capfd):
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
 
+@pytest.mark.parametrize("extent", [1e-42, 3e38])
+def test_texture_coordinates_of_any_extent(extent, tmp_path):
+    """As far as floats go, the chequer of a patch has squares that a figure may have."""
+    stage, mesh = sheet(st=False)
+    corners = np.repeat(np.sign(stages.grid(24, 24).points[stages.grid(24, 24).indices][:, :1]) * extent, 2, axis=1)
+    kind = Sdf.ValueTypeNames.TexCoord2fArray
+    stages.set_primvar(mesh, "st", kind, "faceVarying", Vt.Vec2fArray.FromNumpy(corners.astype(np.float32)))
+    with warnings.catch_warnings(action="error"):
+        assert draw(stage, tmp_path, frames="1002", squares=None).pictures == 1
+
+
+@pytest.mark.parametrize("name", ["st", "uv2"])
 @pytest.mark.parametrize("fault", ["short", "index", "nan"])
-def test_bad_texture_coordinates(fault, tmp_path, capfd):
-    stage, mesh = sheet()
-    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st")
+def test_bad_texture_coordinates(fault, name, tmp_path, capfd):
+    stage, mesh = sheet(st=False)
+    add_st(mesh, stages.grid(24, 24), name)
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar(name)
     values = np.array(primvar.Get())
     if fault == "short":
         primvar.Set(Vt.Vec2fArray.FromNumpy(values[:-1]))
@@ -327,10 +469,11 @@ def test_bad_texture_coordinates(fault, tmp_path, capfd):
         primvar.Set(Vt.Vec2fArray.FromNumpy(values))
     else:
         primvar.SetIndices(Vt.IntArray.FromNumpy(np.full(len(values), len(values), np.int32)))
+    words = [] if name == "st" else ["--st", name]
     path = str(stages.save(stage, tmp_path / "shot.usda"))
-    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x64"]) == 3
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x64", *words]) == 3
     said = capfd.readouterr().err
-    assert f"error: {stages.MESH}: patch {PATCH}: " in said and "st" in said
+    assert f"error: {stages.MESH}: patch {PATCH}: primvars:{name}" in said
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
 
@@ -353,7 +496,9 @@ def test_the_command_reports(shot, tmp_path, capfd):
         (["--size", "20000x20000"], "20000 by 20000 pixels"),
         (["--size", "ten"], "not a size such as 1920x1080"),
         (["--squares", "-1"], "squares is -1"),
+        (["--squares", "1e39"], "squares is 1e+39"),
         (["--most-stretch", "nan"], "most_stretch is nan"),
+        (["--most-stretch", "1e-38"], "most_stretch is 1e-38"),
         (["--view", "wire"], "invalid choice"),
         (["--st", ""], "st: the name of the primvar with texture coordinates is empty"),
     ],
@@ -362,6 +507,29 @@ def test_usage(words, message, shot, tmp_path, capfd):
     assert main(["preview", str(shot), "-o", str(tmp_path / "out"), *words]) == 2
     assert message in capfd.readouterr().err
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize("rate", [0.0, -24.0, math.nan])
+def test_a_stage_that_cannot_be_played_has_no_page(rate, tmp_path, capfd):
+    stage, _mesh = sheet()
+    stage.SetTimeCodesPerSecond(rate)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    words = ["--size", "64x32", "--frames", "1002", "-o", str(tmp_path / "out")]
+    assert main(["preview", path, *words, "--html", str(tmp_path / "page.html")]) == 3
+    assert f"error: the stage has {rate:g} time codes per second" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists() and not (tmp_path / "page.html").exists()
+    assert main(["preview", path, *words]) == 0
+
+
+@pytest.mark.parametrize("size", [None, 64, (64, 32, 3), "64x32"])
+def test_what_is_no_size(size, shot, tmp_path):
+    with pytest.raises(skinslide.UsageError, match=r"size is .*; it must be a width and a height"):
+        draw(shot, tmp_path / "out", size=size)
+
+
+def test_a_camera_by_a_path_of_usd(tmp_path):
+    draw(camera_stage(), tmp_path, camera=Sdf.Path("/World/cam"), frames="1001")
+    assert contrast(halves(picture(tmp_path, frame="1001"))[0]) > 100
 
 
 def test_no_views(shot, tmp_path):
@@ -402,6 +570,41 @@ def test_a_folder_that_cannot_be(shot, tmp_path, capfd):
         assert f"output {folder}: " in capfd.readouterr().err
 
 
+def test_a_folder_without_a_name(shot, tmp_path, capfd, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for words in (["preview", "--size", "64x32"], ["maps", "--size", "8"]):
+        assert main([*words, str(shot), "-o", ""]) == 2
+        assert capfd.readouterr().err == "error: output: the name of the folder is empty\n"
+    assert os.listdir(tmp_path) == [shot.name]
+
+
+def test_a_link_to_a_folder_that_is_not_there_yet(shot, tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "disk" / "pictures")
+    draw(shot, tmp_path / "link", frames="1003")
+    assert picture(tmp_path / "disk" / "pictures").shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_a_page_in_the_folder_of_the_pictures(shot, tmp_path):
+    """Which is made for both."""
+    draw(shot, tmp_path / "out", frames="1003", html=tmp_path / "out" / "page.html")
+    assert sorted(os.listdir(tmp_path / "out")) == ["contact_sheet.png", "page.html", f"{NAME}.chequer.1003.png"]
+
+
+def test_a_name_that_is_too_long(tmp_path, capfd):
+    """For a file of a folder that is not there yet."""
+    stage, _mesh = sheet()
+    path = f"{stages.MESH}{'x' * 250}"
+    other = stages.add_mesh(stage, stages.grid(), path)
+    stages.add_patch(other, stages.grid().all_faces)
+    add_st(other, stages.grid())
+    shot, out = str(stages.save(stage, tmp_path / "shot.usda")), tmp_path / "out"
+    for words in (["preview", "--size", "64x32"], ["maps", "--size", "8"]):
+        assert main([*words, shot, "-o", str(out)]) == 2
+        said = capfd.readouterr().err
+        assert said.startswith(f"error: output {out / Path(path).name}.") and said.endswith("the name is too long\n")
+    assert not out.exists()
+
+
 def test_an_unwritable_folder(public_folder, capfd):
     path = str(stages.save(sheet()[0], public_folder / "shot.usda"))
     closed = public_folder / "closed"
@@ -423,14 +626,32 @@ def test_a_patch_that_cannot_be_followed(tmp_path, capfd):
     assert (tmp_path / "out" / f"{NAME}.chequer.1002.png").exists()
 
 
-@pytest.mark.parametrize("aperture", ["horizontalAperture", "verticalAperture"])
-def test_a_camera_without_a_view(aperture, tmp_path, capfd):
-    stage, _mesh = sheet()
-    UsdGeom.Camera.Define(stage, "/World/cam").GetPrim().GetAttribute(aperture).Set(0.0)
-    path = str(stages.save(stage, tmp_path / "shot.usda"))
-    assert main(["preview", path, "-o", str(tmp_path / "out"), "--size", "64x32", "--camera", "/World/cam"]) == 1
-    said = capfd.readouterr().err
-    assert f"error: {stages.MESH}: patch {PATCH}: frame 1001: camera /World/cam: its apertures are " in said
+@pytest.mark.parametrize("name", [f"{NAME}.stretch.1003.png", "contact_sheet.png"])
+def test_a_folder_in_the_way_of_a_picture(name, shot, tmp_path, capfd):
+    """Known before a frame is slid."""
+    (tmp_path / "out" / name).mkdir(parents=True)
+    assert main(["preview", str(shot), "-o", str(tmp_path / "out"), "--size", "64x32"]) == 2
+    assert f"output {tmp_path / 'out' / name}: is a folder" in capfd.readouterr().err
+    assert os.listdir(tmp_path / "out") == [name]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["-o", "out"], "; every file in out is whole"),
+        (["-o", "out", "--html", "page.html"], "; every file in out is whole"),
+        (["--html", "page.html"], "; nothing was written"),
+    ],
+)
+def test_an_interrupted_command_says_what_it_left(words, said, shot, tmp_path, capfd, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("skinslide.meshpictures.work_ahead", interrupt)
+    assert main(["preview", str(shot), "--size", "64x32", *words]) == 130
+    assert capfd.readouterr().err == f"error: interrupted{said}\n"
+    assert not list(tmp_path.glob("**/.*")) and not (tmp_path / "page.html").exists()
 
 
 def test_a_bad_frame_leaves_the_others_whole(tmp_path, capfd):

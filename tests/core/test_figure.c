@@ -211,6 +211,21 @@ static void small_squares_are_grey(void **state) {
     end_sheet(&s);
 }
 
+/* Coordinates that are beyond all floats once they are in squares are as good as any: pixels are colours nevertheless. */
+static void no_squares_are_too_small(void **state) {
+    (void)state;
+    static pixel pixels[HEIGHT][WIDTH];
+    sheet s = sheet_of(8, 2, beyond, 16, false);
+    skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    s.figure.squares = 3e38f;
+    draw(canvas, &s.figure);
+    read_all(canvas, pixels);
+    for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+        for (int k = 0; k < 3; k++)
+            assert_true(pixels[i / WIDTH][i % WIDTH][k] >= 0 && pixels[i / WIDTH][i % WIDTH][k] <= 1);
+    end_sheet(&s);
+}
+
 /* Without st, squares at rest in space. Moved along with the mesh, they are the same; and they are those of st that goes as the
  * places at rest do, from the middle of the mesh on, less the shift that keeps a flat sheet inside one layer of squares. */
 static void squares_in_space_go_with_the_mesh(void **state) {
@@ -670,6 +685,7 @@ int main(void) {
         cmocka_unit_test(the_top_comes_first),
         cmocka_unit_test(squares_are_where_st_is),
         cmocka_unit_test(small_squares_are_grey),
+        cmocka_unit_test(no_squares_are_too_small),
         cmocka_unit_test(squares_in_space_go_with_the_mesh),
         cmocka_unit_test(paler_outside_the_patch),
         cmocka_unit_test(false_colours_are_those_of_the_scale),

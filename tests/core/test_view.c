@@ -391,7 +391,7 @@ static void bad_arguments_are_named(void **state) {
     matrix[5] = 1e200;
     refused(&f, y_up, 1, SKINSLIDE_BAD_POINTS, "no camera can have..."), f.subject = good;
     f.mesh.points[5] = INFINITY;
-    refused(&f, y_up, 1, SKINSLIDE_BAD_POINTS, "points: vertex 1 is not finite...");
+    refused(&f, y_up, 1, SKINSLIDE_BAD_POINTS, "pose 0: points: vertex 1 is not finite...");
     f.view.face_count = 0;
     refused(&f, y_up, 1, SKINSLIDE_BAD_MESH, "the mesh has no faces");
     end_framing(&f);

@@ -98,7 +98,7 @@ typedef struct skinslide_subject {
  * out, as round a limb, from where the faces are widest.
  *   up      in  the world's, a direction
  *   aspect  in  width of the picture by its height
- * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite, or no camera can see them: all in one place), OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite: names the pose; or no camera can see them: all in one place), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const double up[3], double aspect,
                                                      skinslide_camera *camera, skinslide_error *error);
 

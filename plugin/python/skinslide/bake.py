@@ -130,6 +130,7 @@ class _MeshBake:
         self._limits = {"folded_faces": options.max_folded, "clamped_vertices": options.max_clamped}
         self._in_flight = options.jobs + 1  # one is read while the others are slid
         self._diagnostics = options.diagnostics
+        self._blocked = _indices(mesh) if options.diagnostics else []
 
     def run(self, times: list[Usd.TimeCode], overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Authors the mesh at `times`, ascending; yields each once it is done."""
@@ -144,7 +145,7 @@ class _MeshBake:
             yield time
             for old in [other for other in solved if last_use[other] <= index]:
                 del solved[old]
-        for attribute in self.derived.blocked:
+        for attribute in [*self.derived.blocked, *self._blocked]:
             overs.block(attribute)
 
     def _read(self, time: Usd.TimeCode) -> Callable[[], Solved]:
@@ -180,6 +181,12 @@ class _MeshBake:
                     raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
 
 
+def _indices(mesh: SlidMesh) -> list[Usd.Attribute]:
+    """Those of primvars that the stage has under these names: they would choose among the values that are written."""
+    primvars = [UsdGeom.Primvar(mesh.prim.GetAttribute(name)) for name in DIAGNOSTICS if mesh.prim.HasAttribute(name)]
+    return [primvar.GetIndicesAttr() for primvar in primvars if primvar.IsIndexed()]
+
+
 def _hidden(meshes: list[PlannedMesh], target: Sdf.Layer) -> Iterator[Problem]:
     """Warns of meshes whose points a stronger layer than the target has an opinion on."""
     for mesh, _slider, _times in meshes:
@@ -195,12 +202,22 @@ def _check_primvars(plan: Plan) -> None:
     found = []
     for mesh, _slider, _times in plan.meshes if plan.options.diagnostics else []:
         for name in DIAGNOSTICS:
-            attr = mesh.prim.GetAttribute(name)
-            if attr and attr.GetTypeName() != Sdf.ValueTypeNames.FloatArray:
-                message = f"{name} is {attr.GetTypeName()}; a bake with diagnostics writes float[] there"
+            other = _what_else(mesh.prim.GetProperty(name)) if mesh.prim.HasProperty(name) else None
+            if other:
+                message = f"{name} is {other}; a bake with diagnostics writes float[] there, one a vertex"
                 found.append(Problem("error", mesh.path, None, None, message))
     if found:
         raise StageProblems(found)
+
+
+def _what_else(found: Usd.Property) -> str | None:
+    """What a property is, other than a primvar of a float for each element."""
+    if not isinstance(found, Usd.Attribute):
+        return "a relationship"
+    if found.GetTypeName() != Sdf.ValueTypeNames.FloatArray:
+        return str(found.GetTypeName())
+    size = UsdGeom.Primvar(found).GetElementSize()
+    return None if size == 1 else f"of elementSize {size}"
 
 
 def _check_target(target: Usd.EditTarget, plan: Plan) -> None:

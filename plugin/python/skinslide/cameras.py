@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -25,7 +26,10 @@ class Eye(Protocol):
 
 
 class StageCamera:
-    """A UsdGeomCamera, whatever it does over time; what the picture is wider or taller by is added around its view."""
+    """A UsdGeomCamera, whatever it does over time; what the picture is wider or taller by is added around its view.
+
+    Gives Fault where there is none, or where it can see nothing.
+    """
 
     def __init__(self, stage: Usd.Stage, path: str, aspect: float):
         prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
@@ -35,14 +39,31 @@ class StageCamera:
         self._camera, self._aspect = UsdGeom.Camera(prim), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:
-        frustum = self._camera.GetCamera(time).frustum
+        own = self._camera.GetCamera(time)
+        fault = _blindness(own)
+        if fault:
+            raise Fault(f"camera {self._camera.GetPath()}: {fault}")
+        frustum = own.frustum
         window, seen = frustum.GetWindow(), frustum.ComputeAspectRatio()
-        if not (seen > 0 and math.isfinite(seen)):
-            raise Fault(f"camera {self._camera.GetPath()}: its apertures are {_apertures(self._camera, time)}")
         wider, taller = max(1.0, self._aspect / seen), max(1.0, seen / self._aspect)
         half = Gf.CompMult(window.GetSize() / 2, Gf.Vec2d(wider, taller))
         frustum.SetWindow(Gf.Range2d(window.GetMidpoint() - half, window.GetMidpoint() + half))
         return Camera(np.array(frustum.ComputeViewMatrix()), np.array(frustum.ComputeProjectionMatrix()))
+
+
+def _blindness(camera: Gf.Camera) -> str | None:
+    """Why a camera sees nothing; None where it does."""
+    flat = camera.projection == Gf.Camera.Orthographic
+    lengths = ("horizontalAperture", "verticalAperture", *([] if flat else ["focalLength"]))
+    for name in lengths:
+        length = getattr(camera, name)
+        if not (length > 0 and math.isfinite(length)):
+            return f"{name} is {length:g}; it must be above 0"
+    near, far = camera.clippingRange.min, camera.clippingRange.max
+    if not (near < far and math.isfinite(far - near) and (flat or near > 0)):
+        return f"clippingRange is ({near:g}, {far:g}); it must ascend{'' if flat else ', from above 0'}"
+    size = abs(camera.transform.GetDeterminant3())
+    return None if size > 0 and math.isfinite(size) else "its transform to the world has no inverse"
 
 
 class ShotCamera:
@@ -51,17 +72,8 @@ class ShotCamera:
     def __init__(self, mesh: SlidMesh, faces: np.ndarray, aspect: float):
         """Raises FrameProblem for a time that no camera could show."""
         times = [Usd.TimeCode(time) for time in mesh.sample_times()] or [Usd.TimeCode.Default()]
-        places = np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))
-        chosen = [times[i] for i in places]
-        try:
-            self._camera = _framed(mesh, faces, chosen, aspect)
-        except SliderError:
-            for time in chosen:  # the core does not know which it is
-                try:
-                    _framed(mesh, faces, [time], aspect)
-                except SliderError as alone:
-                    raise FrameProblem(mesh.problem(str(alone), time)) from alone
-            raise
+        chosen = [times[i] for i in np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))]
+        self._camera = _framed(mesh, faces, chosen, aspect)
 
     def camera(self, time: Usd.TimeCode) -> Camera:
         return self._camera
@@ -78,18 +90,23 @@ class FollowingCamera:
 
 
 def to_world(mesh: SlidMesh, time: Usd.TimeCode) -> np.ndarray:
-    """The way of a mesh to the world, (4, 4)."""
-    return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
-
-
-def _apertures(camera: UsdGeom.Camera, time: Usd.TimeCode) -> str:
-    across, up = camera.GetHorizontalApertureAttr().Get(time), camera.GetVerticalApertureAttr().Get(time)
-    return f"{across:g} by {up:g}, which no picture can have"
+    """The way of a mesh to the world, (4, 4). Raises FrameProblem."""
+    matrix = np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
+    if not np.isfinite(matrix).all():
+        raise FrameProblem(mesh.problem("its transform to the world is not finite", time))
+    return matrix
 
 
 def _framed(mesh: SlidMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:
+    """Raises FrameProblem for a pose that cannot be, and SliderError where no camera sees them."""
     up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
     poses = [mesh.points_at(time) for time in times]
     matrices = np.array([to_world(mesh, time) for time in times])
     shape = Shape(mesh.face_counts, mesh.face_indices)
-    return frame_faces(shape, faces, poses, matrices, up, aspect, left_handed=mesh.left_handed)
+    try:
+        return frame_faces(shape, faces, poses, matrices, up, aspect, left_handed=mesh.left_handed)
+    except SliderError as error:
+        pose = re.match(r"pose (\d+): ", str(error))
+        if not pose:
+            raise
+        raise FrameProblem(mesh.problem(str(error)[pose.end() :], times[int(pose[1])])) from error

@@ -21,11 +21,14 @@ from skinslide.problems import StageError, usd_message
 _ABANDONED = 24 * 60 * 60  # seconds
 
 
-def check_output(output: Path, extensions: Sequence[str]) -> None:
-    """Raises UsageError for an output that cannot be, before any work is done."""
+def check_output(output: Path, extensions: Sequence[str], made: Path | None = None) -> None:
+    """Raises UsageError for an output that cannot be, before any work is done.
+
+    made  a folder that will be made, where it is missing, before the output is written
+    """
     if output.suffix.lower() not in extensions:
         raise UsageError(f"output {output}: the name must end in {', '.join(extensions)}")
-    check_place(output, _fault)
+    check_place(output, lambda path: _fault(path, made))
 
 
 def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
@@ -38,10 +41,12 @@ def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
         raise UsageError(f"output {output}: {fault}")
 
 
-def _fault(output: Path) -> str | None:
+def _fault(output: Path, made: Path | None) -> str | None:
     """Why a file cannot be put at the output."""
     target = output.resolve()  # what a link leads to is what is replaced
     folder = target.parent
+    if made and folder == made.resolve():
+        folder = nearest_folder(folder)
     if target.suffix.lower() != output.suffix.lower():
         return f"is a link to {target}, whose name says that it is in another format"
     if not folder.is_dir():
@@ -56,6 +61,14 @@ def _fault(output: Path) -> str | None:
     if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
         return "is not writable"
     return None
+
+
+def nearest_folder(folder: Path) -> Path:
+    """The folder itself, or the nearest above it that is there; else what is there in its place."""
+    nearest = folder.resolve()
+    while not nearest.exists():
+        nearest = nearest.parent
+    return nearest
 
 
 def partial_name(output: Path, token: str = 8 * "0") -> str:

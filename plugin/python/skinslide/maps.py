@@ -13,7 +13,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from pxr import Usd
@@ -91,7 +90,7 @@ def maps(
     """
     options = _checked(prims, patches, frames, size, st, lookup, jobs)
     opened = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
-    place = OutputFolder(Path(folder), opened, None if stage is opened else stage)
+    place = OutputFolder(folder, opened, None if stage is opened else stage)
     size, device = options.size, options.bake.lookup.device
     canvases = Canvases(lambda: MapCanvas(size, device), _MOST_TEXELS // size**2)
     plan = Plan.read(opened, options.bake)

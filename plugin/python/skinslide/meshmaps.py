@@ -117,9 +117,7 @@ class MeshMaps:
     def check_files(self) -> None:
         """Raises UsageError for a file that cannot be written."""
         _, tiles = self._first
-        for time in self._times:
-            for name in _map_names(tiles, time):
-                self._place.check(self._path(name))
+        self._place.check_all(self._path(name) for time in self._times for name in _map_names(tiles, time))
 
     def run(self, canvases: Canvases[MapCanvas], pool: ThreadPoolExecutor) -> Iterator[list[WrittenMap]]:
         """Writes the maps of each time in order; yields them."""

@@ -7,7 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
-from PIL import Image
 from pxr import Sdf, Usd
 
 from skinslide import panels
@@ -19,7 +18,7 @@ from skinslide.pictures import Canvas
 from skinslide.plan import PlannedMesh, frame_of
 from skinslide.problems import Fault, FrameProblem, Problem, StageProblems, errors
 from skinslide.report import MeshReport
-from skinslide.series import Column, Moment, Series
+from skinslide.series import Column, Moment, Series, Skin
 from skinslide.settings import settings_of
 from skinslide.slider import Diagnostics, PatchResult, SliderError
 
@@ -45,7 +44,7 @@ class _Encoded(NamedTuple):
     """A picture as it is wanted."""
 
     file: bytes | None
-    thumbnail: Image.Image | None
+    thumbnail: bytes | None
     jpeg: bytes | None
 
 
@@ -64,37 +63,64 @@ class MeshPictures:
         self._mesh, self._slider, self._times = planned
         self._options, self._wanted = options, wanted
         self.problems: list[Problem] = []
-        self._series = [made for made in map(self._make_series, range(len(self._slider.patches))) if made]
+        self._series = self._make_all()
+        self._look()
         self.problems = list(dict.fromkeys(self.problems))  # a fault of the mesh is found with each of its patches
         if errors(self.problems):
             raise StageProblems(self.problems)
         mesh, count = self._mesh, len(self._series) * len(options.views)
         self.report = MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, self._slider.patches)
-        self.thumbnails: list[list[Image.Image]] = [[] for _ in range(count)]  # a strip for each series and view
+        self.thumbnails: list[list[bytes]] = [[] for _ in range(count)]  # a strip for each series and view
         self._jpegs: list[list[bytes]] = [[] for _ in range(count)]
 
     @property
     def frame_count(self) -> int:
         return len(self._times) if self._series else 0
 
-    def _make_series(self, index: int) -> Series | None:
-        """The series of a piece of a patch; what cannot be drawn joins the problems."""
-        name = self._slider.patches[index].name
-        if self._options.patches is not None and name not in self._options.patches:
-            return None
+    def _make_all(self) -> list[Series]:
+        """A series for each piece of a patch that is wanted; what cannot be drawn joins the problems."""
+        wanted, patches = self._options.patches, self._slider.patches
+        chosen = [i for i, patch in enumerate(patches) if wanted is None or patch.name in wanted]
+        if not chosen:
+            return []
         try:
-            series = Series.of(self._mesh, self._slider, index, self._options)
+            skin = Skin.of(self._mesh, np.concatenate([self._slider.faces(i) for i in chosen]), self._options.st)
         except (Fault, SliderError) as fault:
-            self.problems.append(Problem("error", self._mesh.path, name, None, str(fault)))
-            return None
-        except FrameProblem as bad:
-            self.problems.append(bad.problem)
-            return None
-        flat = series.tessellation.flat_faces
+            names = dict.fromkeys(patches[i].name for i in chosen)
+            self.problems += [Problem("error", self._mesh.path, name, None, str(fault)) for name in names]
+            return []
+        flat = skin.tessellation.flat_faces
         if flat:
             message = f"{flat} faces are drawn flat: OpenSubdiv before 3.5.1 cannot subdivide them"
-            self.problems.append(Problem("warning", self._mesh.path, name, None, message))
-        return series
+            self.problems.append(Problem("warning", self._mesh.path, None, None, message))
+        made = (self._make_series(skin, i) for i in chosen)
+        return [series for series in made if series]
+
+    def _make_series(self, skin: Skin, index: int) -> Series | None:
+        try:
+            return Series.of(skin, self._slider, index, self._options)
+        except (Fault, SliderError) as fault:
+            name = self._slider.patches[index].name
+            self.problems.append(Problem("error", self._mesh.path, name, None, str(fault)))
+        except FrameProblem as bad:
+            self.problems.append(bad.problem)
+        return None
+
+    def _look(self) -> None:
+        """Finds whether a camera of the stage sees at every time; all series have the same."""
+        for time in self._times if self._options.camera is not None and self._series else ():
+            try:
+                self._series[0].moment(time)
+            except FrameProblem as bad:
+                self.problems.append(bad.problem)
+                return
+
+    def files(self) -> Iterator[tuple[list[str], float | None]]:
+        """The words and the frame of every picture's name."""
+        for time in self._times[: self.frame_count]:
+            for series in self._series:
+                for view in self._options.views:
+                    yield [*self._words(series), view], frame_of(time)
 
     def run(
         self, canvases: Canvases[Canvas], pool: ThreadPoolExecutor, jobs: int

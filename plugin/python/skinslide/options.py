@@ -1,6 +1,5 @@
 """What commands are asked for, checked before anything is read."""
 
-import math
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ Frames = Sequence[float] | str | None
 
 VIEWS = ("chequer", "stretch")
 FORMATS = ("png", "exr")
+LEAST, MOST = 1e-37, 1e37  # of what is a float in the core
 
 
 @dataclass(frozen=True)
@@ -83,16 +83,13 @@ class PictureOptions:
         squares: float | None = None,
     ) -> "PictureOptions":
         """Raises UsageError for what cannot be."""
-        shown = listed(views)
-        if not shown:
-            raise UsageError("views: there are none in it")
         if camera is not None and follow:
             raise UsageError("a camera of the stage does not follow a patch: give one or the other")
-        width, height = size
+        width, height = _pair("size", size)
         return cls(
             patches=listed(patches),
-            views=[_one_of("view", view, VIEWS) for view in dict.fromkeys(shown)],
-            camera=camera,
+            views=_views(views),
+            camera=None if camera is None else str(camera),
             follow=bool(follow),
             width=whole_number("width", width, 2),
             height=whole_number("height", height, 1),
@@ -101,6 +98,21 @@ class PictureOptions:
             squares=None if squares is None else _positive("squares", squares),
             most_stretch=_positive("most_stretch", most_stretch),
         )
+
+
+def _pair(name: str, pair: Sequence[int]) -> tuple[int, int]:
+    try:
+        first, second = pair
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {pair!r}; it must be a width and a height") from error
+    return first, second
+
+
+def _views(asked: Sequence[str] | str) -> list[str]:
+    views = [_one_of("view", view, VIEWS) for view in dict.fromkeys(listed(asked) or ())]
+    if not views:
+        raise UsageError(f"views: there are none in it; there are {', '.join(VIEWS)}")
+    return views
 
 
 def listed(words: Sequence[str] | str | None) -> list[str] | None:
@@ -128,8 +140,8 @@ def _positive(name: str, number: float) -> float:
         found = float(number)
     except (TypeError, ValueError) as error:
         raise UsageError(f"{name} is {number!r}; it must be a number") from error
-    if not (found > 0 and math.isfinite(found)):
-        raise UsageError(f"{name} is {found:g}; it must be above 0")
+    if not LEAST <= found <= MOST:
+        raise UsageError(f"{name} is {found:g}; it must be above 0, from {LEAST:g} to {MOST:g}")
     return found
 
 

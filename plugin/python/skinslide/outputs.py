@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 
 from pxr import Sdf, Usd
 
 from skinslide import names
-from skinslide.files import Inputs, check_output, check_place, replacing, writing
+from skinslide.files import Inputs, check_output, check_place, nearest_folder, replacing, writing
 from skinslide.frames import UsageError
 from skinslide.problems import frame_text
 from skinslide.sampled import map_files
@@ -22,14 +23,16 @@ _PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
 class OutputFolder:
     """Where files of meshes are written. Nothing of it is made before the first is."""
 
-    def __init__(self, folder: Path, stage: Usd.Stage, stage_path: str | os.PathLike | None):
+    def __init__(self, folder: str | os.PathLike, stage: Usd.Stage, stage_path: str | os.PathLike | None):
         """Raises UsageError for a folder that cannot be."""
-        self.folder, prims = folder, patched_prims(stage)
+        if not os.fspath(folder):  # Path would take it for the working folder
+            raise UsageError("output: the name of the folder is empty")
+        self.folder, prims = Path(folder), patched_prims(stage)
         # A resolver may find maps where their names alone do not lead.
         maps = [file for prim in prims for patch in names.patch_names(prim) for file in map_files(prim, patch)]
         self._inputs = Inputs(stage, *maps, *([] if stage_path is None else [stage_path]))
         self._names = _mesh_names(prims)
-        check_place(folder, _fault)
+        check_place(self.folder, _fault)
 
     def path(self, mesh: Sdf.Path, words: Sequence[str], frame: float | None, extension: str) -> Path:
         """MESH.WORD.FRAME.extension, of each word; of no frame for the default time."""
@@ -38,14 +41,29 @@ class OutputFolder:
 
     def check(self, output: Path) -> None:
         """Raises UsageError for a file that cannot be written, or that the stage reads."""
-        if self.folder.is_dir():
-            check_output(output, [output.suffix])
+        if self.folder.is_dir() or not self.folder.exists():  # else making the folder fails, and says why
+            check_output(output, [output.suffix], made=self.folder)
             self._inputs.refuse(output)
+
+    def check_all(self, outputs: Iterable[Path]) -> None:
+        """`check` of files that may be very many: those that are there already, and the one with the longest name."""
+        there: set[str] = set()
+        with suppress(OSError):  # nothing there yet, or nothing to be seen
+            there.update(os.listdir(self.folder))
+        longest: tuple[int, Path] | None = None
+        for output in outputs:
+            if output.name in there:
+                self.check(output)
+            length = len(os.fsencode(output.name))
+            if longest is None or length > longest[0]:
+                longest = length, output
+        if longest:
+            self.check(longest[1])
 
     def write(self, output: Path, data: bytes) -> None:
         """Raises UsageError, StageError; the file is then as it was."""
         with writing(self.folder):
-            self.folder.mkdir(parents=True, exist_ok=True)
+            self.folder.resolve().mkdir(parents=True, exist_ok=True)
         self.check(output)
         with replacing(output) as partial, writing(output):
             partial.write_bytes(data)
@@ -92,9 +110,7 @@ def _depth(own: list[str], all_words: list[list[str]]) -> int:
 
 def _fault(folder: Path) -> str | None:
     """Why files cannot be put in the folder, which is made where it is missing."""
-    nearest = folder.resolve()
-    while not nearest.exists():
-        nearest = nearest.parent
+    nearest = nearest_folder(folder)
     if not nearest.is_dir():
         return "is not a folder" if nearest == folder.resolve() else f"{nearest} is not a folder"
     if not os.access(nearest, os.W_OK | os.X_OK):

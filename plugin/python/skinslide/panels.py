@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -98,11 +98,12 @@ def displayed(pixels: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(pixels[..., :3] if pixels.dtype == np.uint8 else _encoded(pixels[..., :3]))
 
 
-def thumbnail(pixels: np.ndarray) -> Image.Image:
-    """A picture for a contact sheet."""
+def thumbnail(pixels: np.ndarray) -> bytes:
+    """A picture for a contact sheet, as a PNG file: of many patches there are thousands."""
     image = Image.fromarray(displayed(pixels))
     height = max(1, round(image.height * _THUMBNAIL / image.width))
-    return image.resize((_THUMBNAIL, height), Image.Resampling.BOX) if image.width > _THUMBNAIL else image
+    small = image.resize((_THUMBNAIL, height), Image.Resampling.BOX) if image.width > _THUMBNAIL else image
+    return _as_bytes(small, "PNG", compress_level=1)
 
 
 def _as_bytes(image: Image.Image, form: str, **options) -> bytes:
@@ -118,23 +119,29 @@ _TALLEST = 16384  # pixels of a sheet
 _IN_A_ROW, _MARGIN = 4, 12
 
 
-def contact_sheets(strips: Sequence[Sequence[Image.Image]]) -> list[bytes]:
+def contact_sheets(strips: Sequence[Sequence[bytes]]) -> Iterator[bytes]:
     """Thumbnails as PNG files: a strip begins a row; more than one file where they would be too tall."""
     rows = [strip[i : i + _IN_A_ROW] for strip in strips for i in range(0, len(strip), _IN_A_ROW)]
-    tallest = max((image.height for row in rows for image in row), default=1) + _MARGIN
+    tallest = max((_size(file)[1] for row in rows for file in row), default=1) + _MARGIN
     most = max(1, (_TALLEST - _MARGIN) // tallest)
-    return [_sheet(rows[i : i + most]) for i in range(0, len(rows), most)]
+    return (_sheet(rows[i : i + most]) for i in range(0, len(rows), most))
 
 
-def _sheet(rows: Sequence[Sequence[Image.Image]]) -> bytes:
-    wide = max(sum(image.width + _MARGIN for image in row) for row in rows)
-    tall = [max(image.height for image in row) + _MARGIN for row in rows]
+def _sheet(rows: Sequence[Sequence[bytes]]) -> bytes:
+    wide = max(sum(_size(file)[0] + _MARGIN for file in row) for row in rows)
+    tall = [max(_size(file)[1] for file in row) + _MARGIN for row in rows]
     sheet = Image.new("RGB", (wide + _MARGIN, sum(tall) + _MARGIN), (28, 28, 32))
     top = _MARGIN
     for row, height in zip(rows, tall, strict=True):
         left = _MARGIN
-        for image in row:
-            sheet.paste(image, (left, top))
-            left += image.width + _MARGIN
+        for file in row:
+            with Image.open(io.BytesIO(file)) as image:
+                sheet.paste(image, (left, top))
+                left += image.width + _MARGIN
         top += height
     return _as_bytes(sheet, "PNG")
+
+
+def _size(file: bytes) -> tuple[int, int]:
+    """Width and height, from its header."""
+    return Image.open(io.BytesIO(file)).size

@@ -74,10 +74,11 @@ def _build_sliders(meshes: list[SlidMesh], lookup: Lookup, problems: list[Proble
 
 
 def _times(mesh: SlidMesh, asked: list[float] | None) -> list[Usd.TimeCode]:
-    """A mesh that never changes has one value, whatever was asked."""
+    """A mesh that never changes has one value, whatever was asked; so has one whose splines have no knots."""
     if not mesh.varies:
         return [Usd.TimeCode.Default()]
-    return [Usd.TimeCode(time) for time in (mesh.sample_times() if asked is None else asked)]
+    times = mesh.sample_times() if asked is None else asked
+    return [Usd.TimeCode(time) for time in times] or [Usd.TimeCode.Default()]
 
 
 def frame_of(time: Usd.TimeCode) -> float | None:

@@ -104,8 +104,8 @@ class _Axis:
 
     def shares(self, values: Sequence[float] | np.ndarray) -> list[float]:
         """Where values are between the ends, 0 to 1; in the middle where the ends are one."""
-        span = self.high - self.low
-        return [(float(value) - self.low) / span if span else 0.5 for value in values]
+        span = self.high / 2 - self.low / 2  # halves, since frames may be farther apart than the largest number
+        return [(float(value) / 2 - self.low / 2) / span if span else 0.5 for value in values]
 
 
 def _step(span: float, most: int) -> float:
@@ -117,6 +117,8 @@ def _step(span: float, most: int) -> float:
 def _ticks(low: float, high: float, most: int) -> list[float]:
     if high == low:
         return [low]
+    if math.isinf(high - low):
+        return [low, high]
     step = _step(high - low, most)
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     return [i * step for i in range(first, last + 1)]

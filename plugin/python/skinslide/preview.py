@@ -11,6 +11,8 @@ a contact sheet of some frames of each series, and a page of all
 
 from __future__ import annotations
 
+import itertools
+import math
 import os
 import time
 from collections.abc import Sequence
@@ -31,7 +33,7 @@ from skinslide.page import page
 from skinslide.panels import contact_sheets
 from skinslide.pictures import Canvas
 from skinslide.plan import Plan
-from skinslide.problems import StageProblems, frame_text
+from skinslide.problems import Problem, StageProblems, frame_text
 from skinslide.progress import Progress
 from skinslide.report import BakeReport
 from skinslide.slider import Lookup, choose_lookup, version
@@ -116,6 +118,10 @@ class PreviewReport(BakeReport):
         return f"{super().text()}\n{rate}, drawn with {self.device}"
 
 
+def _sheet_name(number: int) -> str:
+    return f"contact_sheet{f'.{number + 1}' if number else ''}.png"
+
+
 def _canvases(options: PictureOptions, device: int | None) -> Canvases[Canvas]:
     width, height = options.width, options.height
     pixels = "floats" if options.form == "exr" else "bytes"
@@ -136,17 +142,25 @@ class _Place(NamedTuple):
         stage: Usd.Stage,
         stage_path: str | os.PathLike | None,
     ) -> _Place:
-        """Raises UsageError for what cannot be written."""
-        files = None if folder is None else OutputFolder(Path(folder), stage, stage_path)
+        """Raises UsageError and StageProblems for what cannot be written."""
+        files = None if folder is None else OutputFolder(folder, stage, stage_path)
         page = None if html is None else Path(html)
         if page:
-            check_output(page, (".html", ".htm"))
+            check_output(page, (".html", ".htm"), made=files and files.folder)
             check_not_input(page, stage, *([] if stage_path is None else [stage_path]))
+            _check_clock(stage)
         return cls(files, page)
 
     @property
     def wanted(self) -> Wanted:
         return Wanted(self.folder is not None, self.page is not None)
+
+
+def _check_clock(stage: Usd.Stage) -> None:
+    rate = stage.GetTimeCodesPerSecond()
+    if not (math.isfinite(rate) and rate > 0):
+        message = f"the stage has {rate:g} time codes per second, at which a page cannot be played"
+        raise StageProblems([Problem("error", "", None, None, message)])
 
 
 @dataclass(frozen=True)
@@ -171,7 +185,18 @@ class _Shot:
                 problems += bad.problems
         if problems:
             raise StageProblems(problems)
-        return cls([mesh for mesh in meshes if mesh.frame_count], plan, place)
+        shot = cls([mesh for mesh in meshes if mesh.frame_count], plan, place)
+        shot._check_files(options.form)
+        return shot
+
+    def _check_files(self, form: str) -> None:
+        """Raises UsageError for a file that cannot be written."""
+        folder = self.place.folder
+        if not folder:
+            return
+        names = ((mesh.path, words, frame) for mesh in self.meshes for words, frame in mesh.files())
+        pictures = (folder.path(path, words, frame, form) for path, words, frame in names)
+        folder.check_all(itertools.chain([folder.folder / _sheet_name(0)], pictures))
 
     def draw(self, stage: Usd.Stage, canvases: Canvases[Canvas], progress: Progress | None) -> PreviewReport:
         """Draws every mesh, then what is made of all pictures."""
@@ -203,7 +228,7 @@ class _Shot:
         if not self.place.folder:
             return
         for number, sheet in enumerate(contact_sheets([strip for mesh in self.meshes for strip in mesh.thumbnails])):
-            path = self.place.folder.folder / f"contact_sheet{f'.{number + 1}' if number else ''}.png"
+            path = self.place.folder.folder / _sheet_name(number)
             self.place.folder.write(path, sheet)
             report.files.append(str(path))
 

@@ -13,14 +13,15 @@ from skinslide import panels
 from skinslide.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
 from skinslide.coordinates import read_coordinates
 from skinslide.meshes import SlidMesh
-from skinslide.options import PictureOptions
-from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation
+from skinslide.options import MOST, PictureOptions
+from skinslide.pictures import Camera, Canvas, Outline, Scale, Shape, Tessellation
 from skinslide.plan import frame_of
 from skinslide.problems import Fault, FrameProblem, frame_text
 from skinslide.report import PatchReport
 from skinslide.slider import Slider, SliderError
 from skinslide.subdivision import read_subdivision
 
+_ST = "st"
 _SQUARES = 16  # of the chequer, across a patch
 
 
@@ -42,45 +43,56 @@ class Moment(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
-    """Immutable: any number of threads may draw it, each on its own canvas."""
+class Skin:
+    """A mesh as all of its pictures show it. Immutable."""
 
     mesh: SlidMesh
-    index: int  # among the slider's patches
-    patch: str  # its name
-    label: str
+    st: np.ndarray | None  # at the mesh's corners; None: the chequer is one of squares in space, at rest
     tessellation: Tessellation
-    eye: Eye
-    squares: float
     double_sided: bool
 
     @classmethod
-    def of(cls, mesh: SlidMesh, slider: Slider, index: int, options: PictureOptions, columns: int = 2) -> Series:
+    def of(cls, mesh: SlidMesh, faces: np.ndarray, st: str | None) -> Skin:
+        """To be looked at closely at some faces. Raises Fault and SliderError for what cannot be drawn."""
+        corners = _st_of(mesh, st)
+        shape, subdivision = Shape(mesh.face_counts, mesh.face_indices), read_subdivision(UsdGeom.Mesh(mesh.prim))
+        try:
+            tessellation = Tessellation(shape, mesh.rest_points, corners, faces, subdivision)
+        except SliderError as error:
+            if error.status == "BAD_CONTROL":  # st
+                raise Fault(f"primvars:{st or _ST}: {error}") from error
+            raise
+        return cls(mesh, corners, tessellation, bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get()))
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Immutable: any number of threads may draw it, each on its own canvas."""
+
+    skin: Skin
+    index: int  # among the slider's patches
+    label: str
+    outline: Outline
+    eye: Eye
+    squares: float
+
+    @classmethod
+    def of(cls, skin: Skin, slider: Slider, index: int, options: PictureOptions, columns: int = 2) -> Series:
         """Raises Fault, SliderError and FrameProblem for what cannot be drawn."""
         faces = slider.faces(index)
-        st = _st_of(mesh, options.st)
-        shape = Shape(mesh.face_counts, mesh.face_indices)
-        subdivision = read_subdivision(UsdGeom.Mesh(mesh.prim))
-        return cls(
-            mesh,
-            index,
-            slider.patches[index].name,
-            PatchReport(slider.patches[index]).label,
-            Tessellation(shape, mesh.rest_points, st, faces, subdivision),
-            _eye(mesh, faces, options, columns),
-            options.squares or _suitable_squares(mesh, faces, st),
-            bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get()),
-        )
+        label, outline = PatchReport(slider.patches[index]).label, Outline(skin.tessellation, faces)
+        eye, squares = _eye(skin.mesh, faces, options, columns), options.squares or _suitable_squares(skin, faces)
+        return cls(skin, index, label, outline, eye, squares)
 
     def moment(self, time: Usd.TimeCode) -> Moment:
         """Raises FrameProblem where the patch cannot be seen."""
         frame = frame_of(time)
         title = "" if frame is None else f"frame {frame_text(frame)}"
+        to_the_world = to_world(self.skin.mesh, time)
         try:
-            camera = self.eye.camera(time)
+            return Moment(title, self.eye.camera(time), to_the_world)
         except (Fault, SliderError) as fault:
-            raise FrameProblem(self.mesh.problem(str(fault), time, self.patch)) from fault
-        return Moment(title, camera, to_world(self.mesh, time))
+            raise FrameProblem(self.skin.mesh.problem(str(fault), time, self.label)) from fault
 
     def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
         """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
@@ -89,15 +101,16 @@ class Series:
         for column, place in zip(columns, places, strict=True):
             scale = Scale(column.stretch, 0.0, most_stretch) if view == "stretch" else None
             canvas.draw(
-                self.tessellation,
+                self.skin.tessellation,
                 column.points,
                 at.camera,
                 place,
                 to_world=at.to_world,
                 squares=self.squares,
                 scale=scale,
-                double_sided=self.double_sided,
-                left_handed=self.mesh.left_handed,
+                double_sided=self.skin.double_sided,
+                outline=self.outline,
+                left_handed=self.skin.mesh.left_handed,
             )
         pixels = canvas.read()
         for column, place in zip(columns, places, strict=True):
@@ -110,7 +123,7 @@ class Series:
 
 def _st_of(mesh: SlidMesh, asked: str | None) -> np.ndarray | None:
     """Texture coordinates for the chequer; None where there are none and none were asked for."""
-    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(asked or "st")
+    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(asked or _ST)
     if primvar and primvar.HasAuthoredValue():
         return read_coordinates(primvar, Usd.TimeCode.EarliestTime(), mesh.topology)
     if asked:
@@ -118,11 +131,12 @@ def _st_of(mesh: SlidMesh, asked: str | None) -> np.ndarray | None:
     return None
 
 
-def _suitable_squares(mesh: SlidMesh, faces: np.ndarray, st: np.ndarray | None) -> float:
+def _suitable_squares(skin: Skin, faces: np.ndarray) -> float:
+    mesh, st = skin.mesh, skin.st
     inside = np.repeat(np.isin(np.arange(mesh.topology.face_count), faces), mesh.face_counts)
     places = mesh.rest_points[mesh.face_indices[inside]] if st is None else st[inside]
-    extent = float(np.ptp(places, axis=0).max())
-    return _SQUARES / extent if extent > 0 else 1.0
+    extent = float(np.ptp(places.astype(np.float64), axis=0).max())
+    return min(_SQUARES / extent, MOST) if extent > 0 else 1.0
 
 
 def _eye(mesh: SlidMesh, faces: np.ndarray, options: PictureOptions, columns: int) -> Eye:
