@@ -102,7 +102,7 @@ def test_files_are_named_by_mesh_patch_view_and_frame(shot, tmp_path):
     names = {f"{NAME}.{view}.{frame}.png" for view in ("chequer", "stretch") for frame in
              ("1001", "1001_5", "1002", "1002_5", "1003")}  # fmt: skip
     made = {path.name for path in (tmp_path / "out" / "deep").iterdir()}
-    assert made == {*names, "contact_sheet.png"} == {os.path.basename(file) for file in report.files}
+    assert made == {*names, "contact_sheet.1001-1003.png"} == {os.path.basename(file) for file in report.files}
     for view in ("chequer", "stretch"):
         assert picture(tmp_path / "out" / "deep", view, "1001_5").shape == (SIZE[1], SIZE[0], 3)
 
@@ -183,7 +183,7 @@ def test_pieces_and_meshes_of_one_name_have_pictures_of_their_own(tmp_path):
     report = draw(stage, tmp_path, frames="1002")
     names = {os.path.basename(file) for file in report.files}
     assert {"char.geo.skin_GEO.elbow_L.1.chequer.1002.png", "char.geo.skin_GEO.elbow_L.2.chequer.1002.png",
-            "other.geo.skin_GEO.elbow_L.chequer.1002.png", "contact_sheet.png"} == names  # fmt: skip
+            "other.geo.skin_GEO.elbow_L.chequer.1002.png", "contact_sheet.1002.png"} == names  # fmt: skip
 
 
 def test_a_cache_without_samples_has_one_picture(tmp_path):
@@ -587,7 +587,7 @@ def test_a_link_to_a_folder_that_is_not_there_yet(shot, tmp_path):
 def test_a_page_in_the_folder_of_the_pictures(shot, tmp_path):
     """Which is made for both."""
     draw(shot, tmp_path / "out", frames="1003", html=tmp_path / "out" / "page.html")
-    assert sorted(os.listdir(tmp_path / "out")) == ["contact_sheet.png", "page.html", f"{NAME}.chequer.1003.png"]
+    assert sorted(os.listdir(tmp_path / "out")) == ["contact_sheet.1003.png", "page.html", f"{NAME}.chequer.1003.png"]
 
 
 def test_a_name_that_is_too_long(tmp_path, capfd):

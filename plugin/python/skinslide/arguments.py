@@ -186,7 +186,8 @@ def _add_preview(command: argparse.ArgumentParser) -> None:
         dest="folder",
         metavar="DIR",
         help="folder for MESH.PATCH.VIEW.FRAME.png (MESH.PATCH.PIECE.VIEW.FRAME.png where a patch falls into pieces) "
-        "and contact_sheet.png, made where it is missing; each file is replaced in one step. This, --html, or both",
+        "and contact_sheet.png (with --frames contact_sheet.FIRST-LAST.png), made where it is missing; each file is "
+        "replaced in one step. This, --html, or both",
     )
     command.add_argument(
         "--html",

@@ -28,7 +28,7 @@ from skinslide.files import check_not_input, check_output, replacing, signals_as
 from skinslide.frames import UsageError
 from skinslide.meshpictures import MeshPictures, Picture, Wanted
 from skinslide.options import VIEWS, BakeOptions, Frames, PictureOptions
-from skinslide.outputs import OutputFolder, check_frames
+from skinslide.outputs import OutputFolder, check_frames, frame_label
 from skinslide.page import page
 from skinslide.panels import contact_sheets
 from skinslide.pictures import Canvas
@@ -118,8 +118,11 @@ class PreviewReport(BakeReport):
         return f"{super().text()}\n{rate}, drawn with {self.device}"
 
 
-def _sheet_name(number: int) -> str:
-    return f"contact_sheet{f'.{number + 1}' if number else ''}.png"
+def _sheet_name(number: int, asked: Sequence[float] | None) -> str:
+    """With the frames that were asked for, so that tasks of a farm do not take each other's."""
+    ends = [frame_label(frame) for frame in dict.fromkeys((asked[0], asked[-1]))] if asked else []
+    words = ["contact_sheet", *(["-".join(ends)] if ends else []), *([str(number + 1)] if number else [])]
+    return ".".join([*words, "png"])
 
 
 def _canvases(options: PictureOptions, device: int | None) -> Canvases[Canvas]:
@@ -196,7 +199,7 @@ class _Shot:
             return
         names = ((mesh.path, words, frame) for mesh in self.meshes for words, frame in mesh.files())
         pictures = (folder.path(path, words, frame, form) for path, words, frame in names)
-        folder.check_all(itertools.chain([folder.folder / _sheet_name(0)], pictures))
+        folder.check_all(itertools.chain([folder.folder / _sheet_name(0, self.plan.options.frames)], pictures))
 
     def draw(self, stage: Usd.Stage, canvases: Canvases[Canvas], progress: Progress | None) -> PreviewReport:
         """Draws every mesh, then what is made of all pictures."""
@@ -228,7 +231,7 @@ class _Shot:
         if not self.place.folder:
             return
         for number, sheet in enumerate(contact_sheets([strip for mesh in self.meshes for strip in mesh.thumbnails])):
-            path = self.place.folder.folder / _sheet_name(number)
+            path = self.place.folder.folder / _sheet_name(number, self.plan.options.frames)
             self.place.folder.write(path, sheet)
             report.files.append(str(path))
 
