@@ -63,13 +63,13 @@ SKINSLIDE_API void skinslide_outline_destroy(skinslide_outline *outline);
 typedef struct skinslide_figure {
     const skinslide_tessellation *tessellation;
     const skinslide_outline *outline; /* of the tessellation; NULL: of the faces that it was made for */
-    const float *points;    /* [mesh vertex_count][3] */
-    const double *to_world; /* [16] from the mesh's object space; NULL: it is the world's */
-    const float *values;    /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */
-    float lowest, highest;  /* lowest < highest, by 1e-37 to 1e37 */
-    float squares;          /* of the chequer, for each unit of st or of length at rest; > 0 */
-    int32_t double_sided;   /* 0: faces turned away from the camera are left out, as USD has it */
-    int32_t left_handed;    /* not 0 where the mesh's orientation is leftHanded */
+    const float *points;              /* [mesh vertex_count][3] */
+    const double *to_world;           /* [16] from the mesh's object space; NULL: it is the world's */
+    const float *values;   /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */
+    float lowest, highest; /* lowest < highest, by 1e-37 to 1e37 */
+    float squares;         /* of the chequer, for each unit of st or of length at rest; > 0 */
+    int32_t double_sided;  /* 0: faces turned away from the camera are left out, as USD has it */
+    int32_t left_handed;   /* not 0 where the mesh's orientation is leftHanded */
 } skinslide_figure;
 
 /* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
