@@ -38,3 +38,5 @@ say "How smoothly each rule moves skin"
 
 say "Share of the removable stretch that each rule removes"
 "$python" "$root/examples/share.py" "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/share.txt"
+
+printf '\nLook at %s,\nand at %s\n' "$out/elbow/report.html" "$out/sleeve.jpg, $out/face.jpg and $out/elbow/pictures"

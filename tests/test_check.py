@@ -211,3 +211,22 @@ def test_odd_but_legal(name, tmp_path, capsys):
         assert np.isfinite(points).all()
         if frame == FRAMES[0]:
             np.testing.assert_array_equal(points, ODD[name]().points, "rest in, rest out")
+
+
+def test_a_misspelt_setting_is_told():
+    stage, mesh = stages.patched_stage()
+    misspelt = (f"skinSlide:{PATCH}:forceDensityRul", f"primvars:skinSlide:{PATCH}:wieght")
+    for name in misspelt:
+        mesh.GetPrim().CreateAttribute(name, Sdf.ValueTypeNames.Token)
+    stages.set_property(mesh, "forceDensityRule", "relaxed")
+    told = [line for line in said(skinslide.check(stage), "warning") if "no setting" in line]
+    where = f"warning: {MESH}: patch {PATCH}"
+    assert told == [f"{where}: {name} is no setting of a patch, and counts for nothing" for name in misspelt]
+
+
+@pytest.mark.parametrize(("frames", "outside"), [("900", 1), ("1002,1004:1006", 3), ("1001-1003", 0)])
+def test_frames_beyond_the_samples_are_told(frames, outside):
+    stage, _mesh = stages.patched_stage()
+    told = [problem.message for problem in skinslide.bake(stage, frames=frames).problems]
+    expected = f"{outside} frames are beyond the samples, which go from 1001 to 1003; the nearest is held there"
+    assert [message for message in told if "beyond" in message] == [expected] * bool(outside)

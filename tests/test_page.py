@@ -169,7 +169,7 @@ class Shown:
         """Every address asked for since this was last asked, but what the page and the browser hold themselves."""
         events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         sent = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
-        return {url for url in sent if not url.startswith(("data:", "chrome:"))}
+        return {url for url in sent if not url.startswith(("data:", "chrome:", "chrome-untrusted:"))}
 
 
 @pytest.fixture

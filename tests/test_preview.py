@@ -539,7 +539,7 @@ def test_no_views(shot, tmp_path):
 
 def test_neither_folder_nor_page(shot, capfd):
     assert main(["preview", str(shot)]) == 2
-    assert "no folder for pictures, and no page" in capfd.readouterr().err
+    assert "no folder for pictures (-o) and no page (--html)" in capfd.readouterr().err
 
 
 def test_a_page_that_cannot_be(shot, tmp_path, capfd):

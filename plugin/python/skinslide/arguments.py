@@ -283,8 +283,8 @@ def _add_layer(command: argparse.ArgumentParser) -> None:
         required=True,
         metavar="X.skinslide",
         help="layer to write: .skinslide, .usda, .usdc or .usd. It sublayers STAGE by a relative path. "
-        "If it exists and sublayers STAGE it gains the patch, or has it replaced, and keeps everything else "
-        "but comments in its text; any other existing file is an error",
+        "If it exists and sublayers STAGE this is written into it, and it keeps everything else but comments in its "
+        "text; any other existing file is an error",
     )
     command.add_argument("--prim", required=True, metavar="PATH", help="the mesh")
     command.add_argument("--patch", required=True, metavar="NAME", help="the patch's name, such as elbow_L")
@@ -348,7 +348,7 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
         "--output",
         required=True,
         metavar="OUT",
-        help="layer of overs to write, the same as one bake of all the frames; replaced in one step at the end",
+        help="layer of overs to write, with all that one bake of all the frames has; replaced in one step at the end",
     )
 
 

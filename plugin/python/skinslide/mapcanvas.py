@@ -9,7 +9,6 @@ from skinslide.images import Corners
 from skinslide.native import Arguments, call, device_number, writable
 
 FIRST_TILE = 1001
-MOST_SIDE = 16384
 
 
 class MapCanvas:
@@ -17,7 +16,7 @@ class MapCanvas:
 
     def __init__(self, side: int, device: int | None = None):
         out = ffi.new("skinslide_map_canvas **")
-        wanted = min(max(side, 0), MOST_SIDE + 1)  # the core says what is wrong with others
+        wanted = min(side, 2**31 - 1)
         call(lib.skinslide_map_canvas_create, wanted, device_number(device), out)
         self._handle = ffi.gc(out[0], lib.skinslide_map_canvas_destroy)
         self.side = side

@@ -127,7 +127,7 @@ class MeshPictures:
     ) -> Iterator[tuple[float | None, list[Picture]]]:
         """Draws each time in order; yields its frame and files."""
         times = self._times[: self.frame_count]
-        on_sheet = set(times[:: max(1, -(-len(times) // _ON_A_SHEET))])
+        on_sheet = {times[i] for i in np.linspace(0, len(times) - 1, _ON_A_SHEET).round().astype(int)}
 
         def read(time: Usd.TimeCode) -> Callable[[], _Drawn]:
             points, controls = self._mesh.points_at(time), self._mesh.controls_at(time)

@@ -13,6 +13,8 @@ NAMESPACE = "skinSlide"
 REST_POINTS = f"{NAMESPACE}:restPoints"
 # Names directly under the namespace that are not patches.
 NOT_PATCHES = ("restPoints", "live", "cached")
+# What is painted, which a schema of attributes cannot declare.
+PRIMVARS = ("patch", "forceDensity", "weight", "maxDistance")
 # Values of the cache that a bake into the same layer has taken the place of.
 CACHED = f"{NAMESPACE}:cached"
 
@@ -40,6 +42,18 @@ def unapplied_patch_names(prim: Usd.Prim) -> list[str]:
     """The patches that have properties on a prim but are not applied to it."""
     names = {name for prefix in (NAMESPACE, f"primvars:{NAMESPACE}") for name in _names_under(prim, prefix)}
     return sorted(name for name in names.difference(patch_names(prim)) if name.split(":")[0] not in NOT_PATCHES)
+
+
+def unknown_settings(prim: Usd.Prim) -> dict[str, list[str]]:
+    """Properties in the place of a patch's settings that are none, such as a misspelt one, by patch."""
+    found: dict[str, list[str]] = {}
+    for patch in patch_names(prim):
+        for prefix, known in ((NAMESPACE, declared_names()), (f"primvars:{NAMESPACE}", PRIMVARS)):
+            space = f"{prefix}:{patch}:"
+            own = [prop.GetName() for prop in prim.GetAuthoredPropertiesInNamespace(space)]
+            unknown = [name for name in own if name.removeprefix(space).removesuffix(":indices") not in known]
+            found.setdefault(patch, []).extend(unknown)
+    return found
 
 
 def _names_under(prim: Usd.Prim, prefix: str) -> set[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from pxr import Usd
 from skinslide.frames import UsageError
 from skinslide.meshes import SlidMesh, read_meshes
 from skinslide.options import BakeOptions
-from skinslide.problems import Problem, StageProblems, errors
+from skinslide.problems import Problem, StageProblems, errors, frame_text
 from skinslide.slider import Lookup, Slider
 
 
@@ -45,7 +45,7 @@ class Plan:
             PlannedMesh(mesh, slider, _times(mesh, options.frames))
             for mesh, slider in zip(meshes, sliders, strict=True)
         ]
-        return cls(planned, problems, options)
+        return cls(planned, problems + list(_outside(planned, options.frames)), options)
 
     def check_patches(self, wanted: Sequence[str] | None) -> None:
         """Raises UsageError for no names, and StageProblems for those that no mesh has."""
@@ -61,6 +61,17 @@ class Plan:
     def frame_count(self) -> int:
         """Of all meshes."""
         return sum(len(planned.times) for planned in self.meshes)
+
+
+def _outside(meshes: list[PlannedMesh], asked: list[float] | None) -> Iterator[Problem]:
+    """Warns of frames beyond the samples of a mesh, where USD holds the nearest."""
+    for mesh, _, _ in meshes:
+        samples = mesh.sample_times()
+        outside = [frame for frame in asked or () if samples and not samples[0] <= frame <= samples[-1]]
+        if outside:
+            span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
+            message = f"{len(outside)} frames are beyond the samples, which go {span}; the nearest is held there"
+            yield Problem("warning", mesh.path, None, outside[0], message)
 
 
 def _build_sliders(meshes: list[SlidMesh], lookup: Lookup, problems: list[Problem]) -> list[Slider]:

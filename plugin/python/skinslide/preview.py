@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pxr import Usd
+from pxr import Sdf, Usd
 
 from skinslide.ahead import pool_of
 from skinslide.canvases import Canvases
@@ -90,7 +90,7 @@ def preview(
     )
     options = BakeOptions.checked(prims, frames, lookup, jobs)
     if folder is None and html is None:
-        raise UsageError("no folder for pictures, and no page")
+        raise UsageError("no folder for pictures (-o) and no page (--html) is asked for")
     opened = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
     place = _Place.of(folder, html, opened, None if opened is stage else stage)
     canvases = _canvases(pictures, options.lookup.device)
@@ -241,7 +241,7 @@ class _Shot:
         strips = [strip for mesh in self.meshes for strip in mesh.strips()]
         frames = sorted({frame for strip in strips for frame in strip.patch.frames if frame is not None})
         facts = {
-            "stage": stage.GetRootLayer().identifier,
+            "stage": Sdf.Layer.SplitIdentifier(stage.GetRootLayer().identifier)[0],
             "frames": f"{len(frames)}, {frame_text(frames[0])} to {frame_text(frames[-1])}" if frames else "none",
             "skinslide": version(),
             "lookup": choose_lookup(self.plan.options.lookup).lookup,

@@ -103,7 +103,7 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
             if prim.GetPath() in seen:
                 continue
             seen.add(prim.GetPath())
-            problems += _unapplied(prim)
+            problems += _misnamed(prim)
             if not names.patch_names(prim):
                 continue
             reason = _why_not(prim, prototypes)
@@ -173,7 +173,7 @@ def _instancer_prototypes(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
     }
 
 
-def _unapplied(prim: Usd.Prim) -> Iterator[Problem]:
+def _misnamed(prim: Usd.Prim) -> Iterator[Problem]:
     path = str(prim.GetPath())
     if {names.SCHEMA, f"{names.SCHEMA}:"} & set(names.applied_schemas(prim)):
         message = f"{names.SCHEMA} is applied without a patch's name; apply {names.SCHEMA}:NAME"
@@ -182,6 +182,9 @@ def _unapplied(prim: Usd.Prim) -> Iterator[Problem]:
         for patch in names.unapplied_patch_names(prim):
             message = f"has properties, but {names.SCHEMA}:{patch} is not applied to the prim, so it does not slide"
             yield Problem("warning", path, patch, None, message)
+        for patch, unknown in names.unknown_settings(prim).items():
+            for name in unknown:
+                yield Problem("warning", path, patch, None, f"{name} is no setting of a patch, and counts for nothing")
 
 
 def _why_not(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> str | None:

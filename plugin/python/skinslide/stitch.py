@@ -39,7 +39,7 @@ class StitchReport:
 
 
 def stitch(chunk_paths: Iterable[str | os.PathLike], output_path: str | os.PathLike) -> StitchReport:
-    """Writes one layer with the samples of several that were baked from one stage, the same bytes as one bake's.
+    """Writes one layer with the samples of several that were baked from one stage: the layer of one bake.
 
     Raises UsageError, StageError for a chunk that cannot be opened, StageProblems for chunks that do not fit together.
     """
