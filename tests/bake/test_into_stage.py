@@ -7,9 +7,9 @@ import textwrap
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
+from shots import MESH, OFFSET, REST, baked_mesh, direct, pose, vectors
 
 import stages
-from shots import MESH, OFFSET, REST, Shot, baked_mesh, direct, pose, vectors
 from skinslide import (
     FrameProblem,
     StageError,
@@ -17,18 +17,6 @@ from skinslide import (
     bake,
     bake_to_file,
 )
-
-
-@pytest.fixture
-def shot(tmp_path):
-    folder = tmp_path / "in"
-    folder.mkdir()
-    return Shot(folder)
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out.usda"
 
 
 def test_bake_authors_into_the_edit_target(shot, out):

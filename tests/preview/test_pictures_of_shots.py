@@ -11,20 +11,15 @@ import pytest
 from PIL import Image
 from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 from scipy import ndimage
+from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
 
 import skinslide
 import stages
-from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
 from skinslide.cli import main
 from skinslide.images import decode_exr
 from stages import FRAMES, PATCH
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-
-
-@pytest.fixture
-def shot(tmp_path):
-    return stages.save(sheet()[0], tmp_path / "shot.usda")
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 # ---- What is drawn ----

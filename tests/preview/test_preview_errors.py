@@ -13,17 +13,12 @@ import numpy as np
 import pytest
 from PIL import Image
 from pxr import UsdGeom
+from sheets import NAME, SIZE, add_st, draw, picture, sheet
 
 import skinslide
 import stages
-from sheets import NAME, SIZE, add_st, draw, picture, sheet
 from skinslide.cli import main
 from stages import PATCH
-
-
-@pytest.fixture
-def shot(tmp_path):
-    return stages.save(sheet()[0], tmp_path / "shot.usda")
 
 
 def test_the_command_reports(shot, tmp_path, capfd):

@@ -5,16 +5,11 @@ import math
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
+from sheets import NAME, contrast, draw, halves, picture, sheet
 
 import stages
-from sheets import NAME, contrast, draw, halves, picture, sheet
 from skinslide.cli import main
 from stages import PATCH
-
-
-@pytest.fixture
-def shot(tmp_path):
-    return stages.save(sheet()[0], tmp_path / "shot.usda")
 
 
 def test_a_camera_of_the_stage_is_used(tmp_path):

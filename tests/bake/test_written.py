@@ -10,37 +10,23 @@ import textwrap
 import numpy as np
 import pytest
 from pxr import Sdf, UsdGeom, UsdValidation, Vt
-
 from shots import (
     MESH,
     OFFSET,
     REST,
     VERTICES,
-    Shot,
     baked_mesh,
     composed_mesh,
     direct,
     pose,
     vectors,
 )
+
 from skinslide import (
     bake_to_file,
     output,
     progress,
 )
-
-
-@pytest.fixture
-def shot(tmp_path):
-    folder = tmp_path / "in"
-    folder.mkdir()
-    return Shot(folder)
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out.usda"
-
 
 # ---- what is written ----
 

@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
-
-import skinslide
 from shots import (
     COUNTS,
     FACES,
@@ -15,31 +13,20 @@ from shots import (
     OFFSET,
     REST,
     VERTICES,
-    Shot,
     baked_mesh,
     composed_mesh,
     direct,
     pose,
     vectors,
 )
+
+import skinslide
 from skinslide import (
     bake,
     bake_to_file,
     slider,
 )
 from skinslide.derived import samples_around
-
-
-@pytest.fixture
-def shot(tmp_path):
-    folder = tmp_path / "in"
-    folder.mkdir()
-    return Shot(folder)
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out.usda"
 
 
 def flat_normals(count: int) -> Vt.Vec3fArray:

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Sdf
+from shots import MESH, REST, Shot, baked_mesh, digest, pose, vectors
 
 import stages
-from shots import MESH, REST, Shot, baked_mesh, digest, pose, vectors
 from skinslide import (
     FrameProblem,
     Lookup,
@@ -21,18 +21,6 @@ from skinslide import (
     UsageError,
     bake_to_file,
 )
-
-
-@pytest.fixture
-def shot(tmp_path):
-    folder = tmp_path / "in"
-    folder.mkdir()
-    return Shot(folder)
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out.usda"
 
 
 def bad_outputs(shot: Shot, tmp_path: Path) -> dict[str, Path]:
