@@ -50,6 +50,7 @@ class Skin:
     st: np.ndarray | None  # at the mesh's corners; None: the chequer is one of squares in space, at rest
     tessellation: Tessellation
     double_sided: bool
+    left_handed: bool
 
     @classmethod
     def of(cls, mesh: SlidMesh, faces: np.ndarray, st: str | None) -> Skin:
@@ -62,7 +63,8 @@ class Skin:
             if error.status == "BAD_CONTROL":  # st
                 raise Fault(f"primvars:{st or _ST}: {error}") from error
             raise
-        return cls(mesh, corners, tessellation, bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get()))
+        double_sided = bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get())
+        return cls(mesh, corners, tessellation, double_sided, mesh.left_handed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +112,7 @@ class Series:
                 scale=scale,
                 double_sided=self.skin.double_sided,
                 outline=self.outline,
-                left_handed=self.skin.mesh.left_handed,
+                left_handed=self.skin.left_handed,
             )
         pixels = canvas.read()
         for column, place in zip(columns, places, strict=True):
