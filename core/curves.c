@@ -1,7 +1,7 @@
 /* Curves drawn near a mesh: which edges lie by them, and whether along or across them. */
 #include "internal.h"
+#include "vector.h"
 
-#include <math.h>
 #include <string.h>
 
 #define STEPS 16 /* straight pieces of a cubic segment */
@@ -130,19 +130,15 @@ static skinslide_status check_edges(const float *points, int32_t vertex_count, c
 
 /* ---- Nearest pieces ---- */
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double distance_to_piece(const piece *p, const double at[3]) {
     double along[3], off[3];
     for (int k = 0; k < 3; k++)
         along[k] = p->to[k] - p->from[k], off[k] = at[k] - p->from[k];
-    double length = dot(along, along), share = length > 0 ? dot(along, off) / length : 0;
+    double length = ss_dot(along, along), share = length > 0 ? ss_dot(along, off) / length : 0;
     share = share < 0 ? 0 : share > 1 ? 1 : share;
     for (int k = 0; k < 3; k++)
         off[k] -= share * along[k];
-    return sqrt(dot(off, off));
+    return ss_length(off);
 }
 
 /* The first of the nearest pieces within a distance; NULL where none is. */
@@ -162,8 +158,8 @@ static bool is_along(const piece *p, const double edge[3]) {
     double curve[3];
     for (int k = 0; k < 3; k++)
         curve[k] = p->to[k] - p->from[k];
-    double both = dot(edge, curve);
-    return both != 0 && 2 * both * both >= dot(edge, edge) * dot(curve, curve);
+    double both = ss_dot(edge, curve);
+    return both != 0 && 2 * both * both >= ss_dot(edge, edge) * ss_dot(curve, curve);
 }
 
 static bool is_near(const float *a, const float *b, const pieces *all, double distance, skinslide_direction direction) {

@@ -19,6 +19,7 @@
  *
  * Steps are counted and not watched, so that the time is known and neighbouring frames go the same way. */
 #include "internal.h"
+#include "vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -187,20 +188,10 @@ void ss_fit_work_destroy(ss_fit_work *work) {
 
 /* ---- Rows of L and D ---- */
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* out += scale a */
-static void add(double out[3], double scale, const double a[3]) {
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] += scale * a[axis];
-}
-
 /* out += scale (L x)_s */
 static void add_sample(const ss_rows *rows, int32_t s, double scale, const double (*x)[3], double out[3]) {
     for (int32_t k = rows->start[s]; k < rows->start[s + 1]; k++)
-        add(out, scale * rows->value[k], x[rows->column[k]]);
+        ss_add(scale * rows->value[k], x[rows->column[k]], out);
 }
 
 /* out += L'_s N a; where the surface has no normal, N is 1. */
@@ -208,9 +199,9 @@ static void scatter_sample(const ss_fit_work *work, int32_t s, const double a[3]
     const ss_rows *rows = work->fit->samples;
     const double *n = work->normal[s];
     bool none = n[0] == 0 && n[1] == 0 && n[2] == 0;
-    double height = none ? 1 : dot(n, a);
+    double height = none ? 1 : ss_dot(n, a);
     for (int32_t k = rows->start[s]; k < rows->start[s + 1]; k++)
-        add(out[rows->column[k]], height * rows->value[k], none ? a : n);
+        ss_add(height * rows->value[k], none ? a : n, out[rows->column[k]]);
 }
 
 /* out = (D x)_e */
@@ -223,7 +214,7 @@ static void take_edge(const edge *own, const double (*x)[3], double out[3]) {
 static void scatter_edge(const edge *own, const double a[3], double (*out)[3]) {
     for (int side = 0; side < 2; side++)
         if (own->end[side] >= 0)
-            add(out[own->end[side]], side ? 1 : -1, a);
+            ss_add(side ? 1 : -1, a, out[own->end[side]]);
 }
 
 /* ---- The model where y is ---- */
@@ -233,11 +224,11 @@ static void measure_edges(ss_fit_work *work) {
     for (int32_t e = 0; e < work->fit->edge_count; e++) {
         double now[3], *u = work->direction[e];
         take_edge(&work->fit->edges[e], (const double(*)[3])work->offset, now);
-        add(now, 1, work->linear[e]);
-        double length = sqrt(dot(now, now));
+        ss_add(1, work->linear[e], now);
+        double length = ss_length(now);
         for (int axis = 0; axis < 3; axis++)
             u[axis] = length > 0 ? now[axis] / length : 0;
-        work->excess[e] = length - sqrt(dot(work->linear[e], work->linear[e]));
+        work->excess[e] = length - ss_length(work->linear[e]);
     }
 }
 
@@ -255,8 +246,8 @@ static void list_gradient(ss_fit_work *work) {
     for (int32_t e = 0; e < fit->edge_count; e++) {
         double change[3], force[3] = {0, 0, 0};
         take_edge(&fit->edges[e], y, change);
-        add(force, -edge_stiffness * direction_stiffness, change);
-        add(force, -edge_stiffness * work->excess[e], work->direction[e]);
+        ss_add(-edge_stiffness * direction_stiffness, change, force);
+        ss_add(-edge_stiffness * work->excess[e], work->direction[e], force);
         scatter_edge(&fit->edges[e], force, work->gradient);
     }
 }
@@ -273,8 +264,8 @@ static void apply_system(const ss_fit_work *work, const double (*x)[3], double (
     for (int32_t e = 0; e < fit->edge_count; e++) {
         double change[3], force[3] = {0, 0, 0};
         take_edge(&fit->edges[e], x, change);
-        add(force, edge_stiffness * direction_stiffness, change);
-        add(force, edge_stiffness * dot(work->direction[e], change), work->direction[e]);
+        ss_add(edge_stiffness * direction_stiffness, change, force);
+        ss_add(edge_stiffness * ss_dot(work->direction[e], change), work->direction[e], force);
         scatter_edge(&fit->edges[e], force, out);
     }
 }
@@ -287,7 +278,7 @@ static void precondition(ss_fit_work *work) {
     double *across = work->right, *along = work->right + n;
     for (int64_t i = 0; i < n; i++) {
         const double *gradient = work->gradient[i], *normal = work->normal[i];
-        across[i] = dot(normal, gradient);
+        across[i] = ss_dot(normal, gradient);
         for (int axis = 0; axis < 3; axis++)
             along[axis * n + i] = gradient[axis] - across[i] * normal[axis];
     }
@@ -297,14 +288,14 @@ static void precondition(ss_fit_work *work) {
         double *scaled = work->scaled[i];
         for (int axis = 0; axis < 3; axis++)
             scaled[axis] = along[axis * n + i];
-        add(scaled, across[i] - dot(work->normal[i], scaled), work->normal[i]);
+        ss_add(across[i] - ss_dot(work->normal[i], scaled), work->normal[i], scaled);
     }
 }
 
 static double product(int32_t count, double (*a)[3], double (*b)[3]) {
     double sum = 0;
     for (int32_t i = 0; i < count; i++)
-        sum += dot(a[i], b[i]);
+        sum += ss_dot(a[i], b[i]);
     return sum;
 }
 
@@ -333,8 +324,8 @@ static void improve(ss_fit_work *work) {
         if (!(curvature > 0))
             return;
         for (int32_t i = 0; i < n; i++) {
-            add(work->offset[i], now / curvature, work->search[i]);
-            add(work->gradient[i], -now / curvature, work->image[i]);
+            ss_add(now / curvature, work->search[i], work->offset[i]);
+            ss_add(-now / curvature, work->image[i], work->gradient[i]);
         }
         before = now;
     }
@@ -366,5 +357,5 @@ void ss_fit_samples(ss_fit_work *work, const float *points, const double (*resid
     for (int k = 0; k < GAUSS_NEWTON_STEPS; k++)
         improve(work);
     for (int32_t i = 0; i < work->fit->free_count; i++)
-        add(displacement[i], 1, work->offset[i]);
+        ss_add(1, work->offset[i], displacement[i]);
 }

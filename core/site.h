@@ -2,9 +2,8 @@
 #ifndef SKINSLIDE_SITE_H
 #define SKINSLIDE_SITE_H
 
-#include <math.h>
-
 #include "internal.h"
+#include "vector.h"
 
 /* ---- triangles.c ---- */
 
@@ -74,37 +73,5 @@ void ss_site_border(const ss_shape *pose, const ss_site *site, double out[3]);
 void ss_site_walk_border(const ss_shape *pose, ss_site *site, double distance);
 /* How far the site is along its loop from a vertex of it, the shorter way: less than 0 against the faces' way. */
 double ss_site_border_distance(const ss_shape *pose, int32_t vertex, const ss_site *site);
-
-/* ---- Vectors ---- */
-
-static inline double ss_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static inline double ss_length(const double a[3]) {
-    return sqrt(ss_dot(a, a));
-}
-
-static inline void ss_subtract(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = a[k] - b[k];
-}
-
-/* out += factor a */
-static inline void ss_add(double factor, const double a[3], double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] += factor * a[k];
-}
-
-static inline void ss_cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1], out[1] = a[2] * b[0] - a[0] * b[2], out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-/* A vector of no length stays. */
-static inline void ss_normalise(double a[3]) {
-    double length = ss_length(a);
-    for (int k = 0; k < 3 && length > 0; k++)
-        a[k] /= length;
-}
 
 #endif
