@@ -1,7 +1,7 @@
 /* Maps drawn in texture coordinates: texels against barycentric coordinates in double, dilation against the rule applied on the
  * host, tiles, order, faces without a texel, devices that fail. */
 #include "faults.h"
-#include "mapdraw.h"
+#include "map.h"
 
 #include <math.h>
 #include <stdlib.h>

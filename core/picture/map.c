@@ -9,7 +9,7 @@
  *
  * Then DILATION passes from one texture into the other: each uncovered texel that touches covered ones, along a side or at a
  * corner, takes their mean. Only the texels near what was drawn are gone over and read. */
-#include "mapdraw.h"
+#include "map.h"
 
 #include <math.h>
 #include <stdlib.h>
