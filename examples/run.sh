@@ -16,27 +16,27 @@ done
 "$python" "$root/examples/shot/play.py" "$out/shot/shot.usda" >"$out/shot/play.txt"
 
 say "What they show"
-"$python" "$root/examples/table.py" "$out"
+"$python" "$root/examples/measure/table.py" "$out"
 printf '\n%s: %s\n' "$out/shot/shot.usda, played live" "$(tail -n 2 "$out/shot/play.txt" | head -n 1)"
 
 say "Pictures"
 "$venv/bin/skinslide" preview "$out/elbow/stage.usda" -o "$out/elbow/pictures" --html "$out/elbow/report.html" --quiet
 "$venv/bin/skinslide" preview "$out/elbow/stage.usda" -o "$out/elbow/pictures" --view chequer 2>/dev/null | tail -n 2
-"$python" "$root/examples/pictures.py" "$out/elbow.jpg" "$out/elbow/stage.usda" unit chequer
+"$python" "$root/examples/measure/pictures.py" "$out/elbow.jpg" "$out/elbow/stage.usda" unit chequer
 for example in sleeve face; do
-    "$python" "$root/examples/pictures.py" "$out/$example.jpg" "$out/$example/stage.usda" unit,relaxed chequer,stretch
+    "$python" "$root/examples/measure/pictures.py" "$out/$example.jpg" "$out/$example/stage.usda" unit,relaxed chequer,stretch
 done
 
 say "Lookup by colour-ID rendering"
-"$python" "$root/examples/lookup.py" "$out"
+"$python" "$root/examples/measure/lookup.py" "$out"
 
 say "How far the limit surface of the result is from that of the cache, as a share of the patch's size"
-"$python" "$root/examples/limit_distance.py" "$out"/*/stage.usda
+"$python" "$root/examples/measure/limit_distance.py" "$out"/*/stage.usda
 
 say "How smoothly each rule moves skin"
-"$python" "$root/examples/smoothness.py" "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/smoothness.txt"
+"$python" "$root/examples/measure/smoothness.py" "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/smoothness.txt"
 
 say "Share of the removable stretch that each rule removes"
-"$python" "$root/examples/share.py" "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/share.txt"
+"$python" "$root/examples/measure/share.py" "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/share.txt"
 
 printf '\nLook at %s,\nand at %s\n' "$out/elbow/report.html" "$out/sleeve.jpg, $out/face.jpg and $out/elbow/pictures"

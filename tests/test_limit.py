@@ -249,7 +249,7 @@ def test_damped_vertices_are_reported(tmp_path):
 @pytest.mark.parametrize("example", ["bump", "elbow", "fine_elbow"])
 def test_the_limit_surface_keeps_its_shape(tmp_path, example):
     """Five times as well as with linear, at its largest and on average, and with no more than 5 % more stretch."""
-    measure = load("limit_distance.py")
+    measure = load("measure/limit_distance.py")
     path = load(f"{example}/make.py").make(tmp_path)
     stage = Usd.Stage.Open(str(path))
     [mesh], _ = read_meshes(stage)

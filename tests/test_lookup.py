@@ -28,7 +28,7 @@ def load(path: Path):
 
 @pytest.fixture(scope="module")
 def tool():
-    return load(EXAMPLES / "lookup.py")
+    return load(EXAMPLES / "measure/lookup.py")
 
 
 @pytest.fixture

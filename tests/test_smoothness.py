@@ -23,7 +23,7 @@ def load(path: Path):
 
 @pytest.mark.parametrize("name", ["elbow", "bicep", "sleeve", "finger"])
 def test_relaxed_skin_does_not_jump(name, tmp_path):
-    smoothness = load(EXAMPLES / "smoothness.py")
+    smoothness = load(EXAMPLES / "measure/smoothness.py")
     stage = load(EXAMPLES / name / "make.py").make(tmp_path / name)
     mesh = read_meshes(Usd.Stage.Open(str(stage)))[0][0]
     _, times, moves = smoothness.motions(mesh)
@@ -38,7 +38,7 @@ def test_relaxed_skin_does_not_jump(name, tmp_path):
 
 
 def test_a_jump_is_told():
-    smoothness = load(EXAMPLES / "smoothness.py")
+    smoothness = load(EXAMPLES / "measure/smoothness.py")
 
     def jumping(time: float) -> np.ndarray:
         return np.array([[np.sin(time), 0, 0], [0.1 * (time > 5.1), 0, 0]])

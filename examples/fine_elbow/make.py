@@ -1,7 +1,7 @@
 """Fine elbow: the elbow example on a cage of film density, the body subdivided once before it is posed.
 
 The renderer subdivides it further. In the result the limit surface of the arm is where the cache has it, and only the
-texture on it slides: examples/limit_distance.py measures by how much.
+texture on it slides: examples/measure/limit_distance.py measures by how much.
 """
 
 import sys

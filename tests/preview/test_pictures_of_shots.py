@@ -208,7 +208,7 @@ def test_the_examples_pictures_are_as_made(name, tmp_path):
     """Those beside the examples are what run.sh makes: JPEG is off by some levels, another device at some edges."""
     chosen = (["unit"], ["chequer"]) if name == "elbow" else (["unit", "relaxed"], ["chequer", "stretch"])
     stage = load(EXAMPLES / name / "make.py").make(tmp_path)
-    drawn = load(EXAMPLES / "pictures.py").draw(stage, *chosen).astype(int)
+    drawn = load(EXAMPLES / "measure/pictures.py").draw(stage, *chosen).astype(int)
     with Image.open(EXAMPLES / f"{name}.jpg") as image:
         kept = np.array(image).astype(int)
     assert kept.shape == drawn.shape
