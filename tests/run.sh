@@ -31,7 +31,7 @@ say "Mutated .skinslide files under AddressSanitizer"
 fuzzed=$(mktemp -d)
 trap 'rm -rf "$fuzzed"' EXIT
 LD_PRELOAD="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libstdc++.so)" ASAN_OPTIONS=detect_leaks=0 \
-    "$python" tests/fuzz_fileformat.py build/sanitize/plugin/fileformat "$fuzzed" --count 3000
+    "$python" tests/format/fuzz_fileformat.py build/sanitize/plugin/fileformat "$fuzzed" --count 3000
 
 say "Python tests"
 "$python" -m pytest -q "$@"

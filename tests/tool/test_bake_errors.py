@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Sdf
-from shots import MESH, REST, Shot, baked_mesh, digest, pose, vectors
 
 import stages
+from shots import MESH, REST, Shot, baked_mesh, digest, pose, vectors
 from skinslide import (
     FrameProblem,
     Lookup,

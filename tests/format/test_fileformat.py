@@ -474,7 +474,7 @@ def test_a_closed_layer_gives_its_memory_back(path):
 
 def test_the_cache_is_bounded(path):
     script = (
-        "import sys; sys.path.insert(0, 'tests'); from layers import *; "
+        "import sys; sys.path.insert(0, 'tests/support'); from layers import *; "
         f"stage, mesh = open_mesh({str(path)!r}); [points(mesh, 1002) for _ in range(3)]; "
         "assert solve_count() == 3 and cache_bytes() == 0"
     )
@@ -539,7 +539,7 @@ def test_two_frames_are_solved_at_the_same_time(tmp_path):
 
 
 def run_python(script: str, **environment: str) -> subprocess.CompletedProcess:
-    root = Path(__file__).parent.parent
+    root = Path(__file__).parents[2]
     done = subprocess.run(
         [sys.executable, "-c", script],
         cwd=root,

@@ -11,10 +11,10 @@ import pytest
 from PIL import Image
 from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 from scipy import ndimage
-from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
 
 import skinslide
 import stages
+from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
 from skinslide.cli import main
 from skinslide.images import decode_exr
 from stages import FRAMES, PATCH

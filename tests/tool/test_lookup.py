@@ -14,7 +14,7 @@ import stages
 from skinslide import Lookup, SliderError
 from skinslide.cli import main
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 NAMES = ("elbow", "bicep", "face", "finger", "sleeve", "chequer")
 SIDES = (256, 512, 1024, 2048, 4096)
 

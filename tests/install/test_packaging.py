@@ -13,7 +13,7 @@ from pxr import Plug, Usd
 
 import skinslide
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PACKAGE = Path(skinslide.__file__).parent
 
 

@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
+
+import skinslide
 from shots import (
     COUNTS,
     FACES,
@@ -19,8 +21,6 @@ from shots import (
     pose,
     vectors,
 )
-
-import skinslide
 from skinslide import (
     bake,
     bake_to_file,

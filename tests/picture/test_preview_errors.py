@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from PIL import Image
 from pxr import UsdGeom
-from sheets import NAME, SIZE, add_st, draw, picture, sheet
 
 import skinslide
 import stages
+from sheets import NAME, SIZE, add_st, draw, picture, sheet
 from skinslide.cli import main
 from stages import PATCH
 

@@ -1,6 +1,7 @@
 """Fixtures of the bakes."""
 
 import pytest
+
 from shots import Shot
 
 

@@ -10,7 +10,7 @@ from pxr import Usd
 
 from skinslide.meshes import read_meshes
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def load(path: Path):

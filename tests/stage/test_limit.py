@@ -1,7 +1,6 @@
 """The limit surface: against subdivision by hand, read from a stage, and what a bake of it holds."""
 
 import importlib.util
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,13 +8,12 @@ import pytest
 from pxr import Usd, UsdGeom, Vt
 
 import stages
+from makers import refine
 from skinslide import PatchSetup, Slider, SliderError, Subdivision, bake_to_file, slider
 from skinslide.meshes import read_meshes
 from stages import FRAMES, MESH, PATCH
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-sys.path.insert(0, str(EXAMPLES))
-from makers import refine  # noqa: E402
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 CATMULL_CLARK = Subdivision()
 LEVELS = 5

@@ -1,9 +1,9 @@
 """Fixtures of the previews."""
 
 import pytest
-from sheets import sheet
 
 import stages
+from sheets import sheet
 
 
 @pytest.fixture

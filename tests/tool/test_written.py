@@ -10,6 +10,7 @@ import textwrap
 import numpy as np
 import pytest
 from pxr import Sdf, UsdGeom, UsdValidation, Vt
+
 from shots import (
     MESH,
     OFFSET,
@@ -21,7 +22,6 @@ from shots import (
     pose,
     vectors,
 )
-
 from skinslide import (
     bake_to_file,
     output,

@@ -7,9 +7,9 @@ import textwrap
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
-from shots import MESH, OFFSET, REST, baked_mesh, direct, pose, vectors
 
 import stages
+from shots import MESH, OFFSET, REST, baked_mesh, direct, pose, vectors
 from skinslide import (
     FrameProblem,
     StageError,

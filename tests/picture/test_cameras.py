@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
-from sheets import NAME, contrast, draw, halves, picture, sheet
 
 import stages
+from sheets import NAME, contrast, draw, halves, picture, sheet
 from skinslide.cli import main
 from stages import PATCH
 

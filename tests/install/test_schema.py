@@ -11,7 +11,7 @@ from pxr import Plug, Usd, UsdGeom
 import stages
 from skinslide import names
 
-SCHEMA = Path(__file__).parent.parent / "schema"
+SCHEMA = Path(__file__).parents[2] / "schema"
 GENERATED = ("generatedSchema.usda", "plugInfo.json")
 FALLBACKS = {
     "envelope": 1.0,

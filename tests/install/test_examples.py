@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdValidation
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 MESH_PATH = "/World/char/geo/body_GEO"
 # Example → its patch, and how many boundary loops that has: eyes, nostrils and mouth are holes of the face.
 PATCHES = {
