@@ -1,9 +1,12 @@
-"""Fixtures of several test files."""
+"""Fixtures of several folders."""
 
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+from repository import load
 
 
 @pytest.fixture
@@ -12,3 +15,16 @@ def public_folder():
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o755)
         yield Path(folder)
+
+
+@pytest.fixture(scope="session")
+def example_stage(tmp_path_factory) -> Callable[[str], Path]:
+    """Makes each example once, when a test first asks for it by name: the stage, which is for reading only."""
+    made = {}
+
+    def make(name: str) -> Path:
+        if name not in made:
+            made[name] = load(f"{name}/make.py").make(tmp_path_factory.mktemp(name) / "made" / "here")
+        return made[name]
+
+    return make

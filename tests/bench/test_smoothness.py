@@ -1,30 +1,17 @@
 """How the relaxed rule moves skin in the course of the examples' motions, where skin crumples most."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from pxr import Usd
 
+from repository import load
 from skinslide.meshes import read_meshes
-
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-
-
-def load(path: Path):
-    spec = importlib.util.spec_from_file_location(f"example_{path.parent.name}_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # where dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize("name", ["elbow", "bicep", "sleeve", "finger"])
-def test_relaxed_skin_does_not_jump(name, tmp_path):
-    smoothness = load(EXAMPLES / "measure/smoothness.py")
-    stage = load(EXAMPLES / name / "make.py").make(tmp_path / name)
+def test_relaxed_skin_does_not_jump(name, example_stage):
+    smoothness = load("measure/smoothness.py")
+    stage = example_stage(name)
     mesh = read_meshes(Usd.Stage.Open(str(stage)))[0][0]
     _, times, moves = smoothness.motions(mesh)
     edge = smoothness.mean_edge(mesh, mesh.patches[0].faces)
@@ -38,7 +25,7 @@ def test_relaxed_skin_does_not_jump(name, tmp_path):
 
 
 def test_a_jump_is_told():
-    smoothness = load(EXAMPLES / "measure/smoothness.py")
+    smoothness = load("measure/smoothness.py")
 
     def jumping(time: float) -> np.ndarray:
         return np.array([[np.sin(time), 0, 0], [0.1 * (time > 5.1), 0, 0]])

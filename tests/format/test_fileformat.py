@@ -28,6 +28,7 @@ from layers import (
     solve_count,
     write,
 )
+from repository import ROOT
 from stages import (
     FRAMES,
     MESH,
@@ -539,10 +540,9 @@ def test_two_frames_are_solved_at_the_same_time(tmp_path):
 
 
 def run_python(script: str, **environment: str) -> subprocess.CompletedProcess:
-    root = Path(__file__).parents[2]
     done = subprocess.run(
         [sys.executable, "-c", script],
-        cwd=root,
+        cwd=ROOT,
         env={**os.environ, **environment},
         capture_output=True,
         text=True,

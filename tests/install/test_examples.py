@@ -1,6 +1,5 @@
 """The example stages: what each promises of its cache, its patch and its opinions. No slid result is looked at here."""
 
-import importlib.util
 import subprocess
 import sys
 from collections import defaultdict
@@ -10,7 +9,8 @@ import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdValidation
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+from repository import EXAMPLES, load
+
 MESH_PATH = "/World/char/geo/body_GEO"
 # Example → its patch, and how many boundary loops that has: eyes, nostrils and mouth are holes of the face.
 PATCHES = {
@@ -29,18 +29,11 @@ FLEXED = ("elbow", "fine_elbow", "sleeve", "bicep")
 SIZES = {"fine_elbow": (53512, 53514), "chequer": (4096, 4225), "bump": (1024, 1089)}
 
 
-def load_maker(name: str):
-    spec = importlib.util.spec_from_file_location(f"make_{name}", EXAMPLES / name / "make.py")
-    maker = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(maker)
-    return maker
-
-
 class Made:
     """One example, made and opened, with what the tests read from it as arrays."""
 
-    def __init__(self, name: str, folder: Path):
-        self.name, self.path = name, load_maker(name).make(folder)
+    def __init__(self, name: str, path: Path):
+        self.name, self.path = name, path
         self.patch_name, self.loop_count = PATCHES[name]
         self.stage = Usd.Stage.Open(str(self.path))
         self.prim = self.stage.GetPrimAtPath(MESH_PATH)
@@ -71,13 +64,13 @@ class Made:
 
 
 @pytest.fixture(scope="session")
-def made(tmp_path_factory):
-    """Makes each example once, when a test first asks for it by name."""
+def made(example_stage):
+    """Makes and opens each example once, when a test first asks for it by name."""
     found = {}
 
     def get(name: str) -> Made:
         if name not in found:
-            found[name] = Made(name, tmp_path_factory.mktemp(name) / "made" / "here")
+            found[name] = Made(name, example_stage(name))
         return found[name]
 
     return get
@@ -222,7 +215,7 @@ def test_the_sheet_s_corners_are_its_corners(made, name):
 @pytest.mark.parametrize("name", FLEXED)
 def test_the_arm_bends_towards_the_shoulder(made, name):
     """The skin at the wrist comes nearer to the shoulder at every frame, and stays as far from the elbow."""
-    arm, maker = made(name), load_maker("elbow")
+    arm, maker = made(name), load("elbow/make.py")
     points = maker.makehuman.read_mesh().points + maker.makehuman.read_offsets(maker.makehuman.YOUNG_MAN)
     joints = maker.left_arm(points)
     wrist = int(np.linalg.norm(arm.rest() - joints.wrist, axis=1).argmin())
@@ -235,7 +228,7 @@ def test_the_arm_bends_towards_the_shoulder(made, name):
 
 def test_the_same_bytes_every_time(made, tmp_path):
     elbow = made("elbow")
-    load_maker("elbow").make(tmp_path)
+    load("elbow/make.py").make(tmp_path)
     for name in ("cache.usdc", "stage.usda"):
         assert (tmp_path / name).read_bytes() == elbow.path.with_name(name).read_bytes()
 
@@ -266,7 +259,7 @@ def test_without_the_data_the_command_says_how_to_get_it(tmp_path):
 
 
 def test_the_shot_plays_live(tmp_path):
-    path = load_maker("shot").make(tmp_path)
+    path = load("shot/make.py").make(tmp_path)
     played = subprocess.run(
         [sys.executable, EXAMPLES / "shot/play.py", path], capture_output=True, text=True, check=True
     )

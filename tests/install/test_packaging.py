@@ -12,8 +12,8 @@ import pytest
 from pxr import Plug, Usd
 
 import skinslide
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 PACKAGE = Path(skinslide.__file__).parent
 
 

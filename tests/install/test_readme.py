@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from pxr import Sdf, Usd, UsdGeom
 
-ROOT = Path(__file__).parents[2]
+from repository import ROOT
+
 README = (ROOT / "README.md").read_text()
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 

@@ -9,9 +9,10 @@ import pytest
 from pxr import Plug, Usd, UsdGeom
 
 import stages
+from repository import ROOT
 from skinslide import names
 
-SCHEMA = Path(__file__).parents[2] / "schema"
+SCHEMA = ROOT / "schema"
 GENERATED = ("generatedSchema.usda", "plugInfo.json")
 FALLBACKS = {
     "envelope": 1.0,

@@ -39,7 +39,7 @@ def sheet_st(shape: stages.Shape | None = None, low: float = 0.1, high: float = 
     return low + (high - low) * (shape.points[:, :2].astype(np.float64) + 0.5)
 
 
-def sheet(faces: np.ndarray | None = None, **st: float) -> tuple[Usd.Stage, UsdGeom.Mesh]:
+def charted(faces: np.ndarray | None = None, **st: float) -> tuple[Usd.Stage, UsdGeom.Mesh]:
     """A sheet with a patch, and st by vertex."""
     stage, mesh = stages.patched_stage(faces=faces)
     set_st(mesh, sheet_st(**st))
@@ -56,7 +56,7 @@ def files(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture
 def shot(tmp_path):
-    return stages.save(sheet()[0], tmp_path / "shot.usda")
+    return stages.save(charted()[0], tmp_path / "shot.usda")
 
 
 # ---- Texels by hand ----
@@ -115,7 +115,7 @@ def test_four_texels_past_the_chart_and_no_further(tmp_path):
 
 def test_a_slid_sheet_against_numpy(tmp_path):
     """Values at vertices from the bake's primvars; texels by inverting the sheet's st, which is a regular grid."""
-    stage, _mesh = sheet()
+    stage, _mesh = charted()
     shot = stages.save(stage, tmp_path / "shot.usda")
     maps(shot, tmp_path / "maps", size=100, frames=[1003])
     skinslide.bake_to_file(shot, tmp_path / "slid.usdc", diagnostics=True)
@@ -299,7 +299,7 @@ def test_frames_alone_or_together_on_any_number_of_threads(tmp_path, shot):
 def test_patches_by_name(tmp_path):
     """Two patches that share a column: of the one that is asked for the faces, its edges, and its paint; both slide."""
     left, right = stages.block(6, range(0, 3), range(6)), stages.block(6, range(2, 6), range(6))
-    stage, mesh = sheet(left)
+    stage, mesh = charted(left)
     stages.add_patch(mesh, right, "other")
     for name, value in ((PATCH, 2.0), ("other", 4.0)):
         stages.set_primvar(mesh, f"skinSlide:{name}:forceDensity", Types.FloatArray, "vertex", [value] * 49)
@@ -321,7 +321,7 @@ def test_patches_by_name(tmp_path):
 
 
 def test_meshes_without_the_patch_are_passed_over(tmp_path):
-    stage, _mesh = sheet()
+    stage, _mesh = charted()
     other = stages.add_mesh(stage, stages.grid(), "/World/prop/rope_GEO")  # has no st
     stages.add_patch(other, stages.annulus(), "rope")
     shot = stages.save(stage, tmp_path / "shot.usda")
@@ -364,7 +364,7 @@ def test_command(tmp_path, shot, capfd):
 
 
 def test_another_primvar(tmp_path, capfd):
-    stage, mesh = sheet()
+    stage, mesh = charted()
     value = [Gf.Vec2f(*pair) for pair in sheet_st(low=0.6).tolist()]
     stages.set_primvar(mesh, "uv2", Types.Float2Array, "varying", value)
     shot = stages.save(stage, tmp_path / "shot.usda")
@@ -376,7 +376,7 @@ def test_another_primvar(tmp_path, capfd):
 
 
 def test_a_stage_that_is_open(tmp_path):
-    stage, _mesh = sheet()
+    stage, _mesh = charted()
     before = stage.GetRootLayer().ExportToString()
     maps(stage, tmp_path / "open", size=16)
     maps(stages.save(stage, tmp_path / "shot.usda"), tmp_path / "saved", size=16)
@@ -388,7 +388,7 @@ def test_a_stage_that_is_open(tmp_path):
 
 
 def with_st(spoil) -> Usd.Stage:
-    stage, mesh = sheet()
+    stage, mesh = charted()
     spoil(mesh)
     return stage
 
@@ -446,7 +446,7 @@ def test_bad_texture_coordinates(spoil, says, tmp_path, capfd):
 
 def test_texture_coordinates_that_go_bad(tmp_path):
     """Animated: the frames before are whole, of the bad one there is nothing."""
-    stage, mesh = sheet()
+    stage, mesh = charted()
     for frame, shift in zip(FRAMES, (0, 0.05, -0.5), strict=True):
         set_st(mesh, sheet_st() + shift, time=frame)
     shot = stages.save(stage, tmp_path / "shot.usda")
@@ -469,13 +469,13 @@ def test_texture_coordinates_that_move_over_a_mesh_that_does_not(tmp_path):
         stages.set_primvar(mesh, "moving", Types.TexCoord2fArray, "vertex", value, frame)
     maps(stages.save(stage, tmp_path / "shot.usda"), tmp_path / "maps", size=20, st="moving")
     assert sorted(files(tmp_path / "maps")) == sorted(f"skin_GEO.{kind}.exr" for kind in KINDS)
-    maps(stages.save(sheet()[0], tmp_path / "still.usda"), tmp_path / "still", size=20, frames=[1001])
+    maps(stages.save(charted()[0], tmp_path / "still.usda"), tmp_path / "still", size=20, frames=[1001])
     names = ("maps/skin_GEO.forceDensity.exr", "still/skin_GEO.forceDensity.1001.exr")
     np.testing.assert_array_equal(*(read(tmp_path / name) for name in names))
 
 
 def test_a_bad_frame(tmp_path):
-    stage, mesh = sheet()
+    stage, mesh = charted()
     mesh.GetPointsAttr().Set(stages.vectors(np.full((49, 3), np.nan)), FRAMES[1])
     shot = stages.save(stage, tmp_path / "shot.usda")
     with pytest.raises(FrameProblem, match=f"{MESH}: frame 1002: points: vertex 0 is not finite"):
@@ -504,7 +504,7 @@ def test_folders_that_cannot_be(tmp_path, shot, capfd):
 
 
 def test_folders_that_may_not_be_written(tmp_path):
-    stage, _mesh = sheet()
+    stage, _mesh = charted()
     (tmp_path / "locked").mkdir(mode=0o555)
     for folder in (tmp_path, *list(tmp_path.parents)[:2]):
         folder.chmod(0o755)
@@ -525,7 +525,7 @@ def test_a_file_that_cannot_be_replaced(tmp_path, shot):
 @pytest.mark.parametrize("tile", ["", "<UDIM>."])
 def test_maps_that_the_stage_reads_are_never_written(tile, tmp_path):
     """However they are reached: here through a link, and at a frame other than the first."""
-    stage, mesh = sheet(high=1.5 if tile else 0.9)
+    stage, mesh = charted(high=1.5 if tile else 0.9)
     shot = stages.save(stage, tmp_path / "shot.usda")
     maps(shot, tmp_path / "maps", size=64, frames=[1002])
     (tmp_path / "link").symlink_to("maps")
@@ -540,7 +540,7 @@ def test_maps_that_the_stage_reads_are_never_written(tile, tmp_path):
 
 
 def test_maps_that_a_resolver_finds_are_never_written(tmp_path):
-    stage, mesh = sheet()
+    stage, mesh = charted()
     shot, library = stages.save(stage, tmp_path / "shot.usda"), tmp_path / "library" / "maps"
     maps(shot, library, size=16, frames=[1002])
     stages.set_property(mesh, "weightMap", Sdf.AssetPath("maps/skin_GEO.slide.1002.exr"))
@@ -560,7 +560,7 @@ def test_maps_that_a_resolver_finds_are_never_written(tmp_path):
 
 def test_a_stage_in_the_way(tmp_path):
     """A layer under a map's name, as a link."""
-    shot = stages.save(sheet()[0], tmp_path / "shot.usda")
+    shot = stages.save(charted()[0], tmp_path / "shot.usda")
     (tmp_path / "maps").mkdir()
     (tmp_path / "maps" / "skin_GEO.slide.1002.exr").hardlink_to(shot)
     before = shot.read_bytes()

@@ -6,26 +6,25 @@ import threading
 import numpy as np
 import pytest
 
+import stages
 from skinslide import SliderError, Subdivision
 from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation, Viewport, false_colour, frame_faces
 
 SIZE = 6  # quads a side
 FACES = SIZE**2
+SHEET = stages.squares(SIZE)
 ALL = np.arange(FACES)
 IDENTITY = np.eye(4)
 
 
 @pytest.fixture(scope="module")
 def shape():
-    first = np.arange(FACES) // SIZE * (SIZE + 1) + np.arange(FACES) % SIZE
-    indices = np.stack([first, first + 1, first + SIZE + 2, first + SIZE + 1], axis=1).ravel()
-    return Shape(np.full(FACES, 4, np.int32), indices.astype(np.int32))
+    return Shape(SHEET.counts, SHEET.indices)
 
 
 @pytest.fixture(scope="module")
 def sheet():
-    y, x = np.divmod(np.arange((SIZE + 1) ** 2), SIZE + 1)
-    return np.stack([x, y, 0 * x], axis=1).astype(np.float32)
+    return SHEET.points
 
 
 @pytest.fixture(scope="module")

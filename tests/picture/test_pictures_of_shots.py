@@ -1,10 +1,8 @@
 """Pictures of a shot: what is on them, and where they go."""
 
-import importlib.util
 import os
 import sys
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,13 +12,11 @@ from scipy import ndimage
 
 import skinslide
 import stages
+from repository import EXAMPLES, load
 from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
 from skinslide.cli import main
 from skinslide.images import decode_exr
 from stages import FRAMES, PATCH
-
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-
 
 # ---- What is drawn ----
 
@@ -196,19 +192,12 @@ def test_nothing_else_is_written(shot, tmp_path):
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".png"}
 
 
-def load(path: Path):
-    spec = importlib.util.spec_from_file_location(f"loaded_{path.parent.name}_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("name", ["elbow", "sleeve", "face"])
-def test_the_examples_pictures_are_as_made(name, tmp_path):
+def test_the_examples_pictures_are_as_made(name, example_stage):
     """Those beside the examples are what run.sh makes: JPEG is off by some levels, another device at some edges."""
     chosen = (["unit"], ["chequer"]) if name == "elbow" else (["unit", "relaxed"], ["chequer", "stretch"])
-    stage = load(EXAMPLES / name / "make.py").make(tmp_path)
-    drawn = load(EXAMPLES / "measure/pictures.py").draw(stage, *chosen).astype(int)
+    stage = example_stage(name)
+    drawn = load("measure/pictures.py").draw(stage, *chosen).astype(int)
     with Image.open(EXAMPLES / f"{name}.jpg") as image:
         kept = np.array(image).astype(int)
     assert kept.shape == drawn.shape

@@ -1,6 +1,5 @@
 """The limit surface: against subdivision by hand, read from a stage, and what a bake of it holds."""
 
-import importlib.util
 from pathlib import Path
 
 import numpy as np
@@ -9,21 +8,13 @@ from pxr import Usd, UsdGeom, Vt
 
 import stages
 from makers import refine
+from repository import load
 from skinslide import PatchSetup, Slider, SliderError, Subdivision, bake_to_file, slider
 from skinslide.meshes import read_meshes
 from stages import FRAMES, MESH, PATCH
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-
 CATMULL_CLARK = Subdivision()
 LEVELS = 5
-
-
-def load(path: str):
-    spec = importlib.util.spec_from_file_location(Path(path).parent.name, EXAMPLES / path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 # ---- limit points ----
@@ -245,10 +236,10 @@ def test_damped_vertices_are_reported(tmp_path):
 
 
 @pytest.mark.parametrize("example", ["bump", "elbow", "fine_elbow"])
-def test_the_limit_surface_keeps_its_shape(tmp_path, example):
+def test_the_limit_surface_keeps_its_shape(example_stage, example):
     """Five times as well as with linear, at its largest and on average, and with no more than 5 % more stretch."""
     measure = load("measure/limit_distance.py")
-    path = load(f"{example}/make.py").make(tmp_path)
+    path = example_stage(example)
     stage = Usd.Stage.Open(str(path))
     [mesh], _ = read_meshes(stage)
     ways = measure.Ways(mesh, 0)

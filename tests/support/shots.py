@@ -7,31 +7,23 @@ import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 import skinslide
-from skinslide import (
-    PatchSetup,
-    Slider,
-)
+import stages
+from skinslide import PatchSetup, Slider
+from stages import vectors
 
 SIZE = 8  # quads a side
 VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2
 MESH = "/World/char/geo/body_GEO"
-FIRST = np.arange(FACES) // SIZE * (SIZE + 1) + np.arange(FACES) % SIZE
-INDICES = np.stack([FIRST, FIRST + 1, FIRST + SIZE + 2, FIRST + SIZE + 1], axis=1).ravel().astype(np.int32)
-COUNTS = np.full(FACES, 4, np.int32)
-Y, X = np.divmod(np.arange(VERTICES), SIZE + 1)
-REST = np.stack([X, Y, 0 * X], axis=1).astype(np.float32)
+SHEET = stages.squares(SIZE)
+COUNTS, INDICES, REST = SHEET.counts, SHEET.indices, SHEET.points
 OFFSET = 1000
 
 
 def pose(frame: float) -> np.ndarray:
     """The sheet with a bump that travels along x."""
     points = REST.copy()
-    points[:, 2] = 3 * np.exp(-0.3 * ((X - frame) ** 2 + (Y - 4.0) ** 2))
+    points[:, 2] = 3 * np.exp(-0.3 * ((REST[:, 0] - frame) ** 2 + (REST[:, 1] - 4.0) ** 2))
     return points
-
-
-def vectors(array: np.ndarray) -> Vt.Vec3fArray:
-    return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(array, np.float32))
 
 
 class Shot:

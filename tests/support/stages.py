@@ -53,6 +53,16 @@ def grid(columns: int = 6, rows: int = 6, size: float = 1.0, centre: Sequence[fl
     i, j = np.meshgrid(np.arange(columns + 1), np.arange(rows + 1))
     x, y = i.ravel() / columns - 0.5, j.ravel() / rows - 0.5
     points = size * np.stack([x, y, 0.1 * np.sin(5 * x + 3 * y)], axis=1) + np.asarray(centre)
+    return quads(points, columns, rows)
+
+
+def squares(side: int) -> Shape:
+    """A flat sheet of unit squares, numbered as in a grid, from the origin along x and y."""
+    y, x = np.divmod(np.arange((side + 1) ** 2), side + 1)
+    return quads(np.stack([x, y, 0 * x], axis=1), side, side)
+
+
+def quads(points: np.ndarray, columns: int, rows: int) -> Shape:
     corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
     faces = np.stack([corner, corner + 1, corner + columns + 2, corner + columns + 1], axis=1)
     return from_faces(points, faces.tolist())

@@ -12,7 +12,7 @@ import pytest
 from pxr import Sdf
 
 import stages
-from shots import MESH, REST, Shot, baked_mesh, digest, pose, vectors
+from shots import MESH, REST, Shot, baked_mesh, digest, pose
 from skinslide import (
     FrameProblem,
     Lookup,
@@ -21,6 +21,7 @@ from skinslide import (
     UsageError,
     bake_to_file,
 )
+from stages import vectors
 
 
 def bad_outputs(shot: Shot, tmp_path: Path) -> dict[str, Path]:

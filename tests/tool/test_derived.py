@@ -19,7 +19,6 @@ from shots import (
     composed_mesh,
     direct,
     pose,
-    vectors,
 )
 from skinslide import (
     bake,
@@ -27,6 +26,7 @@ from skinslide import (
     slider,
 )
 from skinslide.derived import samples_around
+from stages import vectors
 
 
 def flat_normals(count: int) -> Vt.Vec3fArray:

@@ -9,7 +9,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 import stages
-from shots import MESH, OFFSET, REST, baked_mesh, direct, pose, vectors
+from shots import MESH, OFFSET, REST, baked_mesh, direct, pose
 from skinslide import (
     FrameProblem,
     StageError,
@@ -17,6 +17,7 @@ from skinslide import (
     bake,
     bake_to_file,
 )
+from stages import vectors
 
 
 def test_bake_authors_into_the_edit_target(shot, out):

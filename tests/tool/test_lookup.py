@@ -1,34 +1,25 @@
 """Both lookups through the tool: the same bytes of every example at every resolution; what `check` says."""
 
-import importlib.util
 import json
 import struct
 import zlib
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import skinslide
 import stages
+from repository import load
 from skinslide import Lookup, SliderError
 from skinslide.cli import main
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 NAMES = ("elbow", "bicep", "face", "finger", "sleeve", "chequer")
 SIDES = (256, 512, 1024, 2048, 4096)
 
 
-def load(path: Path):
-    spec = importlib.util.spec_from_file_location(f"loaded_{path.parent.name}_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def tool():
-    return load(EXAMPLES / "measure/lookup.py")
+    return load("measure/lookup.py")
 
 
 @pytest.fixture
@@ -38,8 +29,8 @@ def shot(tmp_path):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_examples_have_the_same_bytes_at_every_resolution(name, tool, tmp_path):
-    mesh = tool.open_mesh(load(EXAMPLES / name / "make.py").make(tmp_path))
+def test_examples_have_the_same_bytes_at_every_resolution(name, tool, example_stage):
+    mesh = tool.open_mesh(example_stage(name))
     exact = [frame.points.tobytes() for frame in tool.frames(mesh, "exact")]
     for side in SIDES:
         found = np.zeros(4, int)
@@ -100,8 +91,8 @@ def test_lookups_that_cannot_be(lookup):
     assert error.value.status == "BAD_ARGUMENT"
 
 
-def test_id_buffer_is_of_the_faces(tool, tmp_path):
-    mesh = tool.open_mesh(load(EXAMPLES / "chequer" / "make.py").make(tmp_path))
+def test_id_buffer_is_of_the_faces(tool, example_stage):
+    mesh = tool.open_mesh(example_stage("chequer"))
     slider = mesh.slider(Lookup("egl", resolution=256))
     texels = slider.id_buffer(mesh.rest_points, 0)
     assert texels.shape == (256, 256)

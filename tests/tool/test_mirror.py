@@ -28,7 +28,7 @@ ACROSS = VERTEX_ROW * (COLUMNS + 1) + COLUMNS - VERTEX_COLUMN
 ON_PATCH = (VERTEX_COLUMN <= 3) & (VERTEX_ROW >= 1) & (VERTEX_ROW <= 5)
 
 
-def sheet() -> stages.Shape:
+def symmetric_grid() -> stages.Shape:
     shape = stages.grid(COLUMNS, ROWS)
     x, y = VERTEX_COLUMN / COLUMNS - 0.5, VERTEX_ROW / ROWS - 0.5
     points = np.stack([x, y, 0.1 * np.sin(5 * np.abs(x) + 3 * y)], axis=1).astype(np.float32)
@@ -37,13 +37,13 @@ def sheet() -> stages.Shape:
 
 def moved(amount: float) -> np.ndarray:
     """The sheet stretched unevenly, the same on both sides."""
-    x, y, z = sheet().points.T.astype(np.float64)
+    x, y, z = symmetric_grid().points.T.astype(np.float64)
     return np.stack([x + amount * x * np.abs(x), y + amount * np.abs(x) * y, z + amount * (x * x - y)], axis=1)
 
 
 def new_shot() -> tuple[Usd.Stage, UsdGeom.Mesh]:
     stage = stages.new_stage()
-    mesh = stages.add_mesh(stage, sheet(), frames=())
+    mesh = stages.add_mesh(stage, symmetric_grid(), frames=())
     for i, frame in enumerate(FRAMES):
         mesh.GetPointsAttr().Set(stages.vectors(moved(i / 4)), frame)
     stages.add_patch(mesh, FACES, LEFT)
@@ -256,7 +256,7 @@ def test_both_sides_slide_alike(tmp_path):
 
 def test_another_plane(tmp_path):
     """The same sheet, turned so that it is symmetric about y = 2."""
-    shape = sheet()
+    shape = symmetric_grid()
     turned = np.stack([shape.points[:, 1], shape.points[:, 0] + 2, shape.points[:, 2]], axis=1)
     found = mirror_faces(shape.counts, shape.indices, turned, FACES, axis="y", plane=2)
     assert sorted(found.faces.tolist()) == sorted(ACROSS_FACES.tolist())
@@ -303,7 +303,7 @@ def test_names_without_a_side(name):
 
 
 def move_point(mesh) -> None:
-    points = sheet().points.copy()
+    points = symmetric_grid().points.copy()
     points[ACROSS[20], 0] += 0.01
     mesh.GetPointsAttr().Set(stages.vectors(points))
 

@@ -8,27 +8,27 @@ import numpy as np
 import pytest
 
 import skinslide
+import stages
 from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError, slider
 
 SIZE = 12  # quads a side
 VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2
+SHEET = stages.squares(SIZE)
 
 
 @pytest.fixture(scope="module")
 def counts():
-    return np.full(FACES, 4, np.int32)
+    return SHEET.counts
 
 
 @pytest.fixture(scope="module")
 def indices():
-    first = (np.arange(FACES) // SIZE * (SIZE + 1) + np.arange(FACES) % SIZE).astype(np.int32)
-    return np.stack([first, first + 1, first + SIZE + 2, first + SIZE + 1], axis=1).ravel()
+    return SHEET.indices
 
 
 @pytest.fixture(scope="module")
 def rest():
-    y, x = np.divmod(np.arange(VERTICES), SIZE + 1)
-    return np.stack([x, y, 0 * x], axis=1).astype(np.float32)
+    return SHEET.points
 
 
 def bumped(rest, at=4.0):

@@ -20,13 +20,13 @@ from shots import (
     composed_mesh,
     direct,
     pose,
-    vectors,
 )
 from skinslide import (
     bake_to_file,
     output,
     progress,
 )
+from stages import vectors
 
 # ---- what is written ----
 
