@@ -6,7 +6,7 @@ function(skinslide_configure_target target)
                                            CXX_VISIBILITY_PRESET hidden)
   target_compile_definitions(${target} PRIVATE SKINSLIDE_VERSION="${PROJECT_VERSION}")
   target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wshadow
-                                           $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes>)
+                                           "$<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes;-Wmissing-prototypes>")
   if(SKINSLIDE_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

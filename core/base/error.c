@@ -1,5 +1,5 @@
 /* Statuses and their messages. */
-#include "internal.h"
+#include "base.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* An object's arrays, chained so that one call frees them: allocation is checked once, after all of it. */
-#include "internal.h"
+#include "base.h"
 
 #include <stdlib.h>
 

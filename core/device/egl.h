@@ -1,5 +1,5 @@
-/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, program.c, what
- * draws (idbuffer.c, canvas.c, mapdraw.c) and their tests. */
+/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, gl.c, what
+ * draws with them and their tests. */
 #ifndef SKINSLIDE_EGL_H
 #define SKINSLIDE_EGL_H
 
@@ -8,7 +8,7 @@
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
 
-#include "internal.h"
+#include "device.h"
 
 /* What every EGL since 1.4 exports. */
 #define SS_EGL_FUNCTIONS(X)                                                                                                    \

@@ -12,7 +12,7 @@
  *
  * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near each sample,
  * so that where the mesh is does not matter. */
-#include "internal.h"
+#include "limit.h"
 
 #include <math.h>
 #include <stdlib.h>

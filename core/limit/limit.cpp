@@ -1,6 +1,6 @@
 /* Limit surfaces of a subdivided mesh, face by face, and the weights with which mesh vertices make a point of them. The only
  * file that knows OpenSubdiv, whose Bfr surfaces need no refined mesh. Behind C functions: no exception leaves this file. */
-#include "internal.h"
+#include "limit.h"
 
 #include <algorithm>
 #include <cstring>

@@ -2,7 +2,7 @@
  * the loop scheme, bilinear in quads, and in other polygons bilinear in one of the quads that join a corner, the middles of its
  * two sides and the mean of all corners. Along every side all of these run evenly from corner to corner, so that faces of
  * different kinds meet in the same point. */
-#include "internal.h"
+#include "limit.h"
 
 #include <cmath>
 #include <glm/glm.hpp>

@@ -1,5 +1,5 @@
 /* Points of a limit surface for pictures and measures: skinslide_limit_points. */
-#include "internal.h"
+#include "limit.h"
 
 /* Faces that places are on, in the order of the mesh, and where they are in that list. */
 typedef struct chosen_faces {

@@ -1,12 +1,10 @@
-/* L D L' with blocks of two by two, on the pattern that embed.c found: column by column, each taking what the columns before it
- * leave there. Columns whose rows are the same go together, as in embed.c. Sums are in one order on every machine. */
-#include "blocks.h"
+/* L D L' with blocks of two by two, on the pattern that order.c found: column by column, each taking what the columns before it
+ * leave there. Columns whose rows are the same go together, as in factor.c. Sums are in one order on every machine. */
+#include "linear.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "system.h"
 
 skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skinslide_error *error) {
     ss_blocks *blocks = calloc(1, sizeof *blocks);

@@ -2,8 +2,8 @@
  *
  *     (A'A) x = b
  *
- * The only file that knows the solver: KLU (Davis and Palamadai Natarajan 2010). */
-#include "internal.h"
+ * Solved by KLU (Davis and Palamadai Natarajan 2010). */
+#include "linear.h"
 
 #include <klu.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Faces and how they meet: edges, twins, connected pieces. */
-#include "internal.h"
+#include "mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Normals of slid points, where a face moved: area-weighted means of face normals. */
-#include "internal.h"
+#include "mesh.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* One connected patch: its vertices, edges and loops, which must make a disk with holes, and what of it may slide. */
-#include "internal.h"
+#include "patch.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -245,12 +245,6 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
         return status;
     put_outer_first(patch, scratch[0]);
     hold_loops(patch);
-    if ((status = ss_place_boundary(patch, rest_points, error)))
-        return status;
-    if (patch->loop_count > 1 &&
-        (patch->setup->holes == SKINSLIDE_HOLES_PINNED || patch->setup->rule == SKINSLIDE_RULE_RELAXED))
-        if ((status = ss_place_holes(patch, rest_points, error)))
-            return status;
     order_free(patch, scratch[0]);
     return SKINSLIDE_OK;
 }

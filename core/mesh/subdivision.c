@@ -1,6 +1,6 @@
 /* Checks the subdivision of a mesh, so that OpenSubdiv meets only what it takes: its own complaints go to stderr and name no
  * element. */
-#include "internal.h"
+#include "mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,26 @@
 /* The deformed patch as a surface to slide on: the fan triangles of its faces, as `linear` interpolates in them, how they meet,
  * and how they lie in a pose. */
-#include "site.h"
+#include "patch.h"
+#include "vector.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- Fans ---- */
+
+int32_t ss_fan_of_side(const ss_faces *faces, int32_t corner) {
+    int32_t face = faces->corner_face[corner], side = corner - faces->face_start[face], last = ss_fan_size(faces, face) - 1;
+    return side == 0 ? 0 : side - 1 > last ? last : side - 1;
+}
+
+int32_t ss_largest_face(const ss_faces *faces) {
+    int32_t largest = 3;
+    for (int32_t f = 0; f < faces->face_count; f++)
+        largest = ss_fan_size(faces, f) + 2 > largest ? ss_fan_size(faces, f) + 2 : largest;
+    return largest;
+}
+
+/* ---- All the triangles of a patch ---- */
 
 static int32_t triangle_of_side(const ss_surface *surface, int32_t corner) {
     const ss_faces *faces = &surface->patch->faces;

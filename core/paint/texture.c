@@ -1,5 +1,6 @@
 /* Maps painted in a mesh's texture coordinates: bilinear samples at the corners of faces, as one value a vertex. */
-#include "internal.h"
+#include "mesh.h"
+#include "paint.h"
 
 #include <math.h>
 

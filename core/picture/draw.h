@@ -1,15 +1,15 @@
-/* What the files that draw share: tessellation.c, seams.c, pose.c, view.cpp, canvas.c, figure.c, shading.c. */
+/* A mesh as triangles to look at, and from where. */
 #ifndef SKINSLIDE_DRAW_H
 #define SKINSLIDE_DRAW_H
 
-#include "internal.h"
+#include "limit.h"
 #include "skinslide/picture.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* ---- tessellation.c, seams.c, outline.c, pose.c ---- */
+/* ---- tessellation.c, seams.c, outline.c, posed.c ---- */
 
 /* Part of a face: the fan of all of it, where side is 0, or a grid of side by side cells on its limit surface. */
 typedef struct ss_piece {

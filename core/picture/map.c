@@ -10,6 +10,7 @@
  * Then DILATION passes from one texture into the other: each uncovered texel that touches covered ones, along a side or at a
  * corner, takes their mean. Only the texels near what was drawn are gone over and read. */
 #include "map.h"
+#include "paint.h"
 
 #include <math.h>
 #include <stdlib.h>

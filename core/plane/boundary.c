@@ -1,6 +1,6 @@
 /* Where the outer boundary goes (paper, section 3.2): to the unit square between four corners, or to its inscribed circle, each
  * vertex at its share of rest arc length. The same places serve rest and every frame. */
-#include "internal.h"
+#include "plane.h"
 
 #include <math.h>
 

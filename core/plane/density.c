@@ -1,5 +1,5 @@
 /* Force densities (paper, section 3.1) and the artist's controls: what every edge pulls with, and how far each vertex goes. */
-#include "internal.h"
+#include "plane.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* Faces of an embedding by place: a tree of boxes, for what a walk cannot reach. It is as deep as the logarithm of the count of
  * faces however unevenly they lie, so that a patch whose faces crowd together (a finger tip in a circle) cannot stall a frame.
  * Faces are sorted along a Z-order curve and halved. */
-#include "internal.h"
+#include "plane.h"
 
 #include <math.h>
 #include <stdlib.h>

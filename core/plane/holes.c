@@ -3,7 +3,7 @@
  * The paper leaves hole loops free at rest and pins them where they fall; left free they fold. So each hole gets a virtual
  * vertex, joined to every vertex of its loop at density 1/(rest distance to the loop's centroid): the patch is then a disk,
  * whose embedding (rule unit, unpainted) cannot fold. The caps are dropped again, and the loops stay. */
-#include "internal.h"
+#include "plane.h"
 
 #include <math.h>
 
@@ -57,7 +57,15 @@ static skinslide_status embed_capped(const ss_net *net, const double *density, c
     return status;
 }
 
+/* Whether the loops of holes have a place: the relaxed rule's plane holds them, free or not. */
+static bool holds_holes(const ss_patch *patch) {
+    return patch->loop_count > 1 &&
+           (patch->setup->holes == SKINSLIDE_HOLES_PINNED || patch->setup->rule == SKINSLIDE_RULE_RELAXED);
+}
+
 skinslide_status ss_place_holes(ss_patch *patch, const float *rest_points, skinslide_error *error) {
+    if (!holds_holes(patch))
+        return SKINSLIDE_OK;
     int32_t holes = patch->loop_count - 1, vertices = patch->vertex_count + holes;
     int32_t spokes = patch->loop_start[patch->loop_count] - patch->loop_start[1];
     int32_t edge_count = patch->faces.edge_count + spokes;

@@ -1,7 +1,7 @@
 /* From a point in a face of the embedding to a point on the deformed mesh (paper, section 3.4): the weights of the face's
  * corners there, applied to the corners of the deformed face. `linear`: barycentric in a triangle of the fan. `meanValue`: mean
  * value coordinates in the polygon (Floater 2003; Hormann and Floater 2006), smooth across the fan's diagonals. */
-#include "internal.h"
+#include "plane.h"
 
 #include <math.h>
 
@@ -105,13 +105,6 @@ bool ss_mean_value_weights(const ss_faces *faces, const double (*uv)[2], const s
 }
 
 /* ---- Points ---- */
-
-int32_t ss_largest_face(const ss_faces *faces) {
-    int32_t largest = 3;
-    for (int32_t f = 0; f < faces->face_count; f++)
-        largest = ss_fan_size(faces, f) + 2 > largest ? ss_fan_size(faces, f) + 2 : largest;
-    return largest;
-}
 
 /* The weighted sum of deformed corners, as an offset from where a vertex is now. */
 static void offset_from(const ss_patch *patch, const float *points, int32_t vertex, const int32_t *corners, int32_t count,

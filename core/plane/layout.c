@@ -1,13 +1,8 @@
 /* How the faces of an embedding lie: which hold a point, which turned over, whether any can overlap. */
-#include "internal.h"
+#include "plane.h"
 
 #include <float.h>
 #include <math.h>
-
-int32_t ss_fan_of_side(const ss_faces *faces, int32_t corner) {
-    int32_t face = faces->corner_face[corner], side = corner - faces->face_start[face], last = ss_fan_size(faces, face) - 1;
-    return side == 0 ? 0 : side - 1 > last ? last : side - 1;
-}
 
 int32_t ss_fan_holding(const ss_faces *faces, int32_t face, const double (*uv)[2], const double p[2]) {
     for (int32_t t = 0; t < ss_fan_size(faces, face); t++) {

@@ -6,7 +6,7 @@
  * which starts where the neighbour before it landed and takes about three steps a query. Where faces may overlap, where a walk
  * goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is
  * counted. */
-#include "internal.h"
+#include "plane.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
  * split into sums of two doubles and added up without rounding (Dekker 1971, Knuth, Shewchuk 1997: expansions). The file must
  * be compiled without contraction of products and sums. Exact while no product underflows: coordinates of an embedding are in
  * [0,1] and, where not 0, far above 1e-140. */
-#include "internal.h"
+#include "plane.h"
 
 #include <float.h>
 #include <math.h>

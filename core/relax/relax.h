@@ -2,7 +2,6 @@
 #ifndef SKINSLIDE_RELAX_H
 #define SKINSLIDE_RELAX_H
 
-#include "blocks.h"
 #include "chart.h"
 
 /* Memory of one thread for one patch, and where its slide has got to. Unknowns are steps in the chart; a vertex of a free loop

@@ -15,8 +15,9 @@ static skinslide_status check_options(const skinslide_workspace_options *options
 
 /* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with
  * EGL for its absence, and so a resolution that its device does not have; a lack of memory is no choice. */
-skinslide_status ss_open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
-                                int32_t patch_count, ss_idbuffer **out, skinslide_lookup_info *info, skinslide_error *error) {
+static skinslide_status open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
+                                    int32_t patch_count, ss_idbuffer **out, skinslide_lookup_info *info,
+                                    skinslide_error *error) {
     const skinslide_workspace_options standard = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
     const skinslide_workspace_options *own = options ? options : &standard;
     skinslide_status status = check_options(own, error);
@@ -47,7 +48,7 @@ skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *opti
     skinslide_lookup_info chosen;
     if (!info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the answer");
-    skinslide_status status = ss_open_lookup(options, ss_egl_load, NULL, 0, &buffer, &chosen, error);
+    skinslide_status status = open_lookup(options, ss_egl_load, NULL, 0, &buffer, &chosen, error);
     ss_idbuffer_destroy(buffer);
     if (!status)
         *info = chosen;
@@ -80,7 +81,7 @@ skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const 
         return ss_out_of_memory(error);
     describe_patches(slider, patches);
     skinslide_status status =
-        ss_open_lookup(options, load, patches, slider->part_count, &workspace->idbuffer, &workspace->lookup, error);
+        open_lookup(options, load, patches, slider->part_count, &workspace->idbuffer, &workspace->lookup, error);
     ss_free(&scratch);
     for (int32_t p = 0; p < slider->part_count && workspace->idbuffer && !status; p++) {
         workspace->benches[p].candidates =

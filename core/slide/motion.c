@@ -1,5 +1,5 @@
 /* Velocities and accelerations of slid points: the cache's own, plus the rate at which the displacement changes. */
-#include "internal.h"
+#include "base.h"
 
 #include <math.h>
 

@@ -1,7 +1,9 @@
-/* What setup.c builds and slider.c uses. */
+/* What is made once a shot, once a thread, and used in every frame. */
 #ifndef SKINSLIDE_SLIDER_H
 #define SKINSLIDE_SLIDER_H
 
+#include "device.h"
+#include "limit.h"
 #include "relax.h"
 #include "travel.h"
 

@@ -2,7 +2,7 @@
 #ifndef SKINSLIDE_TEST_MESHES_H
 #define SKINSLIDE_TEST_MESHES_H
 
-#include "internal.h"
+#include "patch.h"
 
 /* ---- Random numbers: the same on every machine ---- */
 

@@ -48,6 +48,10 @@ ss_patch *patch_of(const test_mesh *mesh, skinslide_patch_setup choices) {
     ss_patch *patch = NULL;
     skinslide_status status = ss_patch_create(&view, &kept, 0, faces, mesh->face_count, 0, 1, &patch, &error);
     free(faces);
+    if (!status)
+        status = ss_place_boundary(patch, mesh->points, &error);
+    if (!status)
+        status = ss_place_holes(patch, mesh->points, &error);
     assert_ok(status, &error);
     return patch;
 }

@@ -1,0 +1,38 @@
+/* Memory and errors. Names begin with ss_, so that the static library can be linked into any program. */
+#ifndef SKINSLIDE_BASE_H
+#define SKINSLIDE_BASE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "skinslide/skinslide.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- memory.c: an object's arrays, all freed at once ---- */
+
+typedef struct ss_block ss_block;
+typedef struct ss_memory {
+    ss_block *blocks;
+    bool failed; /* an allocation failed: checked once, after all of them */
+} ss_memory;
+
+/* count * size bytes of zeros, or NULL with memory->failed set. A count of 0 gives a pointer all the same. */
+void *ss_new(ss_memory *memory, int64_t count, size_t size);
+void ss_free(ss_memory *memory);
+#define SS_NEW(memory, type, count) ((type *)ss_new((memory), (count), sizeof(type)))
+
+/* ---- error.c ---- */
+
+/* Fills error, where there is one, and returns status: `return ss_fail(error, SKINSLIDE_BAD_PATCH, "...", ...);` */
+__attribute__((format(printf, 3, 4))) skinslide_status ss_fail(skinslide_error *error, skinslide_status status,
+                                                               const char *format, ...);
+skinslide_status ss_out_of_memory(skinslide_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,85 @@
+/* Faces, and how they meet. */
+#ifndef SKINSLIDE_MESH_H
+#define SKINSLIDE_MESH_H
+
+#include "base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- mesh.c: faces and how they meet ---- */
+
+/* Polygons over some vertices. Corner c of face f, face_start[f] <= c < face_start[f + 1], is also the side to the next corner.
+ */
+typedef struct ss_faces {
+    int32_t face_count;
+    int32_t corner_count;
+    int32_t *face_start;    /* [face_count + 1] */
+    int32_t *corner_vertex; /* [corner_count] */
+    int32_t *corner_face;   /* [corner_count] */
+    int32_t *corner_twin;   /* [corner_count] the same edge seen from the other face; -1 on the boundary */
+    int32_t *corner_edge;   /* [corner_count] edges are numbered by their lower, then their higher vertex */
+    int32_t edge_count;
+} ss_faces;
+
+static inline int32_t ss_next_corner(const ss_faces *faces, int32_t corner) {
+    int32_t face = faces->corner_face[corner];
+    return corner + 1 < faces->face_start[face + 1] ? corner + 1 : faces->face_start[face];
+}
+
+static inline int32_t ss_previous_corner(const ss_faces *faces, int32_t corner) {
+    int32_t face = faces->corner_face[corner];
+    return corner > faces->face_start[face] ? corner - 1 : faces->face_start[face + 1] - 1;
+}
+
+/* For qsort and bsearch: int32_t, and int32_t[2]. */
+int ss_ascending(const void *a, const void *b);
+int ss_ascending_pairs(const void *a, const void *b);
+
+/* Counts, indices and rest points of the whole mesh. */
+skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error);
+/* Names the first vertex that is not finite. */
+skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
+/* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. label begins messages. */
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen, int32_t count, const char *label,
+                               ss_memory *memory, ss_faces *faces, skinslide_error *error);
+/* Fills corner_edge and edge_count of any faces at all, several at an edge or none like it. False where memory is short. */
+bool ss_number_edges(ss_faces *faces);
+/* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
+ */
+int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack);
+
+/* ---- Fans, triangles.c: a face of n corners as n - 2 triangles about its first ---- */
+
+/* Triangle t of the fan of a face, as patch vertices. */
+static inline void ss_fan(const ss_faces *faces, int32_t face, int32_t triangle, int32_t vertices[3]) {
+    const int32_t *corners = faces->corner_vertex + faces->face_start[face];
+    vertices[0] = corners[0], vertices[1] = corners[triangle + 1], vertices[2] = corners[triangle + 2];
+}
+
+static inline int32_t ss_fan_size(const ss_faces *faces, int32_t face) {
+    return faces->face_start[face + 1] - faces->face_start[face] - 2;
+}
+
+/* The triangle of the fan that has the side which begins at a corner. */
+int32_t ss_fan_of_side(const ss_faces *faces, int32_t corner);
+/* Corners of the largest face. */
+int32_t ss_largest_face(const ss_faces *faces);
+
+/* ---- subdivision.c ---- */
+
+bool ss_is_subdivided(const skinslide_mesh *mesh);
+/* Of a subdivided mesh that passed ss_check_mesh: names the face, vertex, crease or sharpness that cannot be. */
+skinslide_status ss_check_subdivision(const skinslide_mesh *mesh, skinslide_error *error);
+
+/* ---- normals.c ---- */
+
+/* Twice the area vector of a polygon of 3 or more vertices: the sum of its fan's cross products. */
+void ss_area_vector(const int32_t *vertices, int32_t count, const float *points, double out[3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

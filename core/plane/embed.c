@@ -1,0 +1,46 @@
+/* The embedding (paper, section 3.1, equations of Schek 1974): for the free vertices, and for u and v each,
+ *
+ *     (C' Q C) X = -(C' Q Cf) Xf
+ *
+ * C is the edge-vertex incidence of the free vertices, Cf that of the fixed, Q = diag(density). The pattern of the matrix is that
+ * of the net, so its ordering and the pattern of its factor are found once, and each pose costs one numeric factorisation and one
+ * solve for u and v together. */
+#include "plane.h"
+
+#include <string.h>
+
+/* One end of an edge whose other end is fixed. */
+static void hold(const ss_system *system, ss_factor *factor, int32_t vertex, const double at[2], double density) {
+    int32_t k = system->unknown[vertex];
+    if (k < 0)
+        return;
+    factor->slack[k] += density;
+    factor->right[k][0] += density * at[0];
+    factor->right[k][1] += density * at[1];
+}
+
+static void assemble(const ss_system *system, ss_factor *factor, const double *density, const double (*uv)[2]) {
+    ss_factor_clear(system, factor);
+    for (int32_t e = 0; e < system->edge_count; e++) {
+        int32_t a = system->edge_vertex[e][0], b = system->edge_vertex[e][1];
+        if (system->entry[e] >= 0) {
+            factor->Lx[system->entry[e]] = density[e];
+        } else {
+            hold(system, factor, a, uv[b], density[e]);
+            hold(system, factor, b, uv[a], density[e]);
+        }
+    }
+}
+
+skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
+                          skinslide_error *error) {
+    assemble(system, factor, density, (const double(*)[2])uv);
+    if (!ss_factorise(system, factor))
+        return ss_fail(error, SKINSLIDE_SINGULAR,
+                       "%s: its force densities differ too much in size for the embedding to be solved", system->label);
+    ss_solve(system, factor);
+    for (int32_t v = 0; v < system->vertex_count; v++)
+        if (system->unknown[v] >= 0)
+            memcpy(uv[v], factor->right[system->unknown[v]], sizeof *uv);
+    return SKINSLIDE_OK;
+}
