@@ -1,42 +1,65 @@
 #!/usr/bin/env bash
-# Sets up the machine, makes the example stages, bakes them, and prints where the results are and what they show.
+# Sets up the machine, makes the example stages, bakes, draws and measures them, and ends with what they show and where it is.
 set -euo pipefail
 EXTRA_PACKAGES=()
 . "$(dirname "$0")/setup.sh"
+cd "$root"
 
-out=$root/build/examples
+out=build/examples
+examples=(elbow fine_elbow bicep face finger sleeve chequer bump)
+stage() { echo "$out/$1/stage.usda"; }
+step() { printf ' %s' "$1"; }
+measure() {
+    step "$1"
+    "$python" "examples/measure/$1.py" "${@:2}" >"$out/$1.txt"
+}
+
 say "Making and baking the examples"
-for example in elbow fine_elbow bicep face finger sleeve chequer bump; do
-    "$python" "$root/examples/$example/make.py" "$out/$example" >/dev/null
-    "$venv/bin/skinslide" check "$out/$example/stage.usda" >"$out/$example/check.txt"
-    "$venv/bin/skinslide" bake "$out/$example/stage.usda" -o "$out/$example/slid.usdc" --json --quiet >"$out/$example/bake.json"
+for example in "${examples[@]}"; do
+    step "$example"
+    "$python" "examples/$example/make.py" "$out/$example" >/dev/null
+    "$venv/bin/skinslide" check "$(stage "$example")" >"$out/$example/check.txt"
+    "$venv/bin/skinslide" bake "$(stage "$example")" -o "$out/$example/slid.usdc" --json --quiet >"$out/$example/bake.json"
 done
+step "shot"
+"$python" examples/shot/make.py "$out/shot" >/dev/null
+"$python" examples/shot/play.py "$out/shot/shot.usda" >"$out/shot/play.txt"
+echo
 
-"$python" "$root/examples/shot/make.py" "$out/shot" >/dev/null
-"$python" "$root/examples/shot/play.py" "$out/shot/shot.usda" >"$out/shot/play.txt"
-
-say "What they show"
-"$python" "$root/examples/measure/table.py" "$out"
-printf '\n%s: %s\n' "$out/shot/shot.usda, played live" "$(tail -n 2 "$out/shot/play.txt" | head -n 1)"
-
-say "Pictures"
-"$venv/bin/skinslide" preview "$out/elbow/stage.usda" -o "$out/elbow/pictures" --html "$out/elbow/report.html" --quiet
-"$venv/bin/skinslide" preview "$out/elbow/stage.usda" -o "$out/elbow/pictures" --view chequer 2>/dev/null | tail -n 2
-"$python" "$root/examples/measure/pictures.py" "$out/elbow.jpg" "$out/elbow/stage.usda" unit chequer
+say "Drawing pictures"
+step "elbow"
+"$venv/bin/skinslide" preview "$(stage elbow)" -o "$out/elbow/pictures" --html "$out/elbow/report.html" --json --quiet \
+    >"$out/elbow/preview.json"
+"$python" examples/measure/pictures.py "$out/elbow.jpg" "$(stage elbow)" unit chequer >/dev/null
 for example in sleeve face; do
-    "$python" "$root/examples/measure/pictures.py" "$out/$example.jpg" "$out/$example/stage.usda" unit,relaxed chequer,stretch
+    step "$example"
+    "$python" examples/measure/pictures.py "$out/$example.jpg" "$(stage "$example")" unit,relaxed chequer,stretch >/dev/null
 done
+echo
 
-say "Lookup by colour-ID rendering"
-"$python" "$root/examples/measure/lookup.py" "$out"
+say "Measuring"
+measure lookup "$out"
+measure limit_distance "$out"/*/stage.usda
+measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
+measure share "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda
+echo
 
-say "How far the limit surface of the result is from that of the cache, as a share of the patch's size"
-"$python" "$root/examples/measure/limit_distance.py" "$out"/*/stage.usda
+say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"
+"$python" examples/measure/table.py "$out"
+cat <<SUMMARY
 
-say "How smoothly each rule moves skin"
-"$python" "$root/examples/measure/smoothness.py" "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/smoothness.txt"
-
-say "Share of the removable stretch that each rule removes"
-"$python" "$root/examples/measure/share.py" "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda | tee "$out/share.txt"
-
-printf '\nLook at %s,\nand at %s\n' "$out/elbow/report.html" "$out/sleeve.jpg, $out/face.jpg and $out/elbow/pictures"
+Look at these in $out:
+  elbow/report.html              the elbow before and after, frame by frame, in a browser
+  elbow.jpg sleeve.jpg face.jpg  the cache, and what the rules make of it
+  id_buffers.png                 the textures in which the lookup finds faces
+Of each example, as elbow:
+  elbow/stage.usda               the cache and its patch; sublayer elbow/slid.usdc above it
+  elbow/check.txt bake.json      what was found on the stage, and what happened at each frame
+And measured:
+  times.txt                      milliseconds of each stage of the walk, patch by patch
+  lookup.txt                     how much of the lookup the texture finds
+  limit_distance.txt             how far the limit surface moves
+  smoothness.txt                 how smoothly each rule moves skin
+  share.txt                      the share of the removable stretch that each rule removes, frame by frame
+  shot/play.txt                  shot/shot.usda, played live with nothing baked
+SUMMARY

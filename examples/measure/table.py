@@ -2,52 +2,64 @@
 
 usage: table.py OUTDIR
 Stretch is the RMS over the patch's edges of log(length / rest length), in the cache and slid, at the frame where the
-cache has most of it. Times are means over the frames, on one thread, in the core. folded and clamped are the most of
-any frame.
+cache has most of it. folded and clamped are the most of any frame. Times are means over the frames, on one thread, in
+the core; OUTDIR/times.txt has them for each stage of the walk.
 """
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 ORDER = ("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump")
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
-HEADINGS = ("example", "vertices", "edges", *(f"{stage} ms" for stage in STAGES), "frame ms")
-RESULTS = ("cache", "slid", "change", "at frame", "folded", "clamped")
+RESULTS = ("example", "vertices", "cache", "slid", "change", "at frame", "folded", "clamped", "ms a frame")
+TIMES = ("example", "vertices", "edges", *(f"{stage} ms" for stage in STAGES), "frame ms")
 
 
-def row(example: str, patch: dict) -> list[str]:
-    """The cells of one patch."""
-    milliseconds = [1e3 * patch["mean"][f"{stage}_seconds"] for stage in STAGES]
+def milliseconds(patch: dict) -> list[float]:
+    """Of each stage, then of all together."""
+    times = [1e3 * patch["mean"][f"{stage}_seconds"] for stage in STAGES]
+    return [*times, sum(times)]
+
+
+def results(example: str, patch: dict) -> list[str]:
+    """What sliding did to one patch."""
     before, after = patch["worst_frame_stretch_before"], patch["worst_frame_stretch_after"]
     return [
         example,
         str(patch["vertex_count"]),
-        str(patch["edge_count"]),
-        *(f"{value:.3f}" for value in [*milliseconds, sum(milliseconds)]),
         f"{before:.3f}",
         f"{after:.3f}",
         f"{100 * (after / before - 1):+.0f} %",
         f"{patch['worst_frame']:g}",
         str(patch["max"]["folded_faces"]),
         str(patch["max"]["clamped_vertices"]),
+        f"{milliseconds(patch)[-1]:.2f}",
     ]
 
 
-def main() -> None:
-    """Prints the table, then where the layers are."""
-    folder = Path(sys.argv[1])
-    rows = [[*HEADINGS, *RESULTS]]
-    for example in ORDER:
-        report = json.loads((folder / example / "bake.json").read_text())
-        rows += [row(example, patch) for mesh in report["meshes"] for patch in mesh["patches"]]
+def times(example: str, patch: dict) -> list[str]:
+    """What sliding one patch took."""
+    sizes = [str(patch[f"{kind}_count"]) for kind in ("vertex", "edge")]
+    return [example, *sizes, *(f"{value:.3f}" for value in milliseconds(patch))]
+
+
+def lines(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of cells as lines, each column as wide as its widest cell."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for cells in rows:
-        print("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
-    print(f"\nEach {folder}/EXAMPLE holds")
-    print("  cache.usdc  the cached character           check.txt  what skinslide found on the stage")
-    print("  stage.usda  the cache and its patch        bake.json  what happened at each frame")
-    print("  slid.usdc   the corrected points, as overs to be sublayered above stage.usda")
+    return "".join("  ".join(map(str.rjust, cells, widths)) + "\n" for cells in rows)
+
+
+def main() -> None:
+    """Prints the results and writes the times."""
+    folder = Path(sys.argv[1])
+    reports = {example: json.loads((folder / example / "bake.json").read_text()) for example in ORDER}
+    patches = [
+        (name, patch) for name, report in reports.items() for mesh in report["meshes"] for patch in mesh["patches"]
+    ]
+    print(lines([RESULTS, *(results(*patch) for patch in patches)]), end="")
+    (folder / "times.txt").write_text(lines([TIMES, *(times(*patch) for patch in patches)]))
 
 
 if __name__ == "__main__":
