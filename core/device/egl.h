@@ -86,7 +86,6 @@
     X(PFNGLTEXPARAMETERIPROC, glTexParameteri)                                                                                 \
     X(PFNGLTEXSTORAGE2DPROC, glTexStorage2D)                                                                                   \
     X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, glTransformFeedbackVaryings)                                                         \
-    X(PFNGLUNIFORM1FPROC, glUniform1f)                                                                                         \
     X(PFNGLUNIFORM1IPROC, glUniform1i)                                                                                         \
     X(PFNGLUNIFORM2FPROC, glUniform2f)                                                                                         \
     X(PFNGLUNIFORM3FVPROC, glUniform3fv)                                                                                       \

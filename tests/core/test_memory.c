@@ -176,8 +176,7 @@ static skinslide_status run_images(void *subject, skinslide_error *error) {
     skinslide_image *image = NULL;
     int32_t tiles[3];
     float values[3], texels[16];
-    const skinslide_charts charts = {&mesh, faces, 1, st};
-    skinslide_map_canvas *canvas = NULL;
+    const skinslide_texture_layout layout = {&mesh, faces, 1, st};
     skinslide_status status = skinslide_exr_encode(channels, 2, SIDE, SIDE, SKINSLIDE_WRAP_CLAMP, &made, error);
     if (!status)
         status = skinslide_exr_decode(made->data, made->size, "G", &image, error);
@@ -187,10 +186,7 @@ static skinslide_status run_images(void *subject, skinslide_error *error) {
     if (!status)
         status = skinslide_map_sample(&mesh, faces, 1, st, &tile, 1, values, error);
     if (!status)
-        status = skinslide_map_canvas_create(4, SKINSLIDE_ANY_DEVICE, &canvas, error);
-    if (!status)
-        status = skinslide_map_draw(canvas, &charts, 1001, values, texels, NULL, error);
-    skinslide_map_canvas_destroy(canvas);
+        status = skinslide_map_draw(&layout, 1001, values, 4, texels, NULL, error);
     skinslide_image_destroy(image);
     skinslide_bytes_destroy(made);
     return status;

@@ -17,11 +17,9 @@ import skinslide
 import stages
 from skinslide import FrameProblem, StageError, StageProblems, UsageError, maps
 from skinslide.cli import main
-from skinslide.images import decode_exr
+from skinslide.images import Corners, decode_exr, draw_map
 from skinslide.meshes import read_meshes
-from skinslide.native import SliderError
 from skinslide.outputs import frame_label
-from skinslide.slider import choose_lookup
 from skinslide.stage import open_stage
 from stages import FRAMES, MESH, PATCH
 
@@ -483,7 +481,7 @@ def test_a_bad_frame(tmp_path):
     assert sorted(files(tmp_path / "maps")) == sorted(f"skin_GEO.{kind}.1001.exr" for kind in KINDS)
 
 
-# ---- Bad folders, files and devices ----
+# ---- Bad folders and files ----
 
 
 def test_folders_that_cannot_be(tmp_path, shot, capfd):
@@ -569,23 +567,44 @@ def test_a_stage_in_the_way(tmp_path):
     assert shot.read_bytes() == before
 
 
-def test_no_egl(tmp_path, shot, capfd):
-    """In the words of the core, whatever the lookup."""
-    with pytest.raises(SliderError) as said:
-        choose_lookup(skinslide.Lookup("egl", device=999))
-    words = str(said.value).removeprefix("lookup egl: ")
-    assert words.startswith("no EGL device with OpenGL ES 3: there is no EGL device 999")
-    with pytest.raises(UsageError) as refused:
-        maps(shot, tmp_path / "maps", lookup=skinslide.Lookup("exact", device=999))
-    assert str(refused.value) == words
-    assert main(["maps", str(shot), "-o", str(tmp_path / "maps"), "--egl-device", "999", "--lookup", "exact"]) == 2
-    assert capfd.readouterr().err == f"error: {words}\n"
-    assert not (tmp_path / "maps").exists()
+def test_no_device_is_asked_for(tmp_path, shot):
+    """Where EGL finds nothing the same bytes are drawn, whatever device is named for a lookup that needs none."""
+    maps(shot, tmp_path / "here", size=64)
+    command = [sys.executable, "-m", "skinslide", "maps", str(shot), "-o", str(tmp_path / "there"), "--size", "64"]
+    command += ["--lookup", "exact", "--egl-device", "999"]
+    nothing = {"__EGL_VENDOR_LIBRARY_DIRS": str(tmp_path), "LIBGL_DRIVERS_PATH": str(tmp_path)}
+    done = subprocess.run(command, env=os.environ | nothing, capture_output=True, check=False)
+    assert done.returncode == 0
+    assert files(tmp_path / "there") == files(tmp_path / "here")
+
+
+def test_texels_by_barycentric_coordinates_in_numpy():
+    """Triangles at random, each alone: covered where all three weights are positive, and with their sum of values."""
+    dice = np.random.default_rng(7)
+    y, x = (np.mgrid[:48, :48] + 0.5)[:, ::-1]
+    for _ in range(50):
+        st, values = dice.uniform(0, 1, (3, 2)).astype(np.float32), dice.uniform(-1, 1, 3).astype(np.float32)
+        corners = Corners(np.array([3, 4]), np.array([0, 1, 2, 3, 4, 5, 6]), 7, np.array([1, 0]), np.zeros((7, 2)))
+        corners.st[:3], corners.st[3:] = st, [(0, 0), (1, 0), (1, 1), (0, 1)]
+        texels, missed = draw_map(corners, np.concatenate([values, [9] * 4]), 48)
+        (ax, ay), (bx, by), (cx, cy) = st.astype(np.float64) * 48
+        area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        at_b = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
+        at_c = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
+        inside = (at_b > 0) & (at_c > 0) & (at_b + at_c < 1)
+        expected = np.where(inside, (1 - at_b - at_c) * values[0] + at_b * values[1] + at_c * values[2], 9)
+        np.testing.assert_allclose(texels, expected, atol=1e-6)
+        assert missed == (not inside.any())
 
 
 @pytest.mark.parametrize(
     ("size", "says"),
-    [(0, "size is 0"), (16385, "a map of 16385 texels"), (10**12, "a map of 2147483647"), (1.5, "size is 1.5")],
+    [
+        (0, "size is 0; it must be at least 1"),
+        (16385, "size is 16385; it must be at most 16384"),
+        (10**12, "size is 1000000000000"),
+        (1.5, "size is 1.5"),
+    ],
 )
 def test_sizes(size, says, tmp_path, shot):
     with pytest.raises(UsageError, match=says):

@@ -1,9 +1,8 @@
 /* Pictures of skin, drawn offscreen: what a slide did to a texture, before and after; and maps of it in texture coordinates. No
- * display and no GPU are needed, only EGL with OpenGL ES 3, of which a software rasteriser will do.
+ * display and no GPU are needed: for pictures EGL with OpenGL ES 3, of which a software rasteriser will do; for maps nothing.
  *
  *     skinslide_tessellation  a mesh made into triangles, along its limit surface where it is subdivided; immutable
  *     skinslide_canvas        what pictures are drawn on, with an OpenGL ES context of its own; for one thread at a time
- *     skinslide_map_canvas    what maps are drawn on, likewise
  *
  * Conventions are those of skinslide.h. Matrices are double [16] as USD has them: row by row, for points as rows. */
 #ifndef SKINSLIDE_PICTURE_H
@@ -159,40 +158,31 @@ SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, v
 
 /* ---- Maps: values drawn in a mesh's texture coordinates ------------------------------------------------------------------- */
 
+enum { SKINSLIDE_LARGEST_MAP = 16384 }; /* texels along each side */
+
 /* Where faces of a mesh lie in its texture. */
-typedef struct skinslide_charts {
+typedef struct skinslide_texture_layout {
     const skinslide_mesh *mesh; /* rest_points are not read */
     const int32_t *faces;       /* [face_count] mesh faces; where they overlap, the later wins */
     int32_t face_count;
     const float *st; /* [index_count][2] texture coordinates of the mesh's corners, face by face */
-} skinslide_charts;
-
-typedef struct skinslide_map_canvas skinslide_map_canvas;
-
-/* Makes a canvas for maps. Its context is current only within calls, as a workspace's is (see skinslide_workspace_create).
- *   side    texels along each side, 1 to 16384 and within the device's limit
- *   device  as in skinslide_workspace_options
- * Fails with BAD_ARGUMENT (no such side or device, above the device's limit), NO_DEVICE (names all that was tried),
- * DEVICE_FAILED, OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_map_canvas_create(int32_t side, int32_t device, skinslide_map_canvas **out,
-                                                           skinslide_error *error);
-
-/* NULL does nothing. */
-SKINSLIDE_API void skinslide_map_canvas_destroy(skinslide_map_canvas *canvas);
+} skinslide_texture_layout;
 
 /* Draws values of a mesh's vertices over one tile of its texture: linearly over the triangles of each face's fan. A texel is
- * covered where its centre is in a triangle. Then four times each texel that is not covered but touches covered ones, at a
- * corner too, takes their mean and counts as covered, so that bilinear samples at the border of a chart find its values. What
- * is left is 0. Faces with corners in several tiles are drawn in each of these.
+ * covered where its centre is in a triangle; of one on a triangle's border the triangle has those on its left and lower sides,
+ * so that triangles which share sides never both have a texel, nor neither. Then four times each texel that is not covered but
+ * touches covered ones, at a corner too, takes their mean and counts as covered, so that bilinear samples at the border of a
+ * chart find its values. What is left is 0. Faces with corners in several tiles are drawn in each of these. On the processor, in
+ * one thread: the same bytes on every machine.
  *   tile          1001 + u + 10 v; 1001 where the texture is no UDIM
  *   values        in  [vertex_count] of the mesh
+ *   side          texels along each side, 1 to SKINSLIDE_LARGEST_MAP
  *   texels        out [side][side] from the top row on, with (0, 0) of the tile at the lower left corner
- *   missed_faces  out, or NULL: faces of this tile in which the centre of no texel lies
- * Fails with BAD_ARGUMENT (NULL, no such tile, a face that is none), BAD_MESH, BAD_CONTROL (st not finite or in no tile: names
- * the face), BAD_POINTS (a value of the faces is not finite: names the vertex), DEVICE_FAILED, OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_map_draw(skinslide_map_canvas *canvas, const skinslide_charts *charts, int32_t tile,
-                                                  const float *values, float *texels, int32_t *missed_faces,
-                                                  skinslide_error *error);
+ *   missed_faces  out, or NULL: faces of this tile that cover no texel
+ * Fails with BAD_ARGUMENT (NULL, no such tile or side, a face that is none), BAD_MESH, BAD_CONTROL (st not finite or in no tile:
+ * names the face), BAD_POINTS (a value of the faces is not finite: names the vertex), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int32_t tile, const float *values,
+                                                  int32_t side, float *texels, int32_t *missed_faces, skinslide_error *error);
 
 #ifndef SKINSLIDE_CDEF
 #ifdef __cplusplus

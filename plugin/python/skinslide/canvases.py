@@ -1,23 +1,21 @@
-"""Canvases for threads that draw."""
+"""Canvases for threads that draw pictures."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Generic, TypeVar
 
 from skinslide.frames import UsageError
+from skinslide.pictures import Canvas
 from skinslide.problems import StageError
 from skinslide.slider import SliderError
 
-T = TypeVar("T")
 
-
-class Canvases(Generic[T]):
+class Canvases:
     """A canvas for each thread that draws, made when it is needed; the first at once, so that its faults show."""
 
-    def __init__(self, make: Callable[[], T], at_once: int):
+    def __init__(self, make: Callable[[], Canvas], at_once: int):
         """at_once: how many may be. Raises UsageError where there is no EGL, or where it has no such size."""
         self._make, self._lock, self._room = make, threading.Lock(), threading.Semaphore(max(1, at_once))
         try:
@@ -29,7 +27,7 @@ class Canvases(Generic[T]):
             raise (UsageError if asked_for else StageError)(str(error)) from error
 
     @contextmanager
-    def taken(self) -> Iterator[T]:
+    def taken(self) -> Iterator[Canvas]:
         with self._room:
             with self._lock:
                 canvas = self._idle.pop() if self._idle else None

@@ -1,4 +1,7 @@
-"""OpenEXR images and the maps painted on a mesh, on numpy arrays: no USD, no files. The manual is `skinslide.h`."""
+"""OpenEXR images, the maps painted on a mesh, and those drawn of it, on numpy arrays: no USD, no files.
+
+The manuals are `skinslide.h` and `picture.h`.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,9 @@ import numpy as np
 
 from skinslide._core import ffi, lib
 from skinslide.native import Arguments, call, enum_value, text, token_of, writable
+
+FIRST_TILE = 1001
+LARGEST_MAP: int = lib.SKINSLIDE_LARGEST_MAP  # texels along each side of a map drawn
 
 
 class Image(NamedTuple):
@@ -80,8 +86,18 @@ def sample_map(corners: Corners, images: Mapping[int, Image]) -> np.ndarray:
     return values
 
 
+def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_TILE) -> tuple[np.ndarray, int]:
+    """Values by vertex (V,) over a tile, float32 (side, side) from the top row on, and how many faces have no texel."""
+    native, layout = Arguments(), ffi.new("skinslide_texture_layout *")
+    layout.mesh, layout.faces, layout.face_count, layout.st = _given(native, corners)
+    given = native.pointer(values, np.float32, (corners.vertex_count,), "values")
+    texels, missed = np.empty((side, side), np.float32), ffi.new("int32_t *")
+    call(lib.skinslide_map_draw, layout, tile, given, side, writable("float[]", texels), missed)
+    return texels, missed[0]
+
+
 def _given(native: Arguments, corners: Corners) -> tuple[Any, ...]:
-    """The arguments that both functions begin with. Points are not read."""
+    """The mesh, faces, their count, and texture coordinates. Points are not read."""
     mesh = native.mesh(corners.face_counts, corners.face_indices, np.zeros((corners.vertex_count, 3), np.float32))
     faces = native.pointer(corners.faces, np.int32, (-1,), "faces")
     st = native.pointer(corners.st, np.float32, (len(corners.face_indices), 2), "st")

@@ -11,6 +11,7 @@ for each mesh, for each time in order, several at once:
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,9 +19,8 @@ from typing import Any
 from pxr import Usd
 
 from skinslide.ahead import pool_of
-from skinslide.canvases import Canvases
 from skinslide.files import signals_as_exceptions
-from skinslide.mapcanvas import MapCanvas
+from skinslide.images import LARGEST_MAP
 from skinslide.meshmaps import KINDS, MapOptions, MeshMaps, WrittenMap
 from skinslide.options import BakeOptions, Frames, coordinates_name, listed, whole_number
 from skinslide.outputs import OutputFolder, check_frames
@@ -31,7 +31,7 @@ from skinslide.report import BakeReport
 from skinslide.slider import Lookup
 from skinslide.stage import open_stage
 
-_MOST_TEXELS = 1 << 28  # drawn at once: each takes some twenty bytes
+_MOST_TEXELS = 1 << 28  # drawn at once: each takes some twelve bytes, with its file
 
 
 @dataclass
@@ -85,14 +85,13 @@ def maps(
     patches   names; only these are drawn and measured, though all slide; None: every patch
     size      texels along each side
     st        the primvar with texture coordinates; of faces that overlap in it the later in the mesh is seen
-    prims, frames, lookup, jobs, progress as for `bake_to_file`; the drawing takes EGL whatever the lookup
-    Raises UsageError (also where there is no EGL), StageProblems, FrameProblem, StageError.
+    prims, frames, lookup, jobs, progress as for `bake_to_file`
+    Raises UsageError, StageProblems, FrameProblem, StageError.
     """
     options = _checked(prims, patches, frames, size, st, lookup, jobs)
     opened = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
     place = OutputFolder(folder, opened, None if stage is opened else stage)
-    size, device = options.size, options.bake.lookup.device
-    canvases = Canvases(lambda: MapCanvas(size, device), _MOST_TEXELS // size**2)
+    room = threading.Semaphore(max(1, _MOST_TEXELS // options.size**2))
     plan = Plan.read(opened, options.bake)
     meshes = _meshes(plan, options, place)
     report = MapsReport(list(plan.problems), folder=str(folder), size=options.size)
@@ -100,7 +99,7 @@ def maps(
     with signals_as_exceptions(), pool_of(options.bake.jobs, frame_count) as pool:
         for mesh in meshes:
             report.meshes.append(mesh.report)
-            for written in mesh.run(canvases, pool):
+            for written in mesh.run(room, pool):
                 report.maps.extend(written)
                 if progress:
                     progress(report.frame_count, frame_count)
@@ -120,7 +119,7 @@ def _checked(
     return MapOptions(
         bake=BakeOptions.checked(prims, frames, lookup, jobs),
         patches=listed(patches),
-        size=whole_number("size", size, 1),
+        size=whole_number("size", size, 1, LARGEST_MAP),
         st=coordinates_name(st),
     )
 

@@ -6,16 +6,15 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Semaphore
 from typing import NamedTuple
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide.ahead import work_ahead
-from skinslide.canvases import Canvases
 from skinslide.coordinates import read_coordinates
-from skinslide.images import Corners, encode_exr, map_tiles
-from skinslide.mapcanvas import FIRST_TILE, MapCanvas
+from skinslide.images import FIRST_TILE, Corners, draw_map, encode_exr, map_tiles
 from skinslide.meshes import SlidMesh
 from skinslide.options import BakeOptions
 from skinslide.outputs import OutputFolder
@@ -119,12 +118,12 @@ class MeshMaps:
         _, tiles = self._first
         self._place.check_all(self._path(name) for time in self._times for name in _map_names(tiles, time))
 
-    def run(self, canvases: Canvases[MapCanvas], pool: ThreadPoolExecutor) -> Iterator[list[WrittenMap]]:
-        """Writes the maps of each time in order; yields them."""
+    def run(self, room: Semaphore, pool: ThreadPoolExecutor) -> Iterator[list[WrittenMap]]:
+        """Writes the maps of each time in order; yields them. room: for as many to be drawn at once."""
 
         def read(time: Usd.TimeCode) -> Callable[[], _Drawn]:
             frame = self._read(time)
-            return lambda: self._draw(frame, canvases)
+            return lambda: self._draw(frame, room)
 
         for time, drawn in work_ahead(self._mesh, self._times, read, pool, self._options.bake.jobs):
             written = self._write(drawn)
@@ -147,14 +146,14 @@ class MeshMaps:
         corners, tiles = self._corners_at(time) if changes else self._first
         return _Frame(points, controls, corners, _map_names(tiles, time))
 
-    def _draw(self, frame: _Frame, canvases: Canvases[MapCanvas]) -> _Drawn:
+    def _draw(self, frame: _Frame, room: Semaphore) -> _Drawn:
         slid = self._slider.slide(frame.points, frame.controls)
         measured = self._slider.diagnose(frame.points, slid.points, frame.controls, chosen=self._chosen)
         made, missed = [], 0
-        with canvases.taken() as canvas:
+        with room:
             for name in frame.names:
                 values = getattr(measured, KINDS[name.kind])
-                texels, without = canvas.draw(frame.corners, values, name.tile or FIRST_TILE)
+                texels, without = draw_map(frame.corners, values, self._options.size, name.tile or FIRST_TILE)
                 inside = values[self._vertices]
                 data = encode_exr({_CHANNEL: texels}, wrap="clamp")
                 made.append(_Map(name, data, float(inside.min()), float(inside.max())))

@@ -123,7 +123,7 @@ class MeshPictures:
                     yield [*self._words(series), view], frame_of(time)
 
     def run(
-        self, canvases: Canvases[Canvas], pool: ThreadPoolExecutor, jobs: int
+        self, canvases: Canvases, pool: ThreadPoolExecutor, jobs: int
     ) -> Iterator[tuple[float | None, list[Picture]]]:
         """Draws each time in order; yields its frame and files."""
         times = self._times[: self.frame_count]

@@ -125,13 +125,15 @@ def coordinates_name(st: str) -> str:
     return st
 
 
-def whole_number(name: str, number: int, least: int) -> int:
+def whole_number(name: str, number: int, least: int, most: int | None = None) -> int:
     try:
         whole = operator.index(number)
     except TypeError as error:
         raise UsageError(f"{name} is {number!r}; it must be a whole number") from error
     if whole < least:
         raise UsageError(f"{name} is {whole}; it must be at least {least}")
+    if most is not None and whole > most:
+        raise UsageError(f"{name} is {whole}; it must be at most {most}")
     return whole
 
 

@@ -125,7 +125,7 @@ def _sheet_name(number: int, asked: Sequence[float] | None) -> str:
     return ".".join([*words, "png"])
 
 
-def _canvases(options: PictureOptions, device: int | None) -> Canvases[Canvas]:
+def _canvases(options: PictureOptions, device: int | None) -> Canvases:
     width, height = options.width, options.height
     pixels = "floats" if options.form == "exr" else "bytes"
     return Canvases(lambda: Canvas(width, height, pixels, device), _MOST_PIXELS // (width * height))
@@ -201,7 +201,7 @@ class _Shot:
         pictures = (folder.path(path, words, frame, form) for path, words, frame in names)
         folder.check_all(itertools.chain([folder.folder / _sheet_name(0, self.plan.options.frames)], pictures))
 
-    def draw(self, stage: Usd.Stage, canvases: Canvases[Canvas], progress: Progress | None) -> PreviewReport:
+    def draw(self, stage: Usd.Stage, canvases: Canvases, progress: Progress | None) -> PreviewReport:
         """Draws every mesh, then what is made of all pictures."""
         warnings = [*self.plan.problems, *(problem for mesh in self.meshes for problem in mesh.problems)]
         report = PreviewReport(warnings)

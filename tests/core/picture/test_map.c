@@ -1,8 +1,9 @@
-/* Maps drawn in texture coordinates: texels against barycentric coordinates in double, dilation against the rule applied on the
- * host, tiles, order, faces without a texel, devices that fail. */
-#include "faults.h"
-#include "map.h"
+/* Maps drawn in texture coordinates: which texels are covered against whole numbers, values against barycentric coordinates,
+ * dilation against the rule applied once more, tiles, order, faces without a texel. */
+#include "skinslide/picture.h"
+#include "support.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,7 @@ typedef struct scene {
     skinslide_mesh view;
     int32_t *faces;
     float *st, *values;
-    skinslide_charts charts;
+    skinslide_texture_layout layout;
 } scene;
 
 static void read_points(scene *s) {
@@ -33,7 +34,7 @@ static void fill_scene(scene *s, test_mesh mesh, uint64_t seed) {
     for (int32_t v = 0; v < mesh.vertex_count; v++)
         s->values[v] = (float)roll_between(&d, -2, 5);
     read_points(s);
-    s->charts = (skinslide_charts){&s->view, s->faces, mesh.face_count, s->st};
+    s->layout = (skinslide_texture_layout){&s->view, s->faces, mesh.face_count, s->st};
 }
 
 static void free_scene(scene *s) {
@@ -50,22 +51,9 @@ static test_mesh square_grid(int32_t columns, float low, float high) {
     return mesh;
 }
 
-static float *draw_on(skinslide_map_canvas *canvas, int32_t side, const scene *s, int32_t tile, int32_t *missed) {
-    float *texels = malloc((size_t)side * (size_t)side * sizeof *texels);
-    assert_ok(skinslide_map_draw(canvas, &s->charts, tile, s->values, texels, missed, &error), &error);
-    return texels;
-}
-
-static skinslide_map_canvas *canvas_of(int32_t side) {
-    skinslide_map_canvas *canvas = NULL;
-    assert_ok(skinslide_map_canvas_create(side, SKINSLIDE_ANY_DEVICE, &canvas, &error), &error);
-    return canvas;
-}
-
 static float *draw(const scene *s, int32_t side, int32_t tile, int32_t *missed) {
-    skinslide_map_canvas *canvas = canvas_of(side);
-    float *texels = draw_on(canvas, side, s, tile, missed);
-    skinslide_map_canvas_destroy(canvas);
+    float *texels = malloc((size_t)side * (size_t)side * sizeof *texels);
+    assert_ok(skinslide_map_draw(&s->layout, tile, s->values, side, texels, missed, &error), &error);
     return texels;
 }
 
@@ -74,30 +62,114 @@ static float at(const float *texels, int32_t side, int32_t x, int32_t y) {
     return texels[(side - 1 - y) * side + x];
 }
 
+/* ---- Which texels are covered ---- */
+
+/* A square over the whole texture, of value 0, and triangles of value 1, in units of 1/UNITS texel. */
+enum { TILE = 32, UNITS = 8, MOST_TRIANGLES = 128 };
+
+typedef struct whole_triangle {
+    int32_t corner[3][2];
+} whole_triangle;
+
+/* How often each texel is covered when every triangle is drawn alone over the square: [TILE][TILE], the lowest row first. */
+static int32_t *coverage_of(const whole_triangle *triangles, int32_t count) {
+    int32_t face_counts[1 + MOST_TRIANGLES] = {4}, indices[4 + 3 * MOST_TRIANGLES] = {0, 1, 2, 3};
+    float st[2 * (4 + 3 * MOST_TRIANGLES)] = {0, 0, 1, 0, 1, 1, 0, 1}, values[7] = {0, 0, 0, 0, 1, 1, 1};
+    for (int32_t i = 0; i < count; i++) {
+        face_counts[1 + i] = 3;
+        for (int k = 0; k < 3; k++) {
+            indices[4 + 3 * i + k] = 4 + k;
+            for (int axis = 0; axis < 2; axis++)
+                st[2 * (4 + 3 * i + k) + axis] = (float)triangles[i].corner[k][axis] / (TILE * UNITS);
+        }
+    }
+    const skinslide_mesh mesh = {7, 1 + count, 4 + 3 * count, face_counts, indices, NULL, NULL};
+    int32_t *covered = calloc(TILE * TILE, sizeof *covered);
+    float texels[TILE * TILE];
+    for (int32_t f = 1; f <= count; f++) {
+        const int32_t faces[2] = {0, f};
+        const skinslide_texture_layout layout = {&mesh, faces, 2, st};
+        assert_ok(skinslide_map_draw(&layout, 1001, values, TILE, texels, NULL, &error), &error);
+        for (int32_t i = 0; i < TILE * TILE; i++)
+            covered[i] += texels[(TILE - 1 - i / TILE) * TILE + i % TILE] == 1;
+    }
+    return covered;
+}
+
+/* Which way a, b, and p turn, in whole numbers; where they are on a line, for a p a little to the right, and less up. */
+static int turn(const int32_t a[2], const int32_t b[2], const int32_t p[2]) {
+    int64_t x = b[0] - a[0], y = b[1] - a[1], area = x * (p[1] - a[1]) - y * (p[0] - a[0]);
+    int64_t told = area ? area : y ? -y : x;
+    return (told > 0) - (told < 0);
+}
+
+static bool holds(const whole_triangle *triangle, const int32_t p[2]) {
+    int turns[3];
+    for (int i = 0; i < 3; i++)
+        turns[i] = turn(triangle->corner[i], triangle->corner[(i + 1) % 3], p);
+    return turns[0] && turns[0] == turns[1] && turns[0] == turns[2];
+}
+
+/* Corners in eighths of a texel, so that centres are on sides, at corners and in triangles without area all the time. */
+static void texels_in_whole_numbers(void **state) {
+    (void)state;
+    dice d = {3};
+    for (int round = 0; round < 40; round++) {
+        whole_triangle triangles[50];
+        int32_t size = 1 + roll_below(&d, TILE * UNITS), step = round % 2 ? UNITS / 2 : 1;
+        for (int i = 0; i < 50; i++)
+            for (int k = 0; k < 6; k++)
+                triangles[i].corner[k / 2][k % 2] =
+                    roll_below(&d, size) / step * step + (TILE * UNITS - size) / 2 / step * step;
+        int32_t *covered = coverage_of(triangles, 50);
+        for (int32_t t = 0; t < TILE * TILE; t++) {
+            const int32_t p[2] = {(t % TILE) * UNITS + UNITS / 2, (t / TILE) * UNITS + UNITS / 2};
+            int32_t expected = 0;
+            for (int i = 0; i < 50; i++)
+                expected += holds(&triangles[i], p);
+            assert_int_equal(covered[t], expected);
+        }
+        free(covered);
+    }
+}
+
+/* A grid of triangles of which the inner corners are shaken: each texel is in one of them, however sides run. */
+static void neighbours_share_no_texel_and_leave_none(void **state) {
+    (void)state;
+    dice d = {5};
+    for (int round = 0; round < 40; round++) {
+        test_mesh mesh = triangle_grid(8, 8);
+        whole_triangle triangles[MOST_TRIANGLES];
+        int32_t step = 1 << round % 3, (*places)[2] = calloc((size_t)mesh.vertex_count, sizeof *places);
+        for (int32_t v = 0; v < mesh.vertex_count; v++)
+            for (int k = 0; k < 2; k++) {
+                int32_t place = (int32_t)mesh.points[3 * v + k], inside = place > 0 && place < 8;
+                places[v][k] = place * TILE * UNITS / 8 + inside * (roll_below(&d, 17) - 8) / step * step;
+            }
+        for (int32_t i = 0; i < 3 * mesh.face_count; i++)
+            memcpy(triangles[i / 3].corner[i % 3], places[mesh.face_indices[i]], sizeof *places);
+        int32_t *covered = coverage_of(triangles, mesh.face_count);
+        for (int32_t t = 0; t < TILE * TILE; t++)
+            assert_int_equal(covered[t], 1);
+        free(covered), free(places);
+        free_mesh(&mesh);
+    }
+}
+
 /* ---- Texels by barycentric coordinates ---- */
 
 typedef struct answer {
     double value;
-    bool covered, clear; /* clear: the centre is far enough from every side for any device to agree */
+    bool covered;
 } answer;
-
-/* Devices place corners on a grid of 1/256 texel or finer. */
-#define NEAR_A_SIDE (1.0 / 128)
 
 static double doubled_area(const double a[2], const double b[2], const double c[2]) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-static double distance_to_side(const double a[2], const double b[2], const double p[2]) {
-    double along[2] = {b[0] - a[0], b[1] - a[1]}, square = along[0] * along[0] + along[1] * along[1];
-    double share = square > 0 ? ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square : 0;
-    share = share < 0 ? 0 : share > 1 ? 1 : share;
-    return hypot(p[0] - a[0] - share * along[0], p[1] - a[1] - share * along[1]);
-}
-
 /* What the last triangle that holds the centre says. */
 static answer search(const scene *s, int32_t side, int32_t x, int32_t y) {
-    answer found = {0, false, true};
+    answer found = {0, false};
     const double p[2] = {x + 0.5, y + 0.5};
     for (int32_t f = 0, start = 0; f < s->mesh.face_count; start += s->mesh.face_counts[f++])
         for (int32_t t = 1; t + 1 < s->mesh.face_counts[f]; t++) {
@@ -111,7 +183,6 @@ static answer search(const scene *s, int32_t side, int32_t x, int32_t y) {
             for (int i = 0; i < 3; i++) {
                 weight[i] = area != 0 ? doubled_area(place[(i + 1) % 3], place[(i + 2) % 3], p) / area : 0;
                 inside = inside && weight[i] >= 0;
-                found.clear = found.clear && distance_to_side(place[i], place[(i + 1) % 3], p) > NEAR_A_SIDE;
             }
             if (!inside)
                 continue;
@@ -122,17 +193,17 @@ static answer search(const scene *s, int32_t side, int32_t x, int32_t y) {
     return found;
 }
 
-/* Returns how many texels were compared. tolerance: float arithmetic on corners relative to the triangle, values up to 5. */
-static int32_t compare_with_search(const scene *s, int32_t side, double tolerance) {
+/* Returns how many texels were compared, to the rounding of values up to 5. */
+static int32_t compare_with_search(const scene *s, int32_t side) {
     float *texels = draw(s, side, 1001, NULL);
     int32_t compared = 0;
     for (int32_t y = 0; y < side; y++)
         for (int32_t x = 0; x < side; x++) {
             answer expected = search(s, side, x, y);
-            if (!expected.clear || !expected.covered)
+            if (!expected.covered)
                 continue;
             compared++;
-            assert_near(at(texels, side, x, y), expected.value, tolerance);
+            assert_near(at(texels, side, x, y), expected.value, 5 * FLT_EPSILON);
         }
     free(texels);
     return compared;
@@ -149,13 +220,13 @@ static void texels_by_barycentric_coordinates(void **state) {
             mesh.points[i] =
                 (float)(seed % 2 ? mesh.points[i] + roll_between(&d, -0.05, 0.05) : 0.05 + 0.9 * mesh.points[i] / extent);
         fill_scene(&s, mesh, seed);
-        assert_in_range(compare_with_search(&s, 64, 1e-5), 500, 64 * 64);
+        assert_in_range(compare_with_search(&s, 64), 500, 64 * 64);
         free_scene(&s);
     }
 }
 
-/* Slivers 20 texels long and a hundredth of one to a few wide, in the far corner: the device's interpolation from the texture's
- * own corner would be off by 1e-2. */
+/* Slivers 20 texels long and a hundredth of one to a few wide, in the far corner: interpolation from the texture's own corner,
+ * in float, would be off by 1e-2. */
 static void slivers_far_from_the_corner(void **state) {
     (void)state;
     enum { SIDE = 512 };
@@ -168,8 +239,7 @@ static void slivers_far_from_the_corner(void **state) {
         const int32_t counts[1] = {3}, indices[3] = {0, 1, 2};
         scene s;
         fill_scene(&s, copy_mesh(3, 1, counts, indices, points), (uint64_t)i + 1);
-        compared +=
-            compare_with_search(&s, SIDE, 2e-4); /* st themselves are floats: 3e-5 texels at 512, over a width of 0.02 */
+        compared += compare_with_search(&s, SIDE);
         free_scene(&s);
     }
     assert_in_range(compared, 30, 1000);
@@ -216,7 +286,6 @@ static void awkward_faces(void **state) {
     (void)state;
     enum { SIDE = 48 };
     dice d = {17};
-    skinslide_map_canvas *canvas = canvas_of(SIDE);
     for (uint64_t seed = 0; seed < 40; seed++) {
         scene s;
         fill_scene(&s, quad_grid(4, 4), seed);
@@ -233,20 +302,19 @@ static void awkward_faces(void **state) {
         for (int32_t c = 4; c < 8; c++) /* one face on a line, and one in a point */
             s.st[2 * c] = 0.5f, s.st[2 * c + 8] = s.st[2 * c + 9] = 0.5f + 0.5f / SIDE;
         int32_t missed;
-        float *texels = draw_on(canvas, SIDE, &s, 1001, &missed);
+        float *texels = draw(&s, SIDE, 1001, &missed);
         for (int32_t i = 0; i < SIDE * SIDE; i++)
             assert_true(texels[i] == 0 || (texels[i] >= lowest && texels[i] <= highest));
         assert_in_range(missed, 0, s.mesh.face_count);
         free(texels);
         free_scene(&s);
     }
-    skinslide_map_canvas_destroy(canvas);
 }
 
 /* ---- Dilation ---- */
 
-/* The rule on the host: each of four times, texels that touch covered ones take their mean. */
-static void dilate_on_host(float *values, bool *covered, int32_t side) {
+/* The rule once more: each of four times, texels that touch covered ones take their mean. */
+static void dilate_again(float *values, bool *covered, int32_t side) {
     size_t count = (size_t)side * (size_t)side;
     float *old_values = malloc(count * sizeof *values);
     bool *old = malloc(count * sizeof *covered);
@@ -266,7 +334,7 @@ static void dilate_on_host(float *values, bool *covered, int32_t side) {
     free(old_values), free(old);
 }
 
-/* Charts whose borders lie between texel centres, one of them at the border of the texture, so no device can differ. */
+/* Charts whose borders lie between texel centres, one of them at the border of the texture. */
 static void dilation_by_the_rule(void **state) {
     (void)state;
     enum { SIDE = 64 };
@@ -282,9 +350,8 @@ static void dilation_by_the_rule(void **state) {
         expected[i] = covered[i] ? texels[i] : 0;
         assert_true(!covered[i] || texels[i] != 0);
     }
-    dilate_on_host(expected, covered, SIDE);
-    for (int32_t i = 0; i < SIDE * SIDE; i++)
-        assert_near(texels[i], expected[i], 4e-6); /* sums of up to eight floats of up to 5, four times */
+    dilate_again(expected, covered, SIDE);
+    assert_same_bytes(texels, expected, SIDE * SIDE * sizeof *texels); /* sums of eight floats from 1e-4 to 5 are exact */
     free(texels), free(expected), free(covered);
     free_mesh(&one), free_mesh(&other);
     free_scene(&s);
@@ -321,11 +388,11 @@ static void the_later_face_wins(void **state) {
         assert_near(at(texels, 32, 16, 16), turn ? 1 : 2, 0);
         free(texels);
     }
-    s.charts.face_count = 1;
+    s.layout.face_count = 1;
     float *texels = draw(&s, 32, 1001, NULL);
     assert_near(at(texels, 32, 16, 16), 2, 0);
     free(texels);
-    s.charts.face_count = 0;
+    s.layout.face_count = 0;
     texels = draw(&s, 32, 1001, NULL);
     for (int i = 0; i < 32 * 32; i++)
         assert_near(texels[i], 0, 0);
@@ -339,18 +406,15 @@ static void tiles_are_drawn_alike(void **state) {
     (void)state;
     scene s;
     fill_scene(&s, square_grid(3, 0.25f, 0.8125f), 3);
-    skinslide_map_canvas *canvas = canvas_of(32);
-    float *first = draw_on(canvas, 32, &s, 1001, NULL);
+    float *first = draw(&s, 32, 1001, NULL);
     for (int32_t i = 0; i < 2 * s.mesh.index_count; i++)
         s.st[i] += 1;
-    float *empty = draw_on(canvas, 32, &s, 1001, NULL), *moved = draw_on(canvas, 32, &s, 1012, NULL);
-    for (int32_t i = 0; i < 32 * 32; i++) {
-        assert_near(moved[i], first[i], 1e-6);
+    float *empty = draw(&s, 32, 1001, NULL), *moved = draw(&s, 32, 1012, NULL);
+    assert_same_bytes(moved, first, 32 * 32 * sizeof *moved);
+    for (int32_t i = 0; i < 32 * 32; i++)
         assert_near(empty[i], 0, 0);
-    }
     assert_true(at(moved, 32, 16, 16) != 0);
     free(first), free(empty), free(moved);
-    skinslide_map_canvas_destroy(canvas);
     free_scene(&s);
 }
 
@@ -394,29 +458,48 @@ static void faces_without_a_texel_are_counted(void **state) {
     }
 }
 
-/* What was drawn before leaves no trace. */
-static void a_canvas_is_used_again(void **state) {
+/* What the place for the texels held leaves no trace. */
+static void a_map_is_drawn_over_another(void **state) {
     (void)state;
     scene large, small;
     fill_scene(&large, square_grid(4, 0, 1), 1);
     fill_scene(&small, square_grid(2, 0.4f, 0.6f), 2);
-    skinslide_map_canvas *canvas = canvas_of(64);
-    float *alone = draw_on(canvas, 64, &small, 1001, NULL);
-    free(draw_on(canvas, 64, &large, 1001, NULL));
-    float *after = draw_on(canvas, 64, &small, 1001, NULL);
+    float *alone = draw(&small, 64, 1001, NULL), *after = draw(&large, 64, 1001, NULL);
+    assert_ok(skinslide_map_draw(&small.layout, 1001, small.values, 64, after, NULL, &error), &error);
     assert_same_bytes(after, alone, 64 * 64 * sizeof(float));
     free(alone), free(after);
-    skinslide_map_canvas_destroy(canvas);
     free_scene(&large), free_scene(&small);
+}
+
+/* One sum of bytes (FNV-1a) for every processor and compiler. */
+static void the_same_bytes_on_every_machine(void **state) {
+    (void)state;
+    enum { LARGE = 256 };
+    scene s;
+    fill_scene(&s, square_grid(7, 0.13f, 0.91f), 11);
+    dice d = {11};
+    for (int32_t c = 0; c < s.mesh.index_count; c++)
+        s.st[2 * c] += 0.1f * (float)roll_share(&d) - 0.05f;
+    float *texels = draw(&s, LARGE, 1001, NULL);
+    uint64_t sum = 14695981039346656037u;
+    for (int32_t i = 0; i < LARGE * LARGE; i++) {
+        uint32_t bits;
+        memcpy(&bits, &texels[i], sizeof bits);
+        for (int k = 0; k < 4; k++)
+            sum = (sum ^ (bits >> 8 * k & 255)) * 1099511628211u;
+    }
+    assert_int_equal(sum, 0xccbc5d24385d7555);
+    free(texels);
+    free_scene(&s);
 }
 
 /* ---- What cannot be ---- */
 
-static void refuse(skinslide_map_canvas *canvas, const scene *s, int32_t tile, skinslide_status expected, const char *text) {
+static void refuse(const scene *s, int32_t tile, int32_t side, skinslide_status expected, const char *text) {
     float texels[16 * 16];
     int32_t missed = 77;
     memset(texels, 0x55, sizeof texels);
-    assert_fails(skinslide_map_draw(canvas, &s->charts, tile, s->values, texels, &missed, &error), &error, expected, text);
+    assert_fails(skinslide_map_draw(&s->layout, tile, s->values, side, texels, &missed, &error), &error, expected, text);
     for (size_t i = 0; i < sizeof texels; i++)
         assert_int_equal(((unsigned char *)texels)[i], 0x55);
     assert_int_equal(missed, 77);
@@ -426,113 +509,37 @@ static void bad_arguments(void **state) {
     (void)state;
     scene s;
     fill_scene(&s, square_grid(2, 0.1f, 0.9f), 1);
-    skinslide_map_canvas *canvas = canvas_of(16);
     float texels[256];
-    refuse(canvas, &s, 1000, SKINSLIDE_BAD_ARGUMENT, "no such tile: 1000");
-    refuse(canvas, &s, 10001, SKINSLIDE_BAD_ARGUMENT, "no such tile: 10001");
-    assert_fails(skinslide_map_draw(NULL, &s.charts, 1001, s.values, texels, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "no canvas, charts, values, ...");
+    refuse(&s, 1000, 16, SKINSLIDE_BAD_ARGUMENT, "no such tile: 1000");
+    refuse(&s, 10001, 16, SKINSLIDE_BAD_ARGUMENT, "no such tile: 10001");
+    refuse(&s, 1001, 0, SKINSLIDE_BAD_ARGUMENT, "a map of 0 texels a side; it must have 1 to 16384");
+    refuse(&s, 1001, 16385, SKINSLIDE_BAD_ARGUMENT, "a map of 16385 texels a side; it must have 1 to 16384");
+    assert_fails(skinslide_map_draw(NULL, 1001, s.values, 16, texels, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no layout, values, or place for the texels");
+    assert_fails(skinslide_map_draw(&s.layout, 1001, NULL, 16, texels, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no ...");
+    assert_fails(skinslide_map_draw(&s.layout, 1001, s.values, 16, NULL, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no ...");
     s.values[4] = NAN;
-    refuse(canvas, &s, 1001, SKINSLIDE_BAD_POINTS, "vertex 4 has the value nan");
+    refuse(&s, 1001, 16, SKINSLIDE_BAD_POINTS, "vertex 4 has the value nan");
     s.values[4] = 0, s.st[2 * 5] = INFINITY;
-    refuse(canvas, &s, 1001, SKINSLIDE_BAD_CONTROL, "face 1 has st (inf, ...");
+    refuse(&s, 1001, 16, SKINSLIDE_BAD_CONTROL, "face 1 has st (inf, ...");
     s.st[2 * 5] = -0.25f;
-    refuse(canvas, &s, 1001, SKINSLIDE_BAD_CONTROL, "face 1 has st (-0.25, 0.1), which is in no UDIM tile");
-    s.charts.face_count = 1; /* of the others nothing is asked */
-    free(draw_on(canvas, 16, &s, 1001, NULL));
+    refuse(&s, 1001, 16, SKINSLIDE_BAD_CONTROL, "face 1 has st (-0.25, 0.1), which is in no UDIM tile");
+    s.layout.face_count = 1; /* of the others nothing is asked */
+    free(draw(&s, 16, 1001, NULL));
     s.faces[0] = 4;
-    refuse(canvas, &s, 1001, SKINSLIDE_BAD_ARGUMENT, "face 4 is not one of the mesh's 4");
-    s.charts.st = NULL;
-    refuse(canvas, &s, 1001, SKINSLIDE_BAD_ARGUMENT, "no texture coordinates, ...");
+    refuse(&s, 1001, 16, SKINSLIDE_BAD_ARGUMENT, "face 4 is not one of the mesh's 4");
+    s.layout.st = NULL;
+    refuse(&s, 1001, 16, SKINSLIDE_BAD_ARGUMENT, "no texture coordinates, ...");
     s.view.face_indices = NULL;
-    refuse(canvas, &s, 1001, SKINSLIDE_BAD_ARGUMENT, "...");
-    skinslide_map_canvas_destroy(canvas);
-    skinslide_map_canvas_destroy(NULL);
-    free_scene(&s);
-}
-
-static skinslide_status create_with(fault planned, int32_t side, skinslide_map_canvas **out) {
-    const skinslide_status untouched = SKINSLIDE_OK;
-    const ss_device_request request = {load_with_faults, SKINSLIDE_ANY_DEVICE, false};
-    *out = NULL;
-    plan_fault(planned);
-    skinslide_status status = ss_map_canvas_create(side, &request, out, &error);
-    assert_true((status == untouched) == (*out != NULL));
-    return status;
-}
-
-static void sizes(void **state) {
-    (void)state;
-    skinslide_map_canvas *canvas;
-    fault small = {.devices = -1, .largest = 256};
-    assert_fails(create_with(small, 257, &canvas), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "a map of 257 texels a side is above the device's limit of 256");
-    assert_ok(create_with(small, 256, &canvas), &error);
-    skinslide_map_canvas_destroy(canvas);
-    assert_fails(create_with(small, 0, &canvas), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "a map of 0 texels a side; it must have 1 to 16384");
-    assert_fails(create_with(small, 16385, &canvas), &error, SKINSLIDE_BAD_ARGUMENT, "a map of 16385 ...");
-    assert_fails(skinslide_map_canvas_create(16, -2, &canvas, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no place ...");
-    assert_fails(skinslide_map_canvas_create(16, -1, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no place ...");
-}
-
-static void machines_without_a_device(void **state) {
-    (void)state;
-    skinslide_map_canvas *canvas = NULL;
-    ss_egl *egl = NULL;
-    skinslide_error said;
-    const ss_device_request request = {load_nothing, SKINSLIDE_ANY_DEVICE, false};
-    assert_int_equal(ss_egl_open(&request, &egl, &said), SKINSLIDE_NO_DEVICE);
-    assert_fails(ss_map_canvas_create(16, &request, &canvas, &error), &error, SKINSLIDE_NO_DEVICE, said.message);
-    assert_null(canvas);
-}
-
-static void devices_that_cannot(void **state) {
-    (void)state;
-    static const struct {
-        const char *call, *text;
-        int32_t after;
-        uint32_t code;
-    } cases[] = {
-        {"glCheckFramebufferStatus", "the device's framebuffer of 16 by 16 texels is not complete: 0x8cdd", 0, 0x8cdd},
-        {"glCheckFramebufferStatus", "the device's framebuffer of 16 by 16 texels is not complete: 0x8cdd", 1, 0x8cdd},
-        {"glGetProgramiv", "the device's compiler refuses a program: ...", 0, 0},
-        {"glGetProgramiv", "the device's compiler refuses a program: ...", 1, 0},
-        {"glGetError", "making a map's canvas: OpenGL error 0x0505", 0, GL_OUT_OF_MEMORY},
-        {"eglMakeCurrent", "eglMakeCurrent: EGL_BAD_ALLOC", 1, EGL_BAD_ALLOC},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        skinslide_map_canvas *canvas;
-        fault planned = {.call = cases[i].call, .after = cases[i].after, .times = -1, .code = cases[i].code, .devices = -1};
-        assert_fails(create_with(planned, 16, &canvas), &error, SKINSLIDE_DEVICE_FAILED, cases[i].text);
-        assert_true(faults_struck() > 0);
-    }
-}
-
-static void devices_that_fail_later(void **state) {
-    (void)state;
-    static const struct {
-        const char *call, *text;
-        uint32_t code;
-    } cases[] = {{"glGetError", "drawing a map: OpenGL error 0x0505", GL_OUT_OF_MEMORY},
-                 {"glGetGraphicsResetStatus", "drawing a map: the context was lost, 0x8253", 0x8253},
-                 {"eglMakeCurrent", "eglMakeCurrent: EGL_CONTEXT_LOST", EGL_CONTEXT_LOST}};
-    scene s;
-    fill_scene(&s, square_grid(2, 0.1f, 0.9f), 1);
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        skinslide_map_canvas *canvas;
-        assert_ok(create_with((fault)NO_FAULT, 16, &canvas), &error);
-        plan_fault((fault){.call = cases[i].call, .times = 1, .code = cases[i].code, .devices = -1});
-        refuse(canvas, &s, 1001, SKINSLIDE_DEVICE_FAILED, cases[i].text);
-        assert_int_equal(faults_struck(), 1);
-        free(draw_on(canvas, 16, &s, 1001, NULL)); /* and again, once it works */
-        skinslide_map_canvas_destroy(canvas);
-    }
+    refuse(&s, 1001, 16, SKINSLIDE_BAD_ARGUMENT, "...");
     free_scene(&s);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(texels_in_whole_numbers),
+        cmocka_unit_test(neighbours_share_no_texel_and_leave_none),
         cmocka_unit_test(texels_by_barycentric_coordinates),
         cmocka_unit_test(slivers_far_from_the_corner),
         cmocka_unit_test(the_top_row_comes_first),
@@ -544,12 +551,9 @@ int main(void) {
         cmocka_unit_test(tiles_are_drawn_alike),
         cmocka_unit_test(a_face_across_tiles_is_in_both),
         cmocka_unit_test(faces_without_a_texel_are_counted),
-        cmocka_unit_test(a_canvas_is_used_again),
+        cmocka_unit_test(a_map_is_drawn_over_another),
+        cmocka_unit_test(the_same_bytes_on_every_machine),
         cmocka_unit_test(bad_arguments),
-        cmocka_unit_test(sizes),
-        cmocka_unit_test(machines_without_a_device),
-        cmocka_unit_test(devices_that_cannot),
-        cmocka_unit_test(devices_that_fail_later),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
