@@ -28,15 +28,22 @@ typedef struct map {
     int32_t *face_start; /* [mesh face_count + 1] */
     int32_t *tiles;      /* [index_count] of each corner */
     int32_t tile, side;
-    float *rows[2]; /* [side] each, for the dilation */
-    float *texels;  /* [side][side] from the top row on; NAN: not covered */
+    float *texels;           /* [side][side] from the top row on; NAN: not covered */
+    float *rows[3];          /* [side + 2] each, for the dilation */
+    int32_t low[2], high[2]; /* columns and rows [low, high) hold all that is covered */
 } map;
 
-/* ---- Triangles ---- */
-
+/* Rows count from the lowest. */
 static float *row_of(const map *m, int32_t row) {
     return m->texels + (int64_t)(m->side - 1 - row) * m->side;
 }
+
+static void widen(map *m, int axis, int32_t from, int32_t to) {
+    m->low[axis] = from < m->low[axis] ? from : m->low[axis];
+    m->high[axis] = to > m->high[axis] ? to : m->high[axis];
+}
+
+/* ---- Triangles ---- */
 
 /* The first column whose centre, at height y, is on the side from a up to b or right of it: 0 to side. The division is off by
  * far less than a column. */
@@ -84,7 +91,7 @@ static float value_at(const triangle *t, const double p[2]) {
 }
 
 /* Whether it covers a texel. */
-static bool draw_triangle(const map *m, const triangle *t) {
+static bool draw_triangle(map *m, const triangle *t) {
     bool covers = false;
     double lowest = fmin(t->corner[0][1], fmin(t->corner[1][1], t->corner[2][1]));
     double highest = fmax(t->corner[0][1], fmax(t->corner[1][1], t->corner[2][1]));
@@ -92,9 +99,12 @@ static bool draw_triangle(const map *m, const triangle *t) {
     for (int32_t row = (int32_t)fmax(0, ceil(lowest - 0.5)); row <= last; row++) {
         int32_t from, to;
         cross_row(t, row + 0.5, m->side, &from, &to);
+        if (from >= to)
+            continue;
+        covers = true;
+        widen(m, 0, from, to), widen(m, 1, row, row + 1);
         for (int32_t x = from; x < to; x++)
             row_of(m, row)[x] = value_at(t, (double[2]){x + 0.5, row + 0.5});
-        covers = covers || from < to;
     }
     return covers;
 }
@@ -116,7 +126,7 @@ static void place_corner(const map *m, int32_t corner, double place[2]) {
 }
 
 /* The fan of a face. Whether it covers a texel. */
-static bool draw_face(const map *m, int32_t face, const float *values) {
+static bool draw_face(map *m, int32_t face, const float *values) {
     bool covers = false;
     int32_t first = m->face_start[face];
     for (int32_t c = first + 1; c + 1 < m->face_start[face + 1]; c++) {
@@ -132,7 +142,7 @@ static bool draw_face(const map *m, int32_t face, const float *values) {
 }
 
 /* Returns how many faces of the tile cover no texel. */
-static int32_t draw_faces(const map *m, const float *values) {
+static int32_t draw_faces(map *m, const float *values) {
     int32_t missed = 0;
     for (int64_t i = 0; i < (int64_t)m->side * m->side; i++)
         m->texels[i] = NAN;
@@ -144,28 +154,37 @@ static int32_t draw_faces(const map *m, const float *values) {
 
 /* ---- Dilation ---- */
 
-/* The mean of the covered texels around one that is not; NAN where there are none. rows: those above, of and below it, NULL
- * beyond the texture. */
-static float mean_around(const float *const rows[3], int32_t x, int32_t side) {
+/* A row as it is now with a texel more at both ends; beyond the texture nothing is covered. */
+static void copy_row(const map *m, int32_t row, float *out) {
+    for (int32_t x = m->low[0] - 1; x <= m->high[0]; x++)
+        out[x + 1] = row >= 0 && row < m->side && x >= 0 && x < m->side ? row_of(m, row)[x] : NAN;
+}
+
+/* The mean of the covered texels among nine, whose columns begin at x of the copied rows; NAN where there are none. */
+static float mean_of(float *const rows[3], int32_t x) {
     double sum = 0;
-    int32_t count = 0, last = x + 1 < side ? x + 1 : x;
-    for (int k = 0; k < 3; k++)
-        for (int32_t i = x > 0 ? x - 1 : 0; rows[k] && i <= last; i++)
-            if (!isnan(rows[k][i]))
-                sum += rows[k][i], count++;
+    int32_t count = 0;
+    for (int i = 0; i < 9; i++) {
+        float texel = rows[i / 3][x + i % 3];
+        if (!isnan(texel))
+            sum += texel, count++;
+    }
     return count > 0 ? (float)(sum / count) : NAN;
 }
 
-/* Goes down the rows with copies of those above and at each, as they were. */
-static void dilate(const map *m) {
-    int32_t side = m->side;
-    for (int32_t y = 0; y < side; y++) {
-        float *row = m->texels + (int64_t)y * side, *before = m->rows[y % 2];
-        const float *const rows[3] = {y > 0 ? m->rows[(y + 1) % 2] : NULL, before, y + 1 < side ? row + side : NULL};
-        memcpy(before, row, (size_t)side * sizeof *row);
-        for (int32_t x = 0; x < side; x++)
-            if (isnan(before[x]))
-                row[x] = mean_around(rows, x, side);
+static void dilate(map *m) {
+    float *rows[3] = {m->rows[0], m->rows[1], m->rows[2]};
+    for (int axis = 0; axis < 2; axis++)
+        widen(m, axis, m->low[axis] > 0 ? m->low[axis] - 1 : 0, m->high[axis] < m->side ? m->high[axis] + 1 : m->side);
+    copy_row(m, m->low[1] - 1, rows[0]);
+    copy_row(m, m->low[1], rows[1]);
+    for (int32_t row = m->low[1]; row < m->high[1]; row++) {
+        copy_row(m, row + 1, rows[2]);
+        for (int32_t x = m->low[0]; x < m->high[0]; x++)
+            if (isnan(rows[1][x + 1]))
+                row_of(m, row)[x] = mean_of(rows, x);
+        float *first = rows[0];
+        rows[0] = rows[1], rows[1] = rows[2], rows[2] = first;
     }
 }
 
@@ -200,8 +219,8 @@ static skinslide_status prepare(map *m, ss_memory *memory, const float *values, 
     const skinslide_mesh *mesh = layout->mesh;
     m->tiles = SS_NEW(memory, int32_t, mesh->index_count);
     m->face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
-    for (int k = 0; k < 2; k++)
-        m->rows[k] = SS_NEW(memory, float, m->side);
+    for (int k = 0; k < 3; k++)
+        m->rows[k] = SS_NEW(memory, float, m->side + 2);
     if (memory->failed)
         return ss_out_of_memory(error);
     for (int32_t f = 0; f < mesh->face_count; f++)
@@ -216,7 +235,7 @@ skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int3
     if (status)
         return status;
     ss_memory memory = {0};
-    map m = {.layout = layout, .tile = tile, .side = side, .texels = texels};
+    map m = {.layout = layout, .tile = tile, .side = side, .texels = texels, .low = {side, side}};
     status = prepare(&m, &memory, values, error);
     if (!status) {
         int32_t missed = draw_faces(&m, values);
