@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import skinslide  # noqa: F401 (registers the file format before any test opens a layer, when USD takes no more)
 from repository import load
 
 
