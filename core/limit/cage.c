@@ -30,7 +30,7 @@ struct ss_cage {
     ss_memory memory;
     const ss_patch *patch;
     bool loop; /* the scheme is */
-    ss_surfaces *surfaces;
+    ss_limit_surfaces *surfaces;
     ss_fit *fit;
     int32_t sample_count; /* free_count limit points, then face_count middles */
     sample *samples;
@@ -47,7 +47,7 @@ struct ss_cage_work {
     double (*residual)[3]; /* [sample_count] t - L Md */
     double (*normal)[3];   /* [sample_count] n */
     double (*solution)[3]; /* [free_count] d */
-    double *scratch;       /* [ss_surfaces_scratch] */
+    double *scratch;       /* [ss_limit_surfaces_scratch] */
 };
 
 /* ---- Samples ---- */
@@ -125,7 +125,7 @@ static skinslide_status fill_stencils(ss_cage *cage, double *weights, skinslide_
 
 static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
     ss_memory scratch = {0};
-    double *weights = SS_NEW(&scratch, double, ss_surfaces_most_vertices(cage->surfaces));
+    double *weights = SS_NEW(&scratch, double, ss_limit_surfaces_most_vertices(cage->surfaces));
     skinslide_status status = weights ? fill_stencils(cage, weights, error) : ss_out_of_memory(error);
     ss_free(&scratch);
     return status;
@@ -174,7 +174,7 @@ skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *pat
         return ss_out_of_memory(error);
     cage->patch = patch, cage->loop = loop;
     skinslide_status status =
-        ss_surfaces_create(topology, patch->mesh_face, patch->faces.face_count, patch->label, &cage->surfaces, error);
+        ss_limit_surfaces_create(topology, patch->mesh_face, patch->faces.face_count, patch->label, &cage->surfaces, error);
     if (!status)
         status = build(cage, error);
     if (status)
@@ -188,7 +188,7 @@ void ss_cage_destroy(ss_cage *cage) {
     if (!cage)
         return;
     ss_fit_destroy(cage->fit);
-    ss_surfaces_destroy(cage->surfaces);
+    ss_limit_surfaces_destroy(cage->surfaces);
     ss_free(&cage->memory);
     free(cage);
 }
@@ -201,7 +201,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     work->residual = ss_new(&work->memory, cage->sample_count, sizeof *work->residual);
     work->normal = ss_new(&work->memory, cage->sample_count, sizeof *work->normal);
     work->solution = ss_new(&work->memory, cage->patch->free_count, sizeof *work->solution);
-    work->scratch = SS_NEW(&work->memory, double, ss_surfaces_scratch(cage->surfaces));
+    work->scratch = SS_NEW(&work->memory, double, ss_limit_surfaces_scratch(cage->surfaces));
     skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
         status = ss_fit_work_create(cage->fit, &work->fit, error);
@@ -226,7 +226,7 @@ void ss_cage_work_destroy(ss_cage_work *work) {
 /* ---- Targets of one frame ---- */
 
 /* Looks the middle of a face up, at the mean of where its corners are looked up. It stays where all of them do. */
-static ss_location locate_middle(const ss_cage_work *work, const ss_pose *pose, int32_t face) {
+static ss_location locate_middle(const ss_cage_work *work, const ss_frame *frame, int32_t face) {
     const ss_faces *faces = &work->cage->patch->faces;
     int32_t begin = faces->face_start[face], end = faces->face_start[face + 1];
     ss_location found = {.face = SS_STAYS};
@@ -234,8 +234,8 @@ static ss_location locate_middle(const ss_cage_work *work, const ss_pose *pose, 
     bool stays = true;
     for (int32_t c = begin; c < end; c++) {
         int32_t vertex = faces->corner_vertex[c], i = work->cage->free_index[vertex];
-        const double *place = i < 0 ? pose->uv[vertex] : pose->queries[i];
-        stays = stays && (i < 0 || pose->locations[i].face == SS_STAYS);
+        const double *place = i < 0 ? frame->uv[vertex] : frame->queries[i];
+        stays = stays && (i < 0 || frame->locations[i].face == SS_STAYS);
         for (int k = 0; k < 2; k++)
             mean[k] += place[k] / (end - begin);
     }
@@ -245,35 +245,35 @@ static ss_location locate_middle(const ss_cage_work *work, const ss_pose *pose, 
 }
 
 /* Where a sample is looked up: t less the origin, and n. A sample that stays is looked up where it is. */
-static void find_target(const ss_cage_work *work, const ss_pose *pose, const sample *own, const ss_location *location,
+static void find_target(const ss_cage_work *work, const ss_frame *frame, const sample *own, const ss_location *location,
                         const double origin[3], double target[3], double normal[3]) {
     const ss_cage *cage = work->cage;
     bool stays = location->face == SS_STAYS;
     int32_t face = stays ? own->face : location->face;
-    ss_parameter at = stays ? own->at : ss_parametrise(&cage->patch->faces, cage->loop, pose->uv, location);
-    ss_limit_prepare(cage->surfaces, face, pose->points, origin, work->scratch);
-    ss_limit_frame(cage->surfaces, face, &at, work->scratch, target, normal);
+    ss_parameter at = stays ? own->at : ss_parametrise(&cage->patch->faces, cage->loop, frame->uv, location);
+    ss_limit_prepare(cage->surfaces, face, frame->points, origin, work->scratch);
+    ss_limit_normal(cage->surfaces, face, &at, work->scratch, target, normal);
 }
 
 /* residual = t - L Md, and n, of sample s. */
-static void list_target(const ss_cage_work *work, const ss_pose *pose, int32_t s) {
+static void list_target(const ss_cage_work *work, const ss_frame *frame, int32_t s) {
     const sample *own = &work->cage->samples[s];
     const ss_rows *stencils = &work->cage->stencils;
-    ss_location location = own->free_index < 0 ? locate_middle(work, pose, own->face) : pose->locations[own->free_index];
-    const float *near = pose->points + 3 * (int64_t)own->origin;
+    ss_location location = own->free_index < 0 ? locate_middle(work, frame, own->face) : frame->locations[own->free_index];
+    const float *near = frame->points + 3 * (int64_t)own->origin;
     double origin[3] = {near[0], near[1], near[2]}, *residual = work->residual[s];
-    find_target(work, pose, own, &location, origin, residual, work->normal[s]);
+    find_target(work, frame, own, &location, origin, residual, work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
-            residual[axis] -= stencils->value[k] * (pose->points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
+            residual[axis] -= stencils->value[k] * (frame->points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
     for (int axis = 0; axis < 3 && location.face == SS_STAYS; axis++)
         residual[axis] = 0;
 }
 
-static void list_targets(const ss_cage_work *work, const ss_pose *pose) {
-    ss_face_tree_build(work->tree, pose->uv);
+static void list_targets(const ss_cage_work *work, const ss_frame *frame) {
+    ss_face_tree_build(work->tree, frame->uv);
     for (int32_t s = 0; s < work->cage->sample_count; s++)
-        list_target(work, pose, s);
+        list_target(work, frame, s);
 }
 
 /* ---- Damping ---- */
@@ -287,9 +287,9 @@ static double mean_edge(const ss_faces *faces, int32_t face, const double *lengt
     return sum / (ss_fan_size(faces, face) + 2);
 }
 
-static double bound(const ss_cage *cage, const ss_pose *pose, int32_t i) {
-    int32_t face = pose->locations[i].face == SS_STAYS ? cage->samples[i].face : pose->locations[i].face;
-    return most_deviation * mean_edge(&cage->patch->faces, face, pose->lengths);
+static double bound(const ss_cage *cage, const ss_frame *frame, int32_t i) {
+    int32_t face = frame->locations[i].face == SS_STAYS ? cage->samples[i].face : frame->locations[i].face;
+    return most_deviation * mean_edge(&cage->patch->faces, face, frame->lengths);
 }
 
 /* Puts the solution in place of the linear displacement, no farther from it than the bound. Returns whether that held it back.
@@ -309,22 +309,22 @@ static bool take_damped(const double solution[3], double most, double linear[3])
 
 /* ---- One frame ---- */
 
-static bool any_slides(const ss_pose *pose, int32_t count) {
+static bool any_slides(const ss_frame *frame, int32_t count) {
     for (int32_t i = 0; i < count; i++)
-        if (pose->locations[i].face != SS_STAYS)
+        if (frame->locations[i].face != SS_STAYS)
             return true;
     return false;
 }
 
-int32_t ss_move_cage(ss_cage_work *work, const ss_pose *pose, double (*displacement)[3]) {
+int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, double (*displacement)[3]) {
     int32_t damped = 0, count = work->cage->patch->free_count;
-    if (!any_slides(pose, count))
+    if (!any_slides(frame, count))
         return 0;
     memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
-    list_targets(work, pose);
-    ss_fit_samples(work->fit, pose->points, (const double(*)[3])work->residual, (const double(*)[3])work->normal,
+    list_targets(work, frame);
+    ss_fit_samples(work->fit, frame->points, (const double(*)[3])work->residual, (const double(*)[3])work->normal,
                    work->solution);
     for (int32_t i = 0; i < count; i++)
-        damped += take_damped(work->solution[i], bound(work->cage, pose, i), displacement[i]);
+        damped += take_damped(work->solution[i], bound(work->cage, frame, i), displacement[i]);
     return damped;
 }

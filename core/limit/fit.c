@@ -40,13 +40,13 @@ struct ss_fit {
     int32_t free_count, edge_count;
     const ss_rows *samples; /* L */
     edge *edges;            /* [edge_count] */
-    ss_sparse *across, *along;
+    ss_least_squares *across, *along;
 };
 
 struct ss_fit_work {
     ss_memory memory;
     const ss_fit *fit;
-    ss_sparse_work *across, *along;
+    ss_least_squares_work *across, *along;
     const double (*normal)[3]; /* [sample count] n */
     double (*residual)[3];     /* [sample count] r */
     double (*linear)[3];       /* [edge_count] e0 */
@@ -91,8 +91,8 @@ static void append_samples(const ss_rows *samples, ss_rows *rows) {
 }
 
 /* A'A, of samples, or NULL for none, and of edges so stiff. */
-static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double stiffness, const char *label, ss_sparse **out,
-                               skinslide_error *error) {
+static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double stiffness, const char *label,
+                               ss_least_squares **out, skinslide_error *error) {
     int64_t row_count = fit->edge_count, entries = 2 * row_count;
     if (samples)
         row_count += samples->row_count, entries += samples->start[samples->row_count];
@@ -108,7 +108,7 @@ static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double
         if (samples)
             append_samples(samples, &rows);
         append_edges(fit, sqrt(stiffness), &rows);
-        status = ss_sparse_create(&rows, label, out, error);
+        status = ss_least_squares_create(&rows, label, out, error);
     }
     ss_free(&scratch);
     return status;
@@ -138,8 +138,8 @@ skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index,
 void ss_fit_destroy(ss_fit *fit) {
     if (!fit)
         return;
-    ss_sparse_destroy(fit->across);
-    ss_sparse_destroy(fit->along);
+    ss_least_squares_destroy(fit->across);
+    ss_least_squares_destroy(fit->along);
     ss_free(&fit->memory);
     free(fit);
 }
@@ -167,9 +167,9 @@ skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinsl
     new_arrays(work);
     skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_sparse_work_create(fit->across, &work->across, error);
+        status = ss_least_squares_work_create(fit->across, &work->across, error);
     if (!status)
-        status = ss_sparse_work_create(fit->along, &work->along, error);
+        status = ss_least_squares_work_create(fit->along, &work->along, error);
     if (status)
         ss_fit_work_destroy(work);
     else
@@ -180,8 +180,8 @@ skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinsl
 void ss_fit_work_destroy(ss_fit_work *work) {
     if (!work)
         return;
-    ss_sparse_work_destroy(work->across);
-    ss_sparse_work_destroy(work->along);
+    ss_least_squares_work_destroy(work->across);
+    ss_least_squares_work_destroy(work->along);
     ss_free(&work->memory);
     free(work);
 }
@@ -282,8 +282,8 @@ static void precondition(ss_fit_work *work) {
         for (int axis = 0; axis < 3; axis++)
             along[axis * n + i] = gradient[axis] - across[i] * normal[axis];
     }
-    ss_sparse_solve(work->across, across, 1);
-    ss_sparse_solve(work->along, along, 3);
+    ss_least_squares_solve(work->across, across, 1);
+    ss_least_squares_solve(work->along, along, 3);
     for (int64_t i = 0; i < n; i++) {
         double *scaled = work->scaled[i];
         for (int axis = 0; axis < 3; axis++)

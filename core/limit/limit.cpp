@@ -23,7 +23,7 @@ struct ss_topology {
     std::unique_ptr<Bfr::RefinerSurfaceFactory<>> factory;
 };
 
-struct ss_surfaces {
+struct ss_limit_surfaces {
     std::vector<Surface> faces;
     std::vector<int32_t> vertex_start; /* [face count + 1] control points of each face ... */
     std::vector<int32_t> vertices;     /* ... as mesh vertices, in the order of the surface */
@@ -185,7 +185,7 @@ skinslide_status refuse_hole(const ss_topology &topology, int32_t face, const ch
 }
 
 skinslide_status build_surfaces(const ss_topology &topology, const int32_t *faces, int32_t count, const char *label,
-                                ss_surfaces &surfaces, skinslide_error *error) {
+                                ss_limit_surfaces &surfaces, skinslide_error *error) {
     surfaces.faces.resize(size_t(count));
     surfaces.vertex_start.assign(1, 0);
     for (int32_t f = 0; f < count; f++) {
@@ -255,10 +255,10 @@ skinslide_status ss_face_surfaces(const ss_topology *topology, ss_face_surface *
     });
 }
 
-skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,
-                                    ss_surfaces **out, skinslide_error *error) {
+skinslide_status ss_limit_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count,
+                                          const char *label, ss_limit_surfaces **out, skinslide_error *error) {
     return guarded(error, [&] {
-        auto surfaces = std::make_unique<ss_surfaces>();
+        auto surfaces = std::make_unique<ss_limit_surfaces>();
         skinslide_status status = build_surfaces(*topology, mesh_faces, count, label, *surfaces, error);
         if (!status)
             *out = surfaces.release();
@@ -266,19 +266,19 @@ skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *
     });
 }
 
-void ss_surfaces_destroy(ss_surfaces *surfaces) {
+void ss_limit_surfaces_destroy(ss_limit_surfaces *surfaces) {
     delete surfaces;
 }
 
-int32_t ss_surfaces_scratch(const ss_surfaces *surfaces) {
+int32_t ss_limit_surfaces_scratch(const ss_limit_surfaces *surfaces) {
     return 3 * surfaces->most_patch_points;
 }
 
-int32_t ss_surfaces_most_vertices(const ss_surfaces *surfaces) {
+int32_t ss_limit_surfaces_most_vertices(const ss_limit_surfaces *surfaces) {
     return surfaces->most_vertices;
 }
 
-int32_t ss_limit_stencil(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const int32_t **vertices,
+int32_t ss_limit_stencil(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const int32_t **vertices,
                          double *weights) {
     const Surface &surface = surfaces->faces[size_t(face)];
     glm::dvec2 uv = coordinates(surface, *at);
@@ -286,13 +286,14 @@ int32_t ss_limit_stencil(const ss_surfaces *surfaces, int32_t face, const ss_par
     return surface.EvaluateStencil(&uv.x, weights);
 }
 
-int32_t ss_limit_vertices(const ss_surfaces *surfaces, int32_t face, const int32_t **vertices) {
+int32_t ss_limit_vertices(const ss_limit_surfaces *surfaces, int32_t face, const int32_t **vertices) {
     int32_t begin = surfaces->vertex_start[size_t(face)];
     *vertices = surfaces->vertices.data() + begin;
     return surfaces->vertex_start[size_t(face) + 1] - begin;
 }
 
-void ss_limit_prepare(const ss_surfaces *surfaces, int32_t face, const float *points, const double origin[3], double *scratch) {
+void ss_limit_prepare(const ss_limit_surfaces *surfaces, int32_t face, const float *points, const double origin[3],
+                      double *scratch) {
     int32_t begin = surfaces->vertex_start[size_t(face)], end = surfaces->vertex_start[size_t(face) + 1];
     glm::dvec3 centre(origin[0], origin[1], origin[2]);
     for (int32_t i = begin; i < end; i++) {
@@ -303,14 +304,15 @@ void ss_limit_prepare(const ss_surfaces *surfaces, int32_t face, const float *po
     surfaces->faces[size_t(face)].ComputePatchPoints(scratch, 3);
 }
 
-void ss_limit_point(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double out[3]) {
+void ss_limit_point(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
+                    double out[3]) {
     const Surface &surface = surfaces->faces[size_t(face)];
     glm::dvec2 uv = coordinates(surface, *at);
     surface.Evaluate(&uv.x, scratch, 3, out);
 }
 
-void ss_limit_frame(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double point[3],
-                    double normal[3]) {
+void ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
+                     double point[3], double normal[3]) {
     const Surface &surface = surfaces->faces[size_t(face)];
     glm::dvec2 uv = coordinates(surface, *at);
     glm::dvec3 along_u, along_v;
@@ -320,6 +322,6 @@ void ss_limit_frame(const ss_surfaces *surfaces, int32_t face, const ss_paramete
         normal[k] = glm::length(across) > 0 ? unit[k] : 0;
 }
 
-ss_parameter ss_limit_parameter(const ss_surfaces *surfaces, int32_t face, int32_t corner, double s, double t) {
+ss_parameter ss_limit_parameter(const ss_limit_surfaces *surfaces, int32_t face, int32_t corner, double s, double t) {
     return place_in_face(surfaces->faces[size_t(face)], corner, s, t);
 }

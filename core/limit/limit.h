@@ -20,8 +20,8 @@ typedef struct ss_parameter {
 /* The parameters of a location in the embedding. loop: the scheme is. */
 ss_parameter ss_parametrise(const ss_faces *faces, bool loop, const double (*uv)[2], const ss_location *location);
 
-typedef struct ss_topology ss_topology; /* a subdivided mesh, checked; keeps the mesh and its arrays */
-typedef struct ss_surfaces ss_surfaces; /* limit surfaces of some of its faces: immutable, and good without it */
+typedef struct ss_topology ss_topology;             /* a subdivided mesh, checked; keeps the mesh and its arrays */
+typedef struct ss_limit_surfaces ss_limit_surfaces; /* limit surfaces of some of its faces: immutable, and good without it */
 
 skinslide_status ss_topology_create(const skinslide_mesh *mesh, ss_topology **out, skinslide_error *error);
 void ss_topology_destroy(ss_topology *topology);
@@ -33,27 +33,29 @@ typedef enum ss_face_surface {
 /* kinds out [mesh face_count] */
 skinslide_status ss_face_surfaces(const ss_topology *topology, ss_face_surface *kinds, skinslide_error *error);
 /* BAD_PATCH where a face has none. label begins messages. */
-skinslide_status ss_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count, const char *label,
-                                    ss_surfaces **out, skinslide_error *error);
-void ss_surfaces_destroy(ss_surfaces *surfaces);
+skinslide_status ss_limit_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count,
+                                          const char *label, ss_limit_surfaces **out, skinslide_error *error);
+void ss_limit_surfaces_destroy(ss_limit_surfaces *surfaces);
 /* Doubles of scratch for ss_limit_prepare. */
-int32_t ss_surfaces_scratch(const ss_surfaces *surfaces);
+int32_t ss_limit_surfaces_scratch(const ss_limit_surfaces *surfaces);
 /* The most that ss_limit_stencil writes. */
-int32_t ss_surfaces_most_vertices(const ss_surfaces *surfaces);
+int32_t ss_limit_surfaces_most_vertices(const ss_limit_surfaces *surfaces);
 /* A limit point is the sum of weights times points of mesh vertices, of which one may be there twice. Returns their count. */
-int32_t ss_limit_stencil(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const int32_t **vertices,
+int32_t ss_limit_stencil(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const int32_t **vertices,
                          double *weights);
 /* Gathers what makes the face's surface from the mesh's points, less origin, for ss_limit_point. face counts in the mesh_faces
  * that the surfaces are of. */
-void ss_limit_prepare(const ss_surfaces *surfaces, int32_t face, const float *points, const double origin[3], double *scratch);
+void ss_limit_prepare(const ss_limit_surfaces *surfaces, int32_t face, const float *points, const double origin[3],
+                      double *scratch);
 /* The mesh vertices that make the face's surface. Returns their count. */
-int32_t ss_limit_vertices(const ss_surfaces *surfaces, int32_t face, const int32_t **vertices);
-void ss_limit_point(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double out[3]);
+int32_t ss_limit_vertices(const ss_limit_surfaces *surfaces, int32_t face, const int32_t **vertices);
+void ss_limit_point(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
+                    double out[3]);
 /* The same with the unit normal, of zeros where the surface has none, and the other way round where faces are left-handed. */
-void ss_limit_frame(const ss_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch, double point[3],
-                    double normal[3]);
+void ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
+                     double point[3], double normal[3]);
 /* The parameters of a place in the quad at a corner: see skinslide_limit_place. */
-ss_parameter ss_limit_parameter(const ss_surfaces *surfaces, int32_t face, int32_t corner, double s, double t);
+ss_parameter ss_limit_parameter(const ss_limit_surfaces *surfaces, int32_t face, int32_t corner, double s, double t);
 
 /* ---- fit.c: the least squares of interpolation LIMIT ---- */
 
@@ -78,13 +80,13 @@ typedef struct ss_cage ss_cage;           /* limit surfaces and samples of a pat
 typedef struct ss_cage_work ss_cage_work; /* one a thread */
 
 /* One patch in one frame. */
-typedef struct ss_pose {
+typedef struct ss_frame {
     const float *points;          /* [mesh vertex_count][3] */
     const double *lengths;        /* [edge_count] */
     const double (*uv)[2];        /* [vertex_count] Ud */
     const double (*queries)[2];   /* [free_count] */
     const ss_location *locations; /* [free_count] */
-} ss_pose;
+} ss_frame;
 
 skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
                                 skinslide_error *error);
@@ -93,7 +95,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
 void ss_cage_work_destroy(ss_cage_work *work);
 /* displacement [free_count]: in the linear one, out the one that keeps the limit surface. Returns how many vertices were
  * damped. */
-int32_t ss_move_cage(ss_cage_work *work, const ss_pose *pose, double (*displacement)[3]);
+int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, double (*displacement)[3]);
 
 #ifdef __cplusplus
 }

@@ -47,7 +47,7 @@ static skinslide_status choose_faces(const skinslide_mesh *mesh, const skinslide
 }
 
 /* scratch holds the surface of face *prepared. */
-static void evaluate(const ss_surfaces *surfaces, const chosen_faces *chosen, const float *points,
+static void evaluate(const ss_limit_surfaces *surfaces, const chosen_faces *chosen, const float *points,
                      const skinslide_limit_place *place, int32_t *prepared, double *scratch, float out[3]) {
     int32_t face = chosen->corner_face[place->corner];
     const double origin[3] = {0, 0, 0};
@@ -65,18 +65,18 @@ static void evaluate(const ss_surfaces *surfaces, const chosen_faces *chosen, co
 static skinslide_status evaluate_all(const skinslide_mesh *mesh, const chosen_faces *chosen, const float *points,
                                      const skinslide_limit_place *places, int32_t count, float *out, skinslide_error *error) {
     ss_topology *topology = NULL;
-    ss_surfaces *surfaces = NULL;
+    ss_limit_surfaces *surfaces = NULL;
     ss_memory memory = {0};
     skinslide_status status = ss_topology_create(mesh, &topology, error);
     if (!status)
-        status = ss_surfaces_create(topology, chosen->faces, chosen->count, "limit points", &surfaces, error);
+        status = ss_limit_surfaces_create(topology, chosen->faces, chosen->count, "limit points", &surfaces, error);
     ss_topology_destroy(topology);
-    double *scratch = status ? NULL : SS_NEW(&memory, double, ss_surfaces_scratch(surfaces));
+    double *scratch = status ? NULL : SS_NEW(&memory, double, ss_limit_surfaces_scratch(surfaces));
     if (!status && !scratch)
         status = ss_out_of_memory(error);
     for (int32_t i = 0, prepared = -1; i < count && !status; i++)
         evaluate(surfaces, chosen, points, &places[i], &prepared, scratch, out + 3 * (int64_t)i);
-    ss_surfaces_destroy(surfaces);
+    ss_limit_surfaces_destroy(surfaces);
     ss_free(&memory);
     return status;
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct ss_sparse {
+struct ss_least_squares {
     int32_t column_count;
     klu_common common;
     klu_symbolic *symbolic;
@@ -19,9 +19,9 @@ struct ss_sparse {
 /* klu_solve works in memory of the factor's: each thread has a copy of the factor's head with memory of its own. That the head
  * can be copied, and that Xwork alone is written, holds for KLU 1 and 2. */
 _Static_assert(KLU_MAIN_VERSION == 1 || KLU_MAIN_VERSION == 2, "see whether klu_solve of this KLU writes more than Xwork");
-struct ss_sparse_work {
+struct ss_least_squares_work {
     ss_memory memory;
-    const ss_sparse *sparse;
+    const ss_least_squares *sparse;
     klu_common common;
     klu_numeric numeric;
 };
@@ -111,7 +111,7 @@ static skinslide_status multiply(const ss_rows *rows, const char *label, product
 
 /* ---- Creation ---- */
 
-static skinslide_status refuse(const ss_sparse *sparse, const char *label, skinslide_error *error) {
+static skinslide_status refuse(const ss_least_squares *sparse, const char *label, skinslide_error *error) {
     if (sparse->common.status == KLU_OUT_OF_MEMORY)
         return ss_out_of_memory(error);
     if (sparse->common.status == KLU_TOO_LARGE)
@@ -120,7 +120,7 @@ static skinslide_status refuse(const ss_sparse *sparse, const char *label, skins
 }
 
 /* A'A is symmetric: its rows serve as the columns that KLU takes. */
-static skinslide_status factor(ss_sparse *sparse, const ss_rows *square, const char *label, skinslide_error *error) {
+static skinslide_status factor(ss_least_squares *sparse, const ss_rows *square, const char *label, skinslide_error *error) {
     klu_common *common = &sparse->common;
     sparse->symbolic = klu_analyze(square->row_count, square->start, square->column, common);
     if (!sparse->symbolic)
@@ -131,8 +131,9 @@ static skinslide_status factor(ss_sparse *sparse, const ss_rows *square, const c
     return common->condest < worst_condition ? SKINSLIDE_OK : refuse(sparse, label, error);
 }
 
-skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_sparse **out, skinslide_error *error) {
-    ss_sparse *sparse = calloc(1, sizeof *sparse);
+skinslide_status ss_least_squares_create(const ss_rows *rows, const char *label, ss_least_squares **out,
+                                         skinslide_error *error) {
+    ss_least_squares *sparse = calloc(1, sizeof *sparse);
     if (!sparse)
         return ss_out_of_memory(error);
     product square = {0};
@@ -146,13 +147,13 @@ skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_spa
         status = factor(sparse, &square.square, label, error);
     ss_free(&square.memory);
     if (status)
-        ss_sparse_destroy(sparse);
+        ss_least_squares_destroy(sparse);
     else
         *out = sparse;
     return status;
 }
 
-void ss_sparse_destroy(ss_sparse *sparse) {
+void ss_least_squares_destroy(ss_least_squares *sparse) {
     if (!sparse)
         return;
     klu_free_numeric(&sparse->numeric, &sparse->common); /* both take NULL */
@@ -160,8 +161,9 @@ void ss_sparse_destroy(ss_sparse *sparse) {
     free(sparse);
 }
 
-skinslide_status ss_sparse_work_create(const ss_sparse *sparse, ss_sparse_work **out, skinslide_error *error) {
-    ss_sparse_work *work = calloc(1, sizeof *work);
+skinslide_status ss_least_squares_work_create(const ss_least_squares *sparse, ss_least_squares_work **out,
+                                              skinslide_error *error) {
+    ss_least_squares_work *work = calloc(1, sizeof *work);
     if (!work)
         return ss_out_of_memory(error);
     work->sparse = sparse;
@@ -171,21 +173,21 @@ skinslide_status ss_sparse_work_create(const ss_sparse *sparse, ss_sparse_work *
         work->numeric.Xwork = SS_NEW(&work->memory, double, 4 * (int64_t)sparse->column_count);
     }
     if (work->memory.failed) {
-        ss_sparse_work_destroy(work);
+        ss_least_squares_work_destroy(work);
         return ss_out_of_memory(error);
     }
     *out = work;
     return SKINSLIDE_OK;
 }
 
-void ss_sparse_work_destroy(ss_sparse_work *work) {
+void ss_least_squares_work_destroy(ss_least_squares_work *work) {
     if (!work)
         return;
     ss_free(&work->memory);
     free(work);
 }
 
-void ss_sparse_solve(ss_sparse_work *work, double *right, int32_t count) {
+void ss_least_squares_solve(ss_least_squares_work *work, double *right, int32_t count) {
     int32_t n = work->sparse->column_count;
     if (n > 0)
         klu_solve(work->sparse->symbolic, &work->numeric, n, count, right, &work->common);

@@ -97,16 +97,18 @@ typedef struct ss_rows {
     double *value;
 } ss_rows;
 
-typedef struct ss_sparse ss_sparse;           /* A'A, factored: immutable */
-typedef struct ss_sparse_work ss_sparse_work; /* one a thread */
+typedef struct ss_least_squares ss_least_squares;           /* A'A, factored: immutable */
+typedef struct ss_least_squares_work ss_least_squares_work; /* one a thread */
 
 /* SINGULAR where the condition of A'A leaves too few digits. rows are only read; label begins messages. */
-skinslide_status ss_sparse_create(const ss_rows *rows, const char *label, ss_sparse **out, skinslide_error *error);
-void ss_sparse_destroy(ss_sparse *sparse);
-skinslide_status ss_sparse_work_create(const ss_sparse *sparse, ss_sparse_work **out, skinslide_error *error);
-void ss_sparse_work_destroy(ss_sparse_work *work);
+skinslide_status ss_least_squares_create(const ss_rows *rows, const char *label, ss_least_squares **out,
+                                         skinslide_error *error);
+void ss_least_squares_destroy(ss_least_squares *sparse);
+skinslide_status ss_least_squares_work_create(const ss_least_squares *sparse, ss_least_squares_work **out,
+                                              skinslide_error *error);
+void ss_least_squares_work_destroy(ss_least_squares_work *work);
 /* Puts x with A'A x = b in the place of each b of right: [count][column_count]. */
-void ss_sparse_solve(ss_sparse_work *work, double *right, int32_t count);
+void ss_least_squares_solve(ss_least_squares_work *work, double *right, int32_t count);
 
 #ifdef __cplusplus
 }

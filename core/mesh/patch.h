@@ -51,7 +51,7 @@ int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *leng
 
 /* The triangles of the fans of a patch's faces, and how they meet: immutable. Side k of a triangle goes from its vertex k to
  * the next. */
-typedef struct ss_surface {
+typedef struct ss_triangles {
     ss_memory memory;
     const ss_patch *patch;
     int32_t triangle_count;
@@ -60,12 +60,12 @@ typedef struct ss_surface {
     int32_t *face;            /* [triangle_count] patch face */
     int32_t *first_triangle;  /* [face_count] */
     int32_t *vertex_triangle; /* [vertex_count] a triangle at the vertex; on the border the one whose side leaves along it */
-} ss_surface;
+} ss_triangles;
 
-skinslide_status ss_surface_create(const ss_patch *patch, ss_surface **out, skinslide_error *error);
-void ss_surface_destroy(ss_surface *surface);
+skinslide_status ss_triangles_create(const ss_patch *patch, ss_triangles **out, skinslide_error *error);
+void ss_triangles_destroy(ss_triangles *triangles);
 /* Which vertex of the triangle a patch vertex is. */
-int ss_triangle_corner(const ss_surface *surface, int32_t triangle, int32_t vertex);
+int ss_triangle_corner(const ss_triangles *triangles, int32_t triangle, int32_t vertex);
 
 /* A triangle in a pose. */
 typedef struct ss_facet {
@@ -75,19 +75,19 @@ typedef struct ss_facet {
     bool has_area;
 } ss_facet;
 
-typedef struct ss_shape {
-    const ss_surface *surface;
+typedef struct ss_posed {
+    const ss_triangles *triangles;
     double (*point)[3]; /* [vertex_count] */
     ss_facet *facet;    /* [triangle_count] */
-} ss_shape;
+} ss_posed;
 
 /* The patch's of the whole mesh's points: [vertex_count][3]. */
 void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
-bool ss_shape_allocate(ss_memory *memory, const ss_surface *surface, ss_shape *pose);
+bool ss_posed_allocate(ss_memory *memory, const ss_triangles *triangles, ss_posed *pose);
 /* points is the whole mesh's. */
-void ss_shape_set(ss_shape *pose, const float *points);
+void ss_posed_set(ss_posed *pose, const float *points);
 /* The plane as a pose: an embedding uv [vertex_count][2], to walk straight in. */
-void ss_shape_set_plane(ss_shape *pose, const double (*uv)[2]);
+void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]);
 
 #ifdef __cplusplus
 }

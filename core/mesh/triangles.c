@@ -22,84 +22,84 @@ int32_t ss_largest_face(const ss_faces *faces) {
 
 /* ---- All the triangles of a patch ---- */
 
-static int32_t triangle_of_side(const ss_surface *surface, int32_t corner) {
-    const ss_faces *faces = &surface->patch->faces;
-    return surface->first_triangle[faces->corner_face[corner]] + ss_fan_of_side(faces, corner);
+static int32_t triangle_of_side(const ss_triangles *triangles, int32_t corner) {
+    const ss_faces *faces = &triangles->patch->faces;
+    return triangles->first_triangle[faces->corner_face[corner]] + ss_fan_of_side(faces, corner);
 }
 
-static int32_t across(const ss_surface *surface, int32_t corner) {
-    int32_t twin = surface->patch->faces.corner_twin[corner];
-    return twin < 0 ? -1 : triangle_of_side(surface, twin);
+static int32_t across(const ss_triangles *triangles, int32_t corner) {
+    int32_t twin = triangles->patch->faces.corner_twin[corner];
+    return twin < 0 ? -1 : triangle_of_side(triangles, twin);
 }
 
-static void number_triangles(ss_surface *surface) {
-    const ss_faces *faces = &surface->patch->faces;
+static void number_triangles(ss_triangles *triangles) {
+    const ss_faces *faces = &triangles->patch->faces;
     for (int32_t f = 0, t = 0; f < faces->face_count; f++) {
-        surface->first_triangle[f] = t;
+        triangles->first_triangle[f] = t;
         for (int32_t k = 0; k < ss_fan_size(faces, f); k++, t++) {
-            ss_fan(faces, f, k, surface->vertex[t]);
-            surface->face[t] = f;
+            ss_fan(faces, f, k, triangles->vertex[t]);
+            triangles->face[t] = f;
         }
     }
 }
 
-static void join_triangles(ss_surface *surface) {
-    const ss_faces *faces = &surface->patch->faces;
-    for (int32_t t = 0; t < surface->triangle_count; t++) {
-        int32_t face = surface->face[t], k = t - surface->first_triangle[face], corner = faces->face_start[face];
-        surface->neighbour[t][0] = k == 0 ? across(surface, corner) : t - 1;
-        surface->neighbour[t][1] = across(surface, corner + k + 1);
-        surface->neighbour[t][2] = k == ss_fan_size(faces, face) - 1 ? across(surface, corner + k + 2) : t + 1;
+static void join_triangles(ss_triangles *triangles) {
+    const ss_faces *faces = &triangles->patch->faces;
+    for (int32_t t = 0; t < triangles->triangle_count; t++) {
+        int32_t face = triangles->face[t], k = t - triangles->first_triangle[face], corner = faces->face_start[face];
+        triangles->neighbour[t][0] = k == 0 ? across(triangles, corner) : t - 1;
+        triangles->neighbour[t][1] = across(triangles, corner + k + 1);
+        triangles->neighbour[t][2] = k == ss_fan_size(faces, face) - 1 ? across(triangles, corner + k + 2) : t + 1;
         for (int j = 0; j < 3; j++)
-            if (surface->vertex_triangle[surface->vertex[t][j]] < 0 || surface->neighbour[t][j] < 0)
-                surface->vertex_triangle[surface->vertex[t][j]] = t;
+            if (triangles->vertex_triangle[triangles->vertex[t][j]] < 0 || triangles->neighbour[t][j] < 0)
+                triangles->vertex_triangle[triangles->vertex[t][j]] = t;
     }
 }
 
-skinslide_status ss_surface_create(const ss_patch *patch, ss_surface **out, skinslide_error *error) {
-    ss_surface *surface = calloc(1, sizeof *surface);
-    if (!surface)
+skinslide_status ss_triangles_create(const ss_patch *patch, ss_triangles **out, skinslide_error *error) {
+    ss_triangles *triangles = calloc(1, sizeof *triangles);
+    if (!triangles)
         return ss_out_of_memory(error);
-    ss_memory *memory = &surface->memory;
+    ss_memory *memory = &triangles->memory;
     int32_t count = patch->faces.corner_count - 2 * patch->faces.face_count;
-    surface->patch = patch;
-    surface->triangle_count = count;
-    surface->vertex = ss_new(memory, count, sizeof *surface->vertex);
-    surface->neighbour = ss_new(memory, count, sizeof *surface->neighbour);
-    surface->face = SS_NEW(memory, int32_t, count);
-    surface->first_triangle = SS_NEW(memory, int32_t, patch->faces.face_count);
-    surface->vertex_triangle = SS_NEW(memory, int32_t, patch->vertex_count);
+    triangles->patch = patch;
+    triangles->triangle_count = count;
+    triangles->vertex = ss_new(memory, count, sizeof *triangles->vertex);
+    triangles->neighbour = ss_new(memory, count, sizeof *triangles->neighbour);
+    triangles->face = SS_NEW(memory, int32_t, count);
+    triangles->first_triangle = SS_NEW(memory, int32_t, patch->faces.face_count);
+    triangles->vertex_triangle = SS_NEW(memory, int32_t, patch->vertex_count);
     if (memory->failed) {
-        ss_surface_destroy(surface);
+        ss_triangles_destroy(triangles);
         return ss_out_of_memory(error);
     }
     for (int32_t v = 0; v < patch->vertex_count; v++)
-        surface->vertex_triangle[v] = -1;
-    number_triangles(surface);
-    join_triangles(surface);
-    *out = surface;
+        triangles->vertex_triangle[v] = -1;
+    number_triangles(triangles);
+    join_triangles(triangles);
+    *out = triangles;
     return SKINSLIDE_OK;
 }
 
-void ss_surface_destroy(ss_surface *surface) {
-    if (!surface)
+void ss_triangles_destroy(ss_triangles *triangles) {
+    if (!triangles)
         return;
-    ss_free(&surface->memory);
-    free(surface);
+    ss_free(&triangles->memory);
+    free(triangles);
 }
 
-int ss_triangle_corner(const ss_surface *surface, int32_t triangle, int32_t vertex) {
-    const int32_t *v = surface->vertex[triangle];
+int ss_triangle_corner(const ss_triangles *triangles, int32_t triangle, int32_t vertex) {
+    const int32_t *v = triangles->vertex[triangle];
     return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
 }
 
 /* ---- A pose ---- */
 
-bool ss_shape_allocate(ss_memory *memory, const ss_surface *surface, ss_shape *pose) {
-    int32_t vertices = surface->patch->vertex_count;
-    pose->surface = surface;
+bool ss_posed_allocate(ss_memory *memory, const ss_triangles *triangles, ss_posed *pose) {
+    int32_t vertices = triangles->patch->vertex_count;
+    pose->triangles = triangles;
     pose->point = ss_new(memory, vertices, sizeof *pose->point);
-    pose->facet = SS_NEW(memory, ss_facet, surface->triangle_count);
+    pose->facet = SS_NEW(memory, ss_facet, triangles->triangle_count);
     return !memory->failed;
 }
 
@@ -115,9 +115,9 @@ static void measure_facet(const double *a, const double *b, const double *c, ss_
     ss_normalise(facet->normal);
 }
 
-static void set_facets(ss_shape *pose) {
-    for (int32_t t = 0; t < pose->surface->triangle_count; t++) {
-        const int32_t *v = pose->surface->vertex[t];
+static void set_facets(ss_posed *pose) {
+    for (int32_t t = 0; t < pose->triangles->triangle_count; t++) {
+        const int32_t *v = pose->triangles->vertex[t];
         measure_facet(pose->point[v[0]], pose->point[v[1]], pose->point[v[2]], &pose->facet[t]);
     }
 }
@@ -129,13 +129,13 @@ void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]
             out[v][k] = points[3 * (int64_t)patch->mesh_vertex[v] + k];
 }
 
-void ss_shape_set(ss_shape *pose, const float *points) {
-    ss_take_points(pose->surface->patch, points, pose->point);
+void ss_posed_set(ss_posed *pose, const float *points) {
+    ss_take_points(pose->triangles->patch, points, pose->point);
     set_facets(pose);
 }
 
-void ss_shape_set_plane(ss_shape *pose, const double (*uv)[2]) {
-    for (int32_t v = 0; v < pose->surface->patch->vertex_count; v++)
+void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]) {
+    for (int32_t v = 0; v < pose->triangles->patch->vertex_count; v++)
         pose->point[v][0] = uv[v][0], pose->point[v][1] = uv[v][1], pose->point[v][2] = 0;
     set_facets(pose);
 }

@@ -12,14 +12,14 @@ extern "C" {
 /* ---- tessellation.c, seams.c, outline.c, posed.c ---- */
 
 /* Part of a face: the fan of all of it, where side is 0, or a grid of side by side cells on its limit surface. */
-typedef struct ss_piece {
+typedef struct ss_grid {
     int32_t face;    /* mesh face */
     int32_t surface; /* of the tessellation's surfaces, -1 for a fan */
     int32_t corner;  /* of the face whose quad it is; -1: all of the face */
     int32_t side;
     uint8_t coarse; /* bit k: along its side k there may be a face of 2 by 2 cells */
     int32_t first_vertex;
-} ss_piece;
+} ss_grid;
 
 /* What of a vertex never changes. */
 typedef struct ss_fixed_vertex {
@@ -44,14 +44,14 @@ struct skinslide_outline {
 
 struct skinslide_tessellation {
     ss_memory memory;
-    ss_surfaces *surfaces; /* NULL where nothing is subdivided */
+    ss_limit_surfaces *surfaces; /* NULL where nothing is subdivided */
     int32_t mesh_vertex_count, mesh_face_count, largest_face;
     int32_t *face_start;    /* [mesh_face_count + 1] */
     int32_t *corner_vertex; /* [mesh index_count] mesh vertices */
     ss_faces faces;         /* the same, with faces and edges of corners */
     bool in_space;          /* coordinates are places at rest */
-    int32_t piece_count, vertex_count, triangle_count, flat_faces;
-    ss_piece *pieces;  /* [piece_count] */
+    int32_t grid_count, vertex_count, triangle_count, flat_faces;
+    ss_grid *grids;    /* [grid_count] */
     ss_parameter *at;  /* [vertex_count] in its face; of grids */
     uint32_t *same_as; /* [vertex_count] the vertex, itself or one before it, whose place it has */
     uint32_t (*triangles)[3];
@@ -62,36 +62,36 @@ struct skinslide_tessellation {
 /* Scratch of one thread for ss_tessellate. */
 typedef struct ss_tessellation_work {
     ss_memory memory;
-    double *patch_points;      /* [ss_surfaces_scratch] */
+    double *patch_points;      /* [ss_limit_surfaces_scratch] */
     double (*normals)[3];      /* [mesh_vertex_count], of fans */
     double *weights;           /* [largest_face] */
     ss_posed_vertex *vertices; /* [vertex_count] */
-    uint8_t *skipped;          /* [piece_count] its vertices are not wanted */
+    uint8_t *skipped;          /* [grid_count] its vertices are not wanted */
 } ss_tessellation_work;
 
 static inline int32_t ss_face_size(const skinslide_tessellation *tessellation, int32_t face) {
     return tessellation->face_start[face + 1] - tessellation->face_start[face];
 }
 
-static inline int32_t ss_piece_size(const skinslide_tessellation *tessellation, const ss_piece *piece) {
-    return piece->side ? (piece->side + 1) * (piece->side + 1) : ss_face_size(tessellation, piece->face);
+static inline int32_t ss_grid_size(const skinslide_tessellation *tessellation, const ss_grid *grid) {
+    return grid->side ? (grid->side + 1) * (grid->side + 1) : ss_face_size(tessellation, grid->face);
 }
 
-static inline int32_t ss_triangles_of(const skinslide_tessellation *tessellation, const ss_piece *piece) {
-    return piece->side ? 2 * piece->side * piece->side : ss_face_size(tessellation, piece->face) - 2;
+static inline int32_t ss_grid_triangles(const skinslide_tessellation *tessellation, const ss_grid *grid) {
+    return grid->side ? 2 * grid->side * grid->side : ss_face_size(tessellation, grid->face) - 2;
 }
 
 /* The vertex on side k of a grid, step cells on: the sides go round it as those of a face do, from its first corner on. */
-uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step);
+uint32_t ss_on_side(const ss_grid *grid, int side, int32_t step);
 /* Fills same_as. False where memory is short. */
 bool ss_join_seams(skinslide_tessellation *tessellation);
 /* Of faces that are the mesh's. */
 skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces, int32_t face_count,
                                    skinslide_outline **out, skinslide_error *error);
 skinslide_status ss_check_patch(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error);
-/* Blends values [width] at the corners of a piece's face linearly at one of its vertices: values are of the mesh's vertices, or
+/* Blends values [width] at the corners of a grid's face linearly at one of its vertices: values are of the mesh's vertices, or
  * of its corners. */
-void ss_blend(const skinslide_tessellation *tessellation, const ss_piece *piece, int32_t vertex, const float *values,
+void ss_blend(const skinslide_tessellation *tessellation, const ss_grid *grid, int32_t vertex, const float *values,
               int32_t width, bool by_corner, double *weights, float *out);
 
 /* The middle of the box of the vertices that faces have, to be taken off places before they are rounded to float. */

@@ -15,8 +15,8 @@ typedef struct drawing {
     ss_view view;
     ss_tessellation_work work;
     double origin[3];
-    uint8_t *in_sight;        /* [mesh->piece_count] */
-    uint32_t (*triangles)[3]; /* [triangle_count] of pieces in sight, of room for all */
+    uint8_t *in_sight;        /* [mesh->grid_count] */
+    uint32_t (*triangles)[3]; /* [triangle_count] of grids in sight, of room for all */
     int32_t triangle_count;
     float (*ends)[2][3]; /* [outline->segment_count] */
     float line;          /* pixels that the outline is wide */
@@ -44,22 +44,21 @@ static unsigned beyond(const drawing *drawn, int32_t vertex) {
 }
 
 /* False where all vertices that make it are beyond the same side of the view. What has the outline always is. */
-static bool in_sight(const drawing *drawn, const ss_piece *piece) {
+static bool in_sight(const drawing *drawn, const ss_grid *grid) {
     const skinslide_tessellation *mesh = drawn->mesh;
-    const int32_t *vertices = mesh->corner_vertex + mesh->face_start[piece->face];
-    int32_t count =
-        piece->side ? ss_limit_vertices(mesh->surfaces, piece->surface, &vertices) : ss_face_size(mesh, piece->face);
+    const int32_t *vertices = mesh->corner_vertex + mesh->face_start[grid->face];
+    int32_t count = grid->side ? ss_limit_vertices(mesh->surfaces, grid->surface, &vertices) : ss_face_size(mesh, grid->face);
     unsigned all = ~0u;
     for (int32_t i = 0; i < count && all; i++)
         all &= beyond(drawn, vertices[i]);
-    return !all || drawn->outline->inside[piece->face];
+    return !all || drawn->outline->inside[grid->face];
 }
 
 static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
-    int32_t low = 0, high = mesh->piece_count;
+    int32_t low = 0, high = mesh->grid_count;
     while (high - low > 1) {
         int32_t middle = low + (high - low) / 2;
-        *(mesh->pieces[middle].first_vertex <= vertex ? &low : &high) = middle;
+        *(mesh->grids[middle].first_vertex <= vertex ? &low : &high) = middle;
     }
     return low;
 }
@@ -67,21 +66,21 @@ static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
 /* Close to a patch, most of a mesh is out of sight. It is not posed, but where what is in sight has places of it. */
 static void skip_out_of_sight(drawing *drawn) {
     const skinslide_tessellation *mesh = drawn->mesh;
-    for (int32_t p = 0; p < mesh->piece_count; p++) {
-        drawn->in_sight[p] = in_sight(drawn, &mesh->pieces[p]);
+    for (int32_t p = 0; p < mesh->grid_count; p++) {
+        drawn->in_sight[p] = in_sight(drawn, &mesh->grids[p]);
         drawn->work.skipped[p] = !drawn->in_sight[p];
     }
-    for (int32_t p = 0; p < mesh->piece_count; p++) {
-        int32_t first = mesh->pieces[p].first_vertex, end = first + ss_piece_size(mesh, &mesh->pieces[p]);
-        for (int32_t v = first; v < end && drawn->in_sight[p] && mesh->pieces[p].side; v++)
+    for (int32_t p = 0; p < mesh->grid_count; p++) {
+        int32_t first = mesh->grids[p].first_vertex, end = first + ss_grid_size(mesh, &mesh->grids[p]);
+        for (int32_t v = first; v < end && drawn->in_sight[p] && mesh->grids[p].side; v++)
             if ((int32_t)mesh->same_as[v] < first)
                 drawn->work.skipped[piece_of(mesh, (int32_t)mesh->same_as[v])] = 0;
     }
 }
 
 static void list_triangles(drawing *drawn) {
-    for (int32_t p = 0, first = 0; p < drawn->mesh->piece_count; p++) {
-        int32_t own = ss_triangles_of(drawn->mesh, &drawn->mesh->pieces[p]);
+    for (int32_t p = 0, first = 0; p < drawn->mesh->grid_count; p++) {
+        int32_t own = ss_grid_triangles(drawn->mesh, &drawn->mesh->grids[p]);
         if (drawn->in_sight[p])
             memcpy(drawn->triangles + drawn->triangle_count, drawn->mesh->triangles + first,
                    (size_t)own * sizeof *drawn->triangles);
@@ -91,10 +90,10 @@ static void list_triangles(drawing *drawn) {
 }
 
 static void mark_inside(drawing *drawn) {
-    for (int32_t p = 0; p < drawn->mesh->piece_count; p++) {
-        const ss_piece *piece = &drawn->mesh->pieces[p];
-        for (int32_t v = 0; v < ss_piece_size(drawn->mesh, piece) && drawn->in_sight[p]; v++)
-            drawn->work.vertices[piece->first_vertex + v].inside = drawn->outline->inside[piece->face];
+    for (int32_t p = 0; p < drawn->mesh->grid_count; p++) {
+        const ss_grid *grid = &drawn->mesh->grids[p];
+        for (int32_t v = 0; v < ss_grid_size(drawn->mesh, grid) && drawn->in_sight[p]; v++)
+            drawn->work.vertices[grid->first_vertex + v].inside = drawn->outline->inside[grid->face];
     }
 }
 
@@ -203,7 +202,7 @@ static skinslide_status prepare(drawing *drawn, const skinslide_viewport *viewpo
     if (!ss_view_of(camera, figure->to_world, drawn->origin, &drawn->view))
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
-    drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->piece_count);
+    drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
     drawn->triangles = ss_new(&work->memory, mesh->triangle_count, sizeof *drawn->triangles);
     drawn->ends = ss_new(&work->memory, drawn->outline->segment_count, sizeof *drawn->ends);
     if (!ss_tessellation_work_allocate(mesh, work))

@@ -3,34 +3,34 @@
 
 #include <stdlib.h>
 
-static void add_side(skinslide_outline *own, const ss_piece *piece, int side) {
-    for (int32_t step = 0; step < piece->side; step++, own->segment_count++) {
-        own->segments[own->segment_count][0] = ss_on_side(piece, side, step);
-        own->segments[own->segment_count][1] = ss_on_side(piece, side, step + 1);
+static void add_side(skinslide_outline *own, const ss_grid *grid, int side) {
+    for (int32_t step = 0; step < grid->side; step++, own->segment_count++) {
+        own->segments[own->segment_count][0] = ss_on_side(grid, side, step);
+        own->segments[own->segment_count][1] = ss_on_side(grid, side, step + 1);
     }
 }
 
-/* The part of side k of the face, which is on the outline, that the piece has. */
-static void outline_side(skinslide_outline *own, const ss_piece *piece, int32_t k) {
-    int32_t n = ss_face_size(own->tessellation, piece->face);
-    if (!piece->side) {
-        own->segments[own->segment_count][0] = (uint32_t)(piece->first_vertex + k);
-        own->segments[own->segment_count++][1] = (uint32_t)(piece->first_vertex + (k + 1) % n);
-    } else if (piece->corner < 0) {
-        add_side(own, piece, k);
-    } else if (piece->corner == k) {
-        add_side(own, piece, 0);
-    } else if (piece->corner == (k + 1) % n) {
-        add_side(own, piece, 3);
+/* The part of side k of the face, which is on the outline, that the grid has. */
+static void outline_side(skinslide_outline *own, const ss_grid *grid, int32_t k) {
+    int32_t n = ss_face_size(own->tessellation, grid->face);
+    if (!grid->side) {
+        own->segments[own->segment_count][0] = (uint32_t)(grid->first_vertex + k);
+        own->segments[own->segment_count++][1] = (uint32_t)(grid->first_vertex + (k + 1) % n);
+    } else if (grid->corner < 0) {
+        add_side(own, grid, k);
+    } else if (grid->corner == k) {
+        add_side(own, grid, 0);
+    } else if (grid->corner == (k + 1) % n) {
+        add_side(own, grid, 3);
     }
 }
 
 static void list_segments(skinslide_outline *own, const uint8_t *border) {
     const skinslide_tessellation *mesh = own->tessellation;
-    for (int32_t p = 0; p < mesh->piece_count; p++)
-        for (int32_t k = 0; own->inside[mesh->pieces[p].face] && k < ss_face_size(mesh, mesh->pieces[p].face); k++)
-            if (border[mesh->face_start[mesh->pieces[p].face] + k])
-                outline_side(own, &mesh->pieces[p], k);
+    for (int32_t p = 0; p < mesh->grid_count; p++)
+        for (int32_t k = 0; own->inside[mesh->grids[p].face] && k < ss_face_size(mesh, mesh->grids[p].face); k++)
+            if (border[mesh->face_start[mesh->grids[p].face] + k])
+                outline_side(own, &mesh->grids[p], k);
 }
 
 /* border [corner_count]: sides of faces inside with no other of them beyond. count is scratch [edge_count], of zeros. */
@@ -47,9 +47,9 @@ static void find_border(const skinslide_outline *own, int32_t *count, uint8_t *b
 static int64_t most_segments(const skinslide_outline *own) {
     const skinslide_tessellation *mesh = own->tessellation;
     int64_t most = 0;
-    for (int32_t p = 0; p < mesh->piece_count; p++)
-        if (own->inside[mesh->pieces[p].face])
-            most += mesh->pieces[p].side ? 4 * mesh->pieces[p].side : ss_face_size(mesh, mesh->pieces[p].face);
+    for (int32_t p = 0; p < mesh->grid_count; p++)
+        if (own->inside[mesh->grids[p].face])
+            most += mesh->grids[p].side ? 4 * mesh->grids[p].side : ss_face_size(mesh, mesh->grids[p].face);
     return most;
 }
 

@@ -21,12 +21,12 @@ static void linear_weights(const ss_parameter *at, int32_t n, double *weights) {
     }
 }
 
-void ss_blend(const skinslide_tessellation *own, const ss_piece *piece, int32_t vertex, const float *values, int32_t width,
+void ss_blend(const skinslide_tessellation *own, const ss_grid *grid, int32_t vertex, const float *values, int32_t width,
               bool by_corner, double *weights, float *out) {
-    int32_t n = ss_face_size(own, piece->face), start = own->face_start[piece->face];
+    int32_t n = ss_face_size(own, grid->face), start = own->face_start[grid->face];
     for (int32_t k = 0; k < n; k++)
-        weights[k] = k == vertex - piece->first_vertex;
-    if (piece->side)
+        weights[k] = k == vertex - grid->first_vertex;
+    if (grid->side)
         linear_weights(&own->at[vertex], n, weights);
     for (int32_t i = 0; i < width; i++) {
         double sum = 0;
@@ -57,11 +57,11 @@ static void find_normals(const skinslide_tessellation *own, const float *points,
             add_fan_normal(own->corner_vertex + own->face_start[f], ss_face_size(own, f), points, normals);
 }
 
-static void pose_fan(const skinslide_tessellation *own, const ss_piece *piece, const float *points, const double origin[3],
+static void pose_fan(const skinslide_tessellation *own, const ss_grid *grid, const float *points, const double origin[3],
                      ss_tessellation_work *work) {
-    for (int32_t k = 0; k < ss_face_size(own, piece->face); k++) {
-        int32_t v = own->corner_vertex[own->face_start[piece->face] + k];
-        ss_posed_vertex *out = &work->vertices[piece->first_vertex + k];
+    for (int32_t k = 0; k < ss_face_size(own, grid->face); k++) {
+        int32_t v = own->corner_vertex[own->face_start[grid->face] + k];
+        ss_posed_vertex *out = &work->vertices[grid->first_vertex + k];
         const double *n = work->normals[v];
         double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         for (int i = 0; i < 3; i++) {
@@ -73,10 +73,10 @@ static void pose_fan(const skinslide_tessellation *own, const ss_piece *piece, c
 
 /* ---- Grids ---- */
 
-uint32_t ss_on_side(const ss_piece *piece, int side, int32_t step) {
-    int32_t row = piece->side + 1, m = piece->side;
+uint32_t ss_on_side(const ss_grid *grid, int side, int32_t step) {
+    int32_t row = grid->side + 1, m = grid->side;
     int32_t place = side == 0 ? step : side == 1 ? step * row + m : side == 2 ? m * row + m - step : (m - step) * row;
-    return (uint32_t)(piece->first_vertex + place);
+    return (uint32_t)(grid->first_vertex + place);
 }
 
 /* Puts a vertex at a share of the way between two others, as a coarse neighbour has it. */
@@ -88,23 +88,23 @@ static void put_between(ss_posed_vertex *vertex, const ss_posed_vertex *a, const
 }
 
 /* Leaves no gap along a side where the face beyond may have fewer cells. What has its place of another has it joined. */
-static void join_side(const skinslide_tessellation *own, const ss_piece *piece, int side, ss_posed_vertex *vertices) {
-    int32_t stride = piece->corner < 0 ? piece->side / 2 : piece->side;
-    for (int32_t step = 0; step < piece->side; step++) {
-        uint32_t v = ss_on_side(piece, side, step);
+static void join_side(const skinslide_tessellation *own, const ss_grid *grid, int side, ss_posed_vertex *vertices) {
+    int32_t stride = grid->corner < 0 ? grid->side / 2 : grid->side;
+    for (int32_t step = 0; step < grid->side; step++) {
+        uint32_t v = ss_on_side(grid, side, step);
         int32_t begin = step - step % stride;
         if (step > begin && own->same_as[v] == v)
-            put_between(&vertices[v], &vertices[ss_on_side(piece, side, begin)],
-                        &vertices[ss_on_side(piece, side, begin + stride)], (float)(step - begin) / (float)stride);
+            put_between(&vertices[v], &vertices[ss_on_side(grid, side, begin)],
+                        &vertices[ss_on_side(grid, side, begin + stride)], (float)(step - begin) / (float)stride);
     }
 }
 
-static void pose_grid(const skinslide_tessellation *own, const ss_piece *piece, const float *points, const double origin[3],
+static void pose_grid(const skinslide_tessellation *own, const ss_grid *grid, const float *points, const double origin[3],
                       ss_tessellation_work *work) {
-    ss_limit_prepare(own->surfaces, piece->surface, points, origin, work->patch_points);
-    for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++) {
+    ss_limit_prepare(own->surfaces, grid->surface, points, origin, work->patch_points);
+    for (int32_t v = grid->first_vertex; v < grid->first_vertex + ss_grid_size(own, grid); v++) {
         double place[3], normal[3];
-        ss_limit_frame(own->surfaces, piece->surface, &own->at[v], work->patch_points, place, normal);
+        ss_limit_normal(own->surfaces, grid->surface, &own->at[v], work->patch_points, place, normal);
         const ss_posed_vertex *same = &work->vertices[own->same_as[v]];
         for (int i = 0; i < 3; i++) {
             work->vertices[v].normal[i] = (float)normal[i];
@@ -112,17 +112,17 @@ static void pose_grid(const skinslide_tessellation *own, const ss_piece *piece, 
         }
     }
     for (int side = 0; side < 4; side++)
-        if (piece->coarse >> side & 1)
-            join_side(own, piece, side, work->vertices);
+        if (grid->coarse >> side & 1)
+            join_side(own, grid, side, work->vertices);
 }
 
 /* ---- All ---- */
 
 static void set_values(const skinslide_tessellation *own, const float *values, ss_tessellation_work *work) {
-    for (int32_t p = 0; p < own->piece_count; p++) {
-        const ss_piece *piece = &own->pieces[p];
-        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece) && !work->skipped[p]; v++)
-            ss_blend(own, piece, v, values, 1, false, work->weights, &work->vertices[v].value);
+    for (int32_t p = 0; p < own->grid_count; p++) {
+        const ss_grid *grid = &own->grids[p];
+        for (int32_t v = grid->first_vertex; v < grid->first_vertex + ss_grid_size(own, grid) && !work->skipped[p]; v++)
+            ss_blend(own, grid, v, values, 1, false, work->weights, &work->vertices[v].value);
     }
 }
 
@@ -139,11 +139,11 @@ void ss_find_middle(const skinslide_tessellation *own, const float *points, doub
 
 bool ss_tessellation_work_allocate(const skinslide_tessellation *own, ss_tessellation_work *work) {
     ss_memory *memory = &work->memory;
-    work->patch_points = SS_NEW(memory, double, own->surfaces ? ss_surfaces_scratch(own->surfaces) : 0);
+    work->patch_points = SS_NEW(memory, double, own->surfaces ? ss_limit_surfaces_scratch(own->surfaces) : 0);
     work->normals = ss_new(memory, own->mesh_vertex_count, sizeof *work->normals);
     work->weights = SS_NEW(memory, double, own->largest_face);
     work->vertices = SS_NEW(memory, ss_posed_vertex, own->vertex_count);
-    work->skipped = SS_NEW(memory, uint8_t, own->piece_count);
+    work->skipped = SS_NEW(memory, uint8_t, own->grid_count);
     return !memory->failed;
 }
 
@@ -151,9 +151,9 @@ void ss_tessellate(const skinslide_tessellation *own, const float *points, const
                    ss_tessellation_work *work) {
     if (!own->surfaces || own->flat_faces)
         find_normals(own, points, work->normals);
-    for (int32_t p = 0; p < own->piece_count; p++)
+    for (int32_t p = 0; p < own->grid_count; p++)
         if (!work->skipped[p])
-            (own->pieces[p].side ? pose_grid : pose_fan)(own, &own->pieces[p], points, origin, work);
+            (own->grids[p].side ? pose_grid : pose_fan)(own, &own->grids[p], points, origin, work);
     if (values)
         set_values(own, values, work);
 }

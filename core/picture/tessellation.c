@@ -29,11 +29,11 @@ static int32_t steps_for(int64_t quarters) {
     return steps;
 }
 
-static void add_piece(skinslide_tessellation *own, ss_piece piece) {
-    piece.first_vertex = own->vertex_count;
-    own->pieces[own->piece_count++] = piece;
-    own->vertex_count += ss_piece_size(own, &piece);
-    own->triangle_count += ss_triangles_of(own, &piece);
+static void add_piece(skinslide_tessellation *own, ss_grid grid) {
+    grid.first_vertex = own->vertex_count;
+    own->grids[own->grid_count++] = grid;
+    own->vertex_count += ss_grid_size(own, &grid);
+    own->triangle_count += ss_grid_triangles(own, &grid);
 }
 
 /* A quad is one grid, another polygon one for each corner. coarse: bit k for side k of the face. */
@@ -41,11 +41,11 @@ static void add_grids(skinslide_tessellation *own, int32_t face, int32_t surface
     int32_t n = ss_face_size(own, face);
     if (n == 4) {
         uint8_t sides = (uint8_t)(coarse[0] | coarse[1] << 1 | coarse[2] << 2 | coarse[3] << 3);
-        add_piece(own, (ss_piece){face, surface, -1, 2 * steps, sides, 0});
+        add_piece(own, (ss_grid){face, surface, -1, 2 * steps, sides, 0});
     }
     for (int32_t k = 0; k < n && n != 4; k++) {
         uint8_t sides = (uint8_t)(coarse[k] | coarse[(k + n - 1) % n] << 3);
-        add_piece(own, (ss_piece){face, surface, k, steps, sides, 0});
+        add_piece(own, (ss_grid){face, surface, k, steps, sides, 0});
     }
 }
 
@@ -58,7 +58,7 @@ static void list_pieces(skinslide_tessellation *own, const blueprint *plan) {
         if (plan->surface_of[f] >= 0)
             add_grids(own, f, plan->surface_of[f], plan->fine[f] ? steps : 1, plan->coarse + own->face_start[f]);
         else if (plan->kinds[f] == SS_SURFACE_REFUSED && ss_face_size(own, f) >= 3)
-            add_piece(own, (ss_piece){f, -1, -1, 0, 0, 0});
+            add_piece(own, (ss_grid){f, -1, -1, 0, 0, 0});
     }
 }
 
@@ -147,7 +147,7 @@ static skinslide_status subdivide(skinslide_tessellation *own, const skinslide_m
         status = ss_face_surfaces(topology, plan->kinds, error);
     if (!status) {
         int32_t count = list_surfaces(own, plan, faces);
-        status = ss_surfaces_create(topology, faces, count, "picture", &own->surfaces, error);
+        status = ss_limit_surfaces_create(topology, faces, count, "picture", &own->surfaces, error);
     }
     ss_topology_destroy(topology);
     ss_free(&scratch);
@@ -163,41 +163,41 @@ static skinslide_status take_surfaces(skinslide_tessellation *own, const skinsli
 
 /* ---- Triangles ---- */
 
-static void list_fan(const skinslide_tessellation *own, const ss_piece *piece, uint32_t (**next)[3]) {
-    uint32_t first = (uint32_t)piece->first_vertex;
-    for (uint32_t k = 1; k + 1 < (uint32_t)ss_face_size(own, piece->face); k++, ++*next)
+static void list_fan(const skinslide_tessellation *own, const ss_grid *grid, uint32_t (**next)[3]) {
+    uint32_t first = (uint32_t)grid->first_vertex;
+    for (uint32_t k = 1; k + 1 < (uint32_t)ss_face_size(own, grid->face); k++, ++*next)
         (**next)[0] = first, (**next)[1] = first + k, (**next)[2] = first + k + 1;
 }
 
-static void list_grid(const ss_piece *piece, uint32_t (**next)[3]) {
-    uint32_t row = (uint32_t)piece->side + 1;
-    for (uint32_t y = 0; y < (uint32_t)piece->side; y++)
-        for (uint32_t x = 0; x < (uint32_t)piece->side; x++) {
-            uint32_t a = (uint32_t)piece->first_vertex + y * row + x;
+static void list_grid(const ss_grid *grid, uint32_t (**next)[3]) {
+    uint32_t row = (uint32_t)grid->side + 1;
+    for (uint32_t y = 0; y < (uint32_t)grid->side; y++)
+        for (uint32_t x = 0; x < (uint32_t)grid->side; x++) {
+            uint32_t a = (uint32_t)grid->first_vertex + y * row + x;
             (**next)[0] = a, (**next)[1] = a + 1, (**next)[2] = a + row + 1, ++*next;
             (**next)[0] = a, (**next)[1] = a + row + 1, (**next)[2] = a + row, ++*next;
         }
 }
 
 /* Where the vertices of a grid are in their face. */
-static void place_grid(skinslide_tessellation *own, const ss_piece *piece) {
-    ss_parameter *next = own->at + piece->first_vertex;
-    for (int32_t y = 0; y <= piece->side; y++)
-        for (int32_t x = 0; x <= piece->side; x++) {
-            double s = (double)x / piece->side, t = (double)y / piece->side;
-            *next++ = piece->corner < 0 ? (ss_parameter){-1, {s, t}}
-                                        : ss_limit_parameter(own->surfaces, piece->surface, piece->corner, s, t);
+static void place_grid(skinslide_tessellation *own, const ss_grid *grid) {
+    ss_parameter *next = own->at + grid->first_vertex;
+    for (int32_t y = 0; y <= grid->side; y++)
+        for (int32_t x = 0; x <= grid->side; x++) {
+            double s = (double)x / grid->side, t = (double)y / grid->side;
+            *next++ = grid->corner < 0 ? (ss_parameter){-1, {s, t}}
+                                       : ss_limit_parameter(own->surfaces, grid->surface, grid->corner, s, t);
         }
 }
 
 static void list_triangles(skinslide_tessellation *own) {
     uint32_t(*next)[3] = own->triangles;
-    for (int32_t p = 0; p < own->piece_count; p++) {
-        if (own->pieces[p].side) {
-            list_grid(&own->pieces[p], &next);
-            place_grid(own, &own->pieces[p]);
+    for (int32_t p = 0; p < own->grid_count; p++) {
+        if (own->grids[p].side) {
+            list_grid(&own->grids[p], &next);
+            place_grid(own, &own->grids[p]);
         } else {
-            list_fan(own, &own->pieces[p], &next);
+            list_fan(own, &own->grids[p], &next);
         }
     }
 }
@@ -205,10 +205,10 @@ static void list_triangles(skinslide_tessellation *own) {
 /* ---- What never changes ---- */
 
 static void fix_st(skinslide_tessellation *own, const float *st, double *weights) {
-    for (int32_t p = 0; p < own->piece_count; p++) {
-        const ss_piece *piece = &own->pieces[p];
-        for (int32_t v = piece->first_vertex; v < piece->first_vertex + ss_piece_size(own, piece); v++)
-            ss_blend(own, piece, v, st, 2, true, weights, own->fixed[v].coordinates);
+    for (int32_t p = 0; p < own->grid_count; p++) {
+        const ss_grid *grid = &own->grids[p];
+        for (int32_t v = grid->first_vertex; v < grid->first_vertex + ss_grid_size(own, grid); v++)
+            ss_blend(own, grid, v, st, 2, true, weights, own->fixed[v].coordinates);
     }
 }
 
@@ -256,7 +256,7 @@ static bool copy_faces(skinslide_tessellation *own, const skinslide_mesh *mesh) 
     own->corner_vertex = SS_NEW(&own->memory, int32_t, mesh->index_count);
     own->faces.corner_face = SS_NEW(&own->memory, int32_t, mesh->index_count);
     own->faces.corner_edge = SS_NEW(&own->memory, int32_t, mesh->index_count);
-    own->pieces = SS_NEW(&own->memory, ss_piece, (int64_t)mesh->index_count + mesh->face_count);
+    own->grids = SS_NEW(&own->memory, ss_grid, (int64_t)mesh->index_count + mesh->face_count);
     if (own->memory.failed)
         return false;
     for (int32_t f = 0; f < mesh->face_count; f++) {
@@ -342,7 +342,7 @@ void skinslide_tessellation_destroy(skinslide_tessellation *own) {
     if (!own)
         return;
     skinslide_outline_destroy(own->outline);
-    ss_surfaces_destroy(own->surfaces);
+    ss_limit_surfaces_destroy(own->surfaces);
     ss_free(&own->memory);
     free(own);
 }

@@ -20,11 +20,11 @@ static void triangle_gradient(const ss_facet *plane, const double first[3], cons
 }
 
 void ss_chart_gradient(const ss_chart *chart, const double (*points)[3], double (*gradient)[2][3]) {
-    const ss_surface *surface = chart->surface;
+    const ss_triangles *triangles = chart->triangles;
     double first[3], second[3], own[2][3];
-    memset(gradient, 0, (size_t)surface->patch->vertex_count * sizeof *gradient);
-    for (int32_t t = 0; t < surface->triangle_count; t++) {
-        const int32_t *v = surface->vertex[t];
+    memset(gradient, 0, (size_t)triangles->patch->vertex_count * sizeof *gradient);
+    for (int32_t t = 0; t < triangles->triangle_count; t++) {
+        const int32_t *v = triangles->vertex[t];
         ss_subtract(points[v[1]], points[v[0]], first);
         ss_subtract(points[v[2]], points[v[0]], second);
         triangle_gradient(&chart->plane.facet[t], first, second, own);
@@ -47,19 +47,19 @@ static double half_angle(const ss_chart *chart, const int32_t v[3], int k) {
 }
 
 static void set_shares(ss_chart *chart, double *sums) {
-    const ss_surface *surface = chart->surface;
-    for (int32_t t = 0; t < surface->triangle_count; t++)
+    const ss_triangles *triangles = chart->triangles;
+    for (int32_t t = 0; t < triangles->triangle_count; t++)
         for (int k = 0; k < 3 && chart->plane.facet[t].has_area; k++) {
-            chart->share[t][k] = half_angle(chart, surface->vertex[t], k);
-            sums[surface->vertex[t][k]] += chart->share[t][k];
+            chart->share[t][k] = half_angle(chart, triangles->vertex[t], k);
+            sums[triangles->vertex[t][k]] += chart->share[t][k];
         }
-    for (int32_t t = 0; t < surface->triangle_count; t++)
+    for (int32_t t = 0; t < triangles->triangle_count; t++)
         for (int k = 0; k < 3 && chart->plane.facet[t].has_area; k++)
-            chart->share[t][k] /= sums[surface->vertex[t][k]];
+            chart->share[t][k] /= sums[triangles->vertex[t][k]];
 }
 
 static void set_edges(ss_chart *chart, const double (*rest)[3], const double (*gradient)[2][3]) {
-    const ss_patch *patch = chart->surface->patch;
+    const ss_patch *patch = chart->triangles->patch;
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         const int32_t *v = patch->edge_vertex[e];
         double vector[3], u = chart->uv[v[1]][0] - chart->uv[v[0]][0], w = chart->uv[v[1]][1] - chart->uv[v[0]][1];
@@ -73,7 +73,7 @@ static void set_edges(ss_chart *chart, const double (*rest)[3], const double (*g
 }
 
 double ss_chart_area(const ss_chart *chart, int32_t face, const double (*uv)[2]) {
-    const ss_faces *faces = &chart->surface->patch->faces;
+    const ss_faces *faces = &chart->triangles->patch->faces;
     const int32_t *v = faces->corner_vertex + faces->face_start[face];
     const double *first = uv[v[0]];
     double area = 0;
@@ -85,14 +85,14 @@ double ss_chart_area(const ss_chart *chart, int32_t face, const double (*uv)[2])
 }
 
 static skinslide_status fill(ss_chart *chart, const float *rest_points, skinslide_error *error) {
-    const ss_patch *patch = chart->surface->patch;
+    const ss_patch *patch = chart->triangles->patch;
     ss_memory scratch = {0};
     double *sums = SS_NEW(&scratch, double, patch->vertex_count);
     double(*rest)[3] = ss_new(&scratch, patch->vertex_count, sizeof *rest);
     double(*gradient)[2][3] = ss_new(&scratch, patch->vertex_count, sizeof *gradient);
     skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
-        ss_shape_set_plane(&chart->plane, chart->uv);
+        ss_posed_set_plane(&chart->plane, chart->uv);
         ss_take_points(patch, rest_points, rest);
         set_shares(chart, sums);
         ss_chart_gradient(chart, (const double(*)[3])rest, gradient);
@@ -104,19 +104,19 @@ static skinslide_status fill(ss_chart *chart, const float *rest_points, skinslid
     return status;
 }
 
-skinslide_status ss_chart_create(const ss_surface *surface, const double (*uv)[2], const float *rest_points, ss_chart **out,
+skinslide_status ss_chart_create(const ss_triangles *triangles, const double (*uv)[2], const float *rest_points, ss_chart **out,
                                  skinslide_error *error) {
     ss_chart *chart = calloc(1, sizeof *chart);
     if (!chart)
         return ss_out_of_memory(error);
     ss_memory *memory = &chart->memory;
-    const ss_patch *patch = surface->patch;
-    chart->surface = surface, chart->uv = uv;
-    chart->share = ss_new(memory, surface->triangle_count, sizeof *chart->share);
+    const ss_patch *patch = triangles->patch;
+    chart->triangles = triangles, chart->uv = uv;
+    chart->share = ss_new(memory, triangles->triangle_count, sizeof *chart->share);
     chart->slope = ss_new(memory, patch->faces.edge_count, sizeof *chart->slope);
     chart->inverse_square = SS_NEW(memory, double, patch->faces.edge_count);
     chart->area = SS_NEW(memory, double, patch->faces.face_count);
-    bool allocated = ss_shape_allocate(memory, surface, &chart->plane);
+    bool allocated = ss_posed_allocate(memory, triangles, &chart->plane);
     skinslide_status status = allocated ? fill(chart, rest_points, error) : ss_out_of_memory(error);
     if (status)
         ss_chart_destroy(chart);

@@ -27,7 +27,7 @@ skinslide_status ss_relaxer_create(const ss_chart *chart, const ss_system *syste
     if (!relaxer)
         return ss_out_of_memory(error);
     ss_memory *memory = &relaxer->memory;
-    int32_t vertices = chart->surface->patch->vertex_count;
+    int32_t vertices = chart->triangles->patch->vertex_count;
     relaxer->chart = chart;
     relaxer->point = ss_new(memory, vertices, sizeof *relaxer->point);
     relaxer->gradient = ss_new(memory, vertices, sizeof *relaxer->gradient);
@@ -40,7 +40,7 @@ skinslide_status ss_relaxer_create(const ss_chart *chart, const ss_system *syste
     relaxer->slope = ss_new(memory, vertices, sizeof *relaxer->slope);
     relaxer->step = ss_new(memory, vertices, sizeof *relaxer->step);
     relaxer->reach = SS_NEW(memory, double, vertices);
-    relaxer->rest_paint = SS_NEW(memory, double, chart->surface->patch->faces.edge_count);
+    relaxer->rest_paint = SS_NEW(memory, double, chart->triangles->patch->faces.edge_count);
     skinslide_status status = memory->failed ? ss_out_of_memory(error) : ss_blocks_create(system, &relaxer->blocks, error);
     if (!status)
         status = ss_blocks_create(system, &relaxer->rest, error);
@@ -64,7 +64,7 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
 
 /* How the place moves with u and v: blended from the gradients of the triangle's vertices. */
 static void blend_gradient(const ss_relaxer *relaxer, const ss_site *site, double out[2][3]) {
-    const int32_t *v = relaxer->chart->surface->vertex[site->triangle];
+    const int32_t *v = relaxer->chart->triangles->vertex[site->triangle];
     memset(out, 0, sizeof(double[2][3]));
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 2; k++)
@@ -75,7 +75,7 @@ static void blend_gradient(const ss_relaxer *relaxer, const ss_site *site, doubl
  * touch the surface at the triangle's vertices average, as in Phong tessellation (Boubekeur and Alexa 2008). */
 static void lift(const ss_relaxer *relaxer, int32_t vertex, double out[3]) {
     const ss_site *site = &relaxer->site[vertex];
-    const int32_t *v = relaxer->chart->surface->vertex[site->triangle];
+    const int32_t *v = relaxer->chart->triangles->vertex[site->triangle];
     double off[3] = {0, 0, 0}, gradient[2][3], normal[3];
     blend_gradient(relaxer, site, gradient);
     ss_cross(gradient[0], gradient[1], normal);
@@ -89,9 +89,9 @@ static void lift(const ss_relaxer *relaxer, int32_t vertex, double out[3]) {
 /* A vertex that has not moved has its place in the cache, to the bit. */
 static void set_place(ss_relaxer *relaxer, int32_t vertex) {
     const ss_site *site = &relaxer->site[vertex];
-    const int32_t *v = relaxer->chart->surface->vertex[site->triangle];
+    const int32_t *v = relaxer->chart->triangles->vertex[site->triangle];
     int corner = ss_site_corner(site);
-    ss_site_blend(relaxer->chart->surface, site, relaxer->chart->uv, relaxer->uv[vertex]);
+    ss_site_blend(relaxer->chart->triangles, site, relaxer->chart->uv, relaxer->uv[vertex]);
     memset(relaxer->place[vertex], 0, sizeof relaxer->place[vertex]);
     for (int j = 0; j < 3; j++)
         ss_add(site->weight[j], relaxer->point[v[j]], relaxer->place[vertex]);
@@ -105,7 +105,7 @@ static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
     memset(way, 0, sizeof relaxer->way[vertex]);
     memset(axis, 0, sizeof relaxer->axis[vertex]);
     way[0][0] = way[1][1] = 1;
-    if (relaxer->chart->surface->patch->vertex_loop[vertex] >= 0) {
+    if (relaxer->chart->triangles->patch->vertex_loop[vertex] >= 0) {
         ss_site_border(&relaxer->chart->plane, &relaxer->site[vertex], border);
         way[0][0] = border[0], way[0][1] = border[1], way[1][1] = 0;
     }
@@ -117,11 +117,11 @@ static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
 
 /* The cache. */
 static void start(ss_relaxer *relaxer, const float *points) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
+    const ss_patch *patch = relaxer->chart->triangles->patch;
     ss_take_points(patch, points, relaxer->point);
     ss_chart_gradient(relaxer->chart, (const double(*)[3])relaxer->point, relaxer->gradient);
     for (int32_t v = 0; v < patch->vertex_count; v++) {
-        relaxer->site[v] = ss_site_of_vertex(relaxer->chart->surface, v);
+        relaxer->site[v] = ss_site_of_vertex(relaxer->chart->triangles, v);
         relaxer->step[v][0] = relaxer->step[v][1] = 0;
         set_place(relaxer, v);
     }
@@ -131,7 +131,7 @@ static void start(ss_relaxer *relaxer, const float *points) {
 
 /* Empties the blocks. The second unknown of a vertex of a free loop, which does nothing, gets a stiffness. */
 static void clear(const ss_relaxer *relaxer, ss_blocks *blocks) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
+    const ss_patch *patch = relaxer->chart->triangles->patch;
     ss_blocks_clear(blocks);
     for (int32_t i = 0; i < patch->free_count; i++)
         if (patch->vertex_loop[patch->free_vertex[i]] >= 0)
@@ -140,7 +140,7 @@ static void clear(const ss_relaxer *relaxer, ss_blocks *blocks) {
 
 /* Turns forces into the step, whole. Returns what the model says it lowers E by. */
 static double solve(ss_relaxer *relaxer, ss_blocks *blocks) {
-    int32_t count = relaxer->chart->surface->patch->free_count;
+    int32_t count = relaxer->chart->triangles->patch->free_count;
     double lowers = 0;
     memcpy(relaxer->slope, blocks->right, (size_t)count * sizeof *blocks->right);
     ss_blocks_solve(blocks);
@@ -151,7 +151,7 @@ static double solve(ss_relaxer *relaxer, ss_blocks *blocks) {
 
 /* The first step: its matrix is the same in every frame with the same paint. */
 static double solve_rest(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
+    const ss_patch *patch = relaxer->chart->triangles->patch;
     size_t bytes = (size_t)patch->faces.edge_count * sizeof *relaxer->rest_paint;
     if (memcmp(relaxer->rest_paint, relaxer->paint, bytes) != 0) {
         memset(relaxer->rest_paint, 0, bytes);
@@ -174,11 +174,11 @@ static double solve_now(ss_relaxer *relaxer) {
 }
 
 static void walk(ss_relaxer *relaxer, int32_t vertex) {
-    const ss_shape *plane = &relaxer->chart->plane;
+    const ss_posed *plane = &relaxer->chart->plane;
     const double *step = relaxer->step[vertex], *own = relaxer->uv[vertex], *way = relaxer->way[vertex][0];
     double goal[2] = {own[0] + step[0], own[1] + step[1]};
     relaxer->before[vertex] = relaxer->site[vertex];
-    if (relaxer->chart->surface->patch->vertex_loop[vertex] >= 0)
+    if (relaxer->chart->triangles->patch->vertex_loop[vertex] >= 0)
         ss_site_walk_border(plane, &relaxer->site[vertex], step[0] * way[0] + step[1] * way[1]);
     else
         ss_site_walk(plane, &relaxer->site[vertex], goal);
@@ -187,7 +187,7 @@ static void walk(ss_relaxer *relaxer, int32_t vertex) {
 
 /* Puts the free vertices of a face back to where they were before the step. Returns whether any was elsewhere. */
 static bool put_back(ss_relaxer *relaxer, int32_t face) {
-    const ss_faces *faces = &relaxer->chart->surface->patch->faces;
+    const ss_faces *faces = &relaxer->chart->triangles->patch->faces;
     bool any = false;
     for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++) {
         int32_t v = faces->corner_vertex[c];
@@ -204,7 +204,7 @@ static bool put_back(ss_relaxer *relaxer, int32_t face) {
 /* Takes a part of the step found. Steps are limited so that no face turns over, but walks end at holes: a face that turns over
  * for that goes back, and so on, until none is left. */
 static void take(ss_relaxer *relaxer, const ss_blocks *found, double part) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
+    const ss_patch *patch = relaxer->chart->triangles->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         int32_t v = patch->free_vertex[i];
         const double *along = found->right[ss_blocks_unknown(found, v)];
@@ -233,21 +233,21 @@ static double ease(double lowers) {
 static bool stays(const ss_relaxer *relaxer, int32_t vertex) {
     const ss_site *site = &relaxer->site[vertex];
     int corner = ss_site_corner(site);
-    return corner >= 0 && relaxer->chart->surface->vertex[site->triangle][corner] == vertex;
+    return corner >= 0 && relaxer->chart->triangles->vertex[site->triangle][corner] == vertex;
 }
 
 static void write_locations(const ss_relaxer *relaxer, ss_location *locations) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
+    const ss_patch *patch = relaxer->chart->triangles->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         int32_t v = patch->free_vertex[i];
-        locations[i] = ss_site_location(relaxer->chart->surface, &relaxer->site[v], relaxer->chart->uv);
+        locations[i] = ss_site_location(relaxer->chart->triangles, &relaxer->site[v], relaxer->chart->uv);
         if (stays(relaxer, v))
             locations[i].face = SS_STAYS;
     }
 }
 
 int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, ss_location *locations) {
-    const ss_patch *patch = relaxer->chart->surface->patch;
+    const ss_patch *patch = relaxer->chart->triangles->patch;
     int32_t steps = 0;
     double part = 1;
     relaxer->paint = paint;

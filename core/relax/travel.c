@@ -4,13 +4,13 @@
 
 #include <stdlib.h>
 
-skinslide_status ss_traveller_create(const ss_surface *surface, ss_traveller **out, skinslide_error *error) {
+skinslide_status ss_traveller_create(const ss_triangles *triangles, ss_traveller **out, skinslide_error *error) {
     ss_traveller *traveller = calloc(1, sizeof *traveller);
     if (!traveller)
         return ss_out_of_memory(error);
-    traveller->surface = surface;
-    if (!ss_shape_allocate(&traveller->memory, surface, &traveller->plane) ||
-        !ss_shape_allocate(&traveller->memory, surface, &traveller->pose)) {
+    traveller->triangles = triangles;
+    if (!ss_posed_allocate(&traveller->memory, triangles, &traveller->plane) ||
+        !ss_posed_allocate(&traveller->memory, triangles, &traveller->pose)) {
         ss_traveller_destroy(traveller);
         return ss_out_of_memory(error);
     }
@@ -42,7 +42,7 @@ static void go_along_loop(const ss_traveller *traveller, journey *j) {
     j->cut = goal < fabs(distance);
     if (!j->cut)
         return;
-    j->site = ss_site_of_vertex(traveller->surface, j->vertex);
+    j->site = ss_site_of_vertex(traveller->triangles, j->vertex);
     ss_site_walk_border(&traveller->pose, &j->site, distance < 0 ? -goal : goal);
 }
 
@@ -56,7 +56,7 @@ static double rest_of_way(const ss_traveller *traveller, const ss_site *end, con
 }
 
 static void go_through_plane(const ss_traveller *traveller, const double uv[2], journey *j) {
-    ss_site own = ss_site_of_vertex(traveller->surface, j->vertex), end = own;
+    ss_site own = ss_site_of_vertex(traveller->triangles, j->vertex), end = own;
     double length = ss_site_trace(&traveller->plane, &traveller->pose, &end, uv, INFINITY);
     double missing = rest_of_way(traveller, &end, &j->site), goal = allowed(j, length + missing);
     j->cut = goal < length + missing;
@@ -69,24 +69,24 @@ static void go_through_plane(const ss_traveller *traveller, const double uv[2], 
 
 int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*uv)[2], ss_allowance allowance,
                   ss_location *locations) {
-    const ss_surface *surface = traveller->surface;
-    const ss_patch *patch = surface->patch;
+    const ss_triangles *triangles = traveller->triangles;
+    const ss_patch *patch = triangles->patch;
     int32_t at_holes = 0;
-    ss_shape_set(&traveller->pose, points);
-    ss_shape_set_plane(&traveller->plane, uv);
+    ss_posed_set(&traveller->pose, points);
+    ss_posed_set_plane(&traveller->plane, uv);
     for (int32_t i = 0; i < patch->free_count; i++) {
         journey j = {.vertex = patch->free_vertex[i],
                      .share = allowance.shares ? allowance.shares[i] : 1,
                      .limit = allowance.limits ? allowance.limits[i] : INFINITY};
         if (locations[i].face == SS_STAYS || (j.share == 1 && isinf(j.limit)))
             continue;
-        j.site = ss_location_site(surface, &locations[i], uv);
+        j.site = ss_location_site(triangles, &locations[i], uv);
         if (patch->vertex_loop[j.vertex] >= 0)
             go_along_loop(traveller, &j);
         else
             go_through_plane(traveller, locations[i].uv, &j);
         if (j.cut)
-            locations[i] = ss_site_location(surface, &j.site, uv);
+            locations[i] = ss_site_location(triangles, &j.site, uv);
         if (j.share == 0 || j.limit == 0)
             locations[i].face = SS_STAYS;
         at_holes += j.at_hole;

@@ -7,8 +7,8 @@
 /* Memory of one thread for one patch. */
 typedef struct ss_traveller {
     ss_memory memory;
-    const ss_surface *surface;
-    ss_shape plane, pose;
+    const ss_triangles *triangles;
+    ss_posed plane, pose;
 } ss_traveller;
 
 /* How far along its way from its own place each free vertex goes, in their order. */
@@ -17,7 +17,7 @@ typedef struct ss_allowance {
     const double *limits; /* [free_count] at most, along the surface; NULL: no limit */
 } ss_allowance;
 
-skinslide_status ss_traveller_create(const ss_surface *surface, ss_traveller **out, skinslide_error *error);
+skinslide_status ss_traveller_create(const ss_triangles *triangles, ss_traveller **out, skinslide_error *error);
 void ss_traveller_destroy(ss_traveller *traveller);
 /* Cuts the ways short. Each leads from the vertex's own place straight through the embedding uv [vertex_count][2], or along its
  * free loop, to its location [free_count]. points is the whole mesh's. Returns how many ways a hole is in: those end at it. */

@@ -84,9 +84,9 @@ skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const 
         open_lookup(options, load, patches, slider->part_count, &workspace->idbuffer, &workspace->lookup, error);
     ss_free(&scratch);
     for (int32_t p = 0; p < slider->part_count && workspace->idbuffer && !status; p++) {
-        workspace->benches[p].candidates =
+        workspace->patches[p].candidates =
             ss_new(&workspace->memory, slider->parts[p].patch->free_count, sizeof(ss_candidates));
-        if (!workspace->benches[p].candidates)
+        if (!workspace->patches[p].candidates)
             status = ss_out_of_memory(error);
     }
     return status;

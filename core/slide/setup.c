@@ -144,9 +144,9 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
                                                               : embed_rest(part, part->system, part->paint, density, error);
     }
     if (!status)
-        status = ss_surface_create(patch, &part->surface, error);
+        status = ss_triangles_create(patch, &part->triangles, error);
     if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
-        status = ss_chart_create(part->surface, (const double(*)[2])part->rest_uv, mesh->rest_points, &part->chart, error);
+        status = ss_chart_create(part->triangles, (const double(*)[2])part->rest_uv, mesh->rest_points, &part->chart, error);
     if (!status)
         part->rest_layout = ss_lay_out(patch, (const double(*)[2])part->rest_uv);
     ss_free(&scratch);
@@ -332,7 +332,7 @@ void skinslide_slider_destroy(skinslide_slider *slider) {
     for (int32_t p = 0; p < slider->part_count; p++) {
         ss_cage_destroy(slider->parts[p].cage);
         ss_chart_destroy(slider->parts[p].chart);
-        ss_surface_destroy(slider->parts[p].surface);
+        ss_triangles_destroy(slider->parts[p].triangles);
         ss_system_destroy(slider->parts[p].system);
         ss_patch_destroy(slider->parts[p].patch);
     }

@@ -23,34 +23,34 @@ static void lap(double *since, double *sum) {
 /* ---- Stages of one patch ---- */
 
 /* Paint, weights and rest embedding: the set-up's, or this frame's own. Paint that differs costs an embedding of rest. */
-static skinslide_status apply_controls(const ss_part *part, ss_bench *bench, const skinslide_controls *controls,
+static skinslide_status apply_controls(const ss_part *part, ss_patch_work *work, const skinslide_controls *controls,
                                        skinslide_patch_result *result, skinslide_error *error) {
-    bench->paint = part->paint, bench->weights = part->weights, bench->rest_uv = (const double(*)[2])part->rest_uv;
-    bench->limits = part->limits, bench->limited = part->limited;
+    work->paint = part->paint, work->weights = part->weights, work->rest_uv = (const double(*)[2])part->rest_uv;
+    work->limits = part->limits, work->limited = part->limited;
     result->clamped_weights = part->clamped_weights;
     if (!controls)
         return SKINSLIDE_OK;
-    bench->weights = bench->own_weights;
-    result->clamped_weights = ss_slide_weights(part->patch, controls, bench->own_weights);
-    ss_paint(part->patch, controls, bench->own_paint);
-    bench->limits = bench->own_limits, bench->limited = ss_slide_limits(part->patch, controls, bench->own_limits);
-    if (memcmp(bench->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) == 0)
+    work->weights = work->own_weights;
+    result->clamped_weights = ss_slide_weights(part->patch, controls, work->own_weights);
+    ss_paint(part->patch, controls, work->own_paint);
+    work->limits = work->own_limits, work->limited = ss_slide_limits(part->patch, controls, work->own_limits);
+    if (memcmp(work->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) == 0)
         return SKINSLIDE_OK;
-    bench->paint = bench->own_paint;
-    if (bench->relaxer) /* its plane knows no paint */
+    work->paint = work->own_paint;
+    if (work->relaxer) /* its plane knows no paint */
         return SKINSLIDE_OK;
-    bench->rest_uv = (const double(*)[2])bench->own_rest_uv;
-    ss_force_density(part->patch, part->patch->rest_length, bench->paint, bench->density);
-    return ss_embed(part->system, bench->factor, bench->density, bench->own_rest_uv, error);
+    work->rest_uv = (const double(*)[2])work->own_rest_uv;
+    ss_force_density(part->patch, part->patch->rest_length, work->paint, work->density);
+    return ss_embed(part->system, work->factor, work->density, work->own_rest_uv, error);
 }
 
 /* u = lerp(own place in Ud, rest place in U0, weight): what each free vertex is looked up at. */
-static void make_queries(const ss_patch *patch, ss_bench *bench) {
+static void make_queries(const ss_patch *patch, ss_patch_work *work) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        const double *own = bench->uv[patch->free_vertex[i]], *rest = bench->rest_uv[patch->free_vertex[i]];
-        double weight = bench->weights[i];
+        const double *own = work->uv[patch->free_vertex[i]], *rest = work->rest_uv[patch->free_vertex[i]];
+        double weight = work->weights[i];
         for (int k = 0; k < 2; k++)
-            bench->queries[i][k] = weight == 1 ? rest[k] : own[k] + weight * (rest[k] - own[k]);
+            work->queries[i][k] = weight == 1 ? rest[k] : own[k] + weight * (rest[k] - own[k]);
     }
 }
 
@@ -59,30 +59,30 @@ static skinslide_status embed_patch(skinslide_workspace *workspace, int32_t p, c
                                     const skinslide_controls *controls, skinslide_error *error) {
     const ss_part *part = &workspace->slider->parts[p];
     const ss_patch *patch = part->patch;
-    ss_bench *bench = &workspace->benches[p];
+    ss_patch_work *work = &workspace->patches[p];
     skinslide_patch_result *result = &workspace->results[p];
     double time = now();
-    skinslide_status status = apply_controls(part, bench, controls, result, error);
+    skinslide_status status = apply_controls(part, work, controls, result, error);
     if (status)
         return status;
-    result->zero_length_edges = ss_edge_lengths(patch, points, bench->lengths);
-    ss_force_density(patch, bench->lengths, bench->paint, bench->density);
+    result->zero_length_edges = ss_edge_lengths(patch, points, work->lengths);
+    ss_force_density(patch, work->lengths, work->paint, work->density);
     lap(&time, &result->density_seconds);
 
-    if (bench->relaxer) {
-        memcpy(bench->uv, part->rest_uv, (size_t)patch->vertex_count * sizeof *bench->uv);
+    if (work->relaxer) {
+        memcpy(work->uv, part->rest_uv, (size_t)patch->vertex_count * sizeof *work->uv);
         return SKINSLIDE_OK;
     }
-    if ((status = ss_embed(part->system, bench->factor, bench->density, bench->uv, error)))
+    if ((status = ss_embed(part->system, work->factor, work->density, work->uv, error)))
         return status;
     lap(&time, &result->embed_seconds);
 
-    ss_layout layout = ss_lay_out(patch, (const double(*)[2])bench->uv);
+    ss_layout layout = ss_lay_out(patch, (const double(*)[2])work->uv);
     result->folded_faces = layout.folded;
-    bench->regular = layout.regular;
-    make_queries(patch, bench);
+    work->regular = layout.regular;
+    make_queries(patch, work);
     if (workspace->idbuffer && layout.regular)
-        ss_idbuffer_draw(workspace->idbuffer, p, (const double(*)[2])bench->uv, (const double(*)[2])bench->queries);
+        ss_idbuffer_draw(workspace->idbuffer, p, (const double(*)[2])work->uv, (const double(*)[2])work->queries);
     lap(&time, &result->locate_seconds);
     return SKINSLIDE_OK;
 }
@@ -90,13 +90,13 @@ static skinslide_status embed_patch(skinslide_workspace *workspace, int32_t p, c
 /* Where each vertex is in it, no farther than the artist lets it. */
 static void locate_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
     const ss_patch *patch = workspace->slider->parts[p].patch;
-    ss_bench *bench = &workspace->benches[p];
+    ss_patch_work *work = &workspace->patches[p];
     skinslide_patch_result *result = &workspace->results[p];
-    const double(*uv)[2] = (const double(*)[2])bench->uv;
-    bool asked = workspace->idbuffer && bench->regular && patch->free_count > 0;
-    bool proposed = asked && ss_idbuffer_candidates(workspace->idbuffer, p, bench->candidates);
-    ss_located located = ss_locate(bench->locator, uv, bench->regular, (const double(*)[2])bench->queries,
-                                   proposed ? (const ss_candidates *)bench->candidates : NULL, bench->locations);
+    const double(*uv)[2] = (const double(*)[2])work->uv;
+    bool asked = workspace->idbuffer && work->regular && patch->free_count > 0;
+    bool proposed = asked && ss_idbuffer_candidates(workspace->idbuffer, p, work->candidates);
+    ss_located located = ss_locate(work->locator, uv, work->regular, (const double(*)[2])work->queries,
+                                   proposed ? (const ss_candidates *)work->candidates : NULL, work->locations);
     result->lost_textures = asked && !proposed;
     result->found_in_centre = located.centre;
     result->found_in_3x3 = located.around;
@@ -104,9 +104,8 @@ static void locate_patch(skinslide_workspace *workspace, int32_t p, const float 
     result->searched_vertices = located.searched;
     result->clamped_vertices = located.clamped;
     result->walk_steps = located.steps;
-    if (bench->limited)
-        result->clamped_vertices +=
-            ss_travel(bench->traveller, points, uv, (ss_allowance){NULL, bench->limits}, bench->locations);
+    if (work->limited)
+        result->clamped_vertices += ss_travel(work->traveller, points, uv, (ss_allowance){NULL, work->limits}, work->locations);
 }
 
 static bool slides_fully(const ss_patch *patch, const double *weights) {
@@ -118,40 +117,40 @@ static bool slides_fully(const ss_patch *patch, const double *weights) {
 
 /* The same by the relaxed rule. */
 static void relax_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
-    ss_bench *bench = &workspace->benches[p];
+    ss_patch_work *work = &workspace->patches[p];
     skinslide_patch_result *result = &workspace->results[p];
-    const double(*uv)[2] = (const double(*)[2])bench->uv;
-    result->relax_steps = ss_relax(bench->relaxer, points, bench->paint, bench->locations);
-    if (bench->limited || !slides_fully(workspace->slider->parts[p].patch, bench->weights))
+    const double(*uv)[2] = (const double(*)[2])work->uv;
+    result->relax_steps = ss_relax(work->relaxer, points, work->paint, work->locations);
+    if (work->limited || !slides_fully(workspace->slider->parts[p].patch, work->weights))
         result->clamped_vertices =
-            ss_travel(bench->traveller, points, uv, (ss_allowance){bench->weights, bench->limits}, bench->locations);
-    result->folded_faces = ss_count_turned(bench->relaxer, bench->locations);
+            ss_travel(work->traveller, points, uv, (ss_allowance){work->weights, work->limits}, work->locations);
+    result->folded_faces = ss_count_turned(work->relaxer, work->locations);
 }
 
 /* Queries are where vertices went, which is elsewhere than asked where they were relaxed or held back. */
-static void follow_locations(const ss_patch *patch, ss_bench *bench) {
+static void follow_locations(const ss_patch *patch, ss_patch_work *work) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        bool stays = bench->locations[i].face == SS_STAYS;
-        memcpy(bench->queries[i], stays ? bench->uv[patch->free_vertex[i]] : bench->locations[i].uv, sizeof *bench->queries);
+        bool stays = work->locations[i].face == SS_STAYS;
+        memcpy(work->queries[i], stays ? work->uv[patch->free_vertex[i]] : work->locations[i].uv, sizeof *work->queries);
     }
 }
 
 /* Where each vertex belongs, and so on the deformed mesh. */
 static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *points) {
     const ss_patch *patch = workspace->slider->parts[p].patch;
-    ss_bench *bench = &workspace->benches[p];
+    ss_patch_work *work = &workspace->patches[p];
     skinslide_patch_result *result = &workspace->results[p];
-    const double(*uv)[2] = (const double(*)[2])bench->uv;
+    const double(*uv)[2] = (const double(*)[2])work->uv;
     double time = now();
-    (bench->relaxer ? relax_patch : locate_patch)(workspace, p, points);
-    if (bench->relaxer || bench->limited)
-        follow_locations(patch, bench);
-    lap(&time, bench->relaxer ? &result->relax_seconds : &result->locate_seconds);
+    (work->relaxer ? relax_patch : locate_patch)(workspace, p, points);
+    if (work->relaxer || work->limited)
+        follow_locations(patch, work);
+    lap(&time, work->relaxer ? &result->relax_seconds : &result->locate_seconds);
 
-    ss_interpolate(patch, uv, bench->locations, points, bench->corner_weights, bench->displacement);
-    if (bench->cage) {
-        ss_pose pose = {points, bench->lengths, uv, (const double(*)[2])bench->queries, bench->locations};
-        result->damped_vertices = ss_move_cage(bench->cage, &pose, bench->displacement);
+    ss_interpolate(patch, uv, work->locations, points, work->corner_weights, work->displacement);
+    if (work->cage) {
+        ss_frame frame = {points, work->lengths, uv, (const double(*)[2])work->queries, work->locations};
+        result->damped_vertices = ss_move_cage(work->cage, &frame, work->displacement);
     }
     lap(&time, &result->interpolate_seconds);
 }
@@ -162,11 +161,11 @@ static void slide_patch(skinslide_workspace *workspace, int32_t p, const float *
 static const double least_weight = 1e-30;
 
 /* Sums weight times displacement, and weight, over the patches of each vertex. */
-static void add_displacement(const ss_patch *patch, const ss_bench *bench, double (*sum)[4]) {
+static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = fmax(bench->weights[i], least_weight);
+        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = fmax(work->weights[i], least_weight);
         for (int k = 0; k < 3; k++)
-            total[k] += weight * bench->displacement[i][k];
+            total[k] += weight * work->displacement[i][k];
         total[3] += weight;
     }
 }
@@ -176,7 +175,7 @@ static void blend(skinslide_workspace *workspace) {
     const skinslide_slider *slider = workspace->slider;
     memset(workspace->sum, 0, (size_t)slider->vertex_count * sizeof *workspace->sum);
     for (int32_t p = 0; p < slider->part_count; p++)
-        add_displacement(slider->parts[p].patch, &workspace->benches[p], workspace->sum);
+        add_displacement(slider->parts[p].patch, &workspace->patches[p], workspace->sum);
     for (int32_t v = 0; v < slider->vertex_count; v++)
         for (int k = 0; k < 3 && workspace->sum[v][3] > 0; k++)
             workspace->sum[v][k] /= workspace->sum[v][3];
@@ -239,15 +238,15 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     }
     for (int32_t p = 0; p < slider->part_count; p++) {
         slide_patch(workspace, p, points);
-        workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->benches[p].lengths);
+        workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->patches[p].lengths);
     }
     blend(workspace);
     write_points(workspace, points, slid);
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
         measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
-        ss_edge_lengths(patch, slid, workspace->benches[p].lengths);
-        workspace->results[p].stretch_after = stretch(patch, workspace->benches[p].lengths);
+        ss_edge_lengths(patch, slid, workspace->patches[p].lengths);
+        workspace->results[p].stretch_after = stretch(patch, workspace->patches[p].lengths);
         if (results)
             results[p] = workspace->results[p];
     }

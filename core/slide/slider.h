@@ -19,7 +19,7 @@ typedef struct ss_part {
     int32_t clamped_weights;
     ss_layout rest_layout;
     ss_cage *cage; /* NULL unless its interpolation is LIMIT */
-    ss_surface *surface;
+    ss_triangles *triangles;
     ss_chart *chart; /* NULL unless the rule is RELAXED */
 } ss_part;
 
@@ -33,7 +33,7 @@ struct skinslide_slider {
 };
 
 /* What one thread needs to slide one patch. */
-typedef struct ss_bench {
+typedef struct ss_patch_work {
     ss_factor *factor;
     ss_locator *locator;
     ss_relaxer *relaxer; /* NULL unless the rule is RELAXED */
@@ -52,12 +52,12 @@ typedef struct ss_bench {
     ss_cage_work *cage;        /* NULL unless the part has one */
     bool regular;              /* this frame's layout */
     ss_candidates *candidates; /* [free_count], NULL with lookup EXACT */
-} ss_bench;
+} ss_patch_work;
 
 struct skinslide_workspace {
     ss_memory memory;
     const skinslide_slider *slider;
-    ss_bench *benches;               /* [part_count] */
+    ss_patch_work *patches;          /* [part_count] */
     skinslide_patch_result *results; /* [part_count] */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
     bool has_frame;

@@ -4,33 +4,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-static skinslide_status make_bench(ss_memory *memory, const ss_part *part, ss_bench *bench, skinslide_error *error) {
+static skinslide_status make_patch_work(ss_memory *memory, const ss_part *part, ss_patch_work *work, skinslide_error *error) {
     const ss_patch *patch = part->patch;
     int32_t edges = patch->faces.edge_count, vertices = patch->vertex_count, free_count = patch->free_count;
-    bench->own_paint = SS_NEW(memory, double, edges);
-    bench->own_weights = SS_NEW(memory, double, free_count);
-    bench->own_limits = SS_NEW(memory, double, free_count);
-    bench->own_rest_uv = ss_new(memory, vertices, sizeof *bench->own_rest_uv);
-    bench->lengths = SS_NEW(memory, double, edges);
-    bench->density = SS_NEW(memory, double, edges);
-    bench->uv = ss_new(memory, vertices, sizeof *bench->uv);
-    bench->queries = ss_new(memory, free_count, sizeof *bench->queries);
-    bench->locations = SS_NEW(memory, ss_location, free_count);
-    bench->displacement = ss_new(memory, free_count, sizeof *bench->displacement);
-    bench->corner_weights = SS_NEW(memory, double, ss_largest_face(&patch->faces));
+    work->own_paint = SS_NEW(memory, double, edges);
+    work->own_weights = SS_NEW(memory, double, free_count);
+    work->own_limits = SS_NEW(memory, double, free_count);
+    work->own_rest_uv = ss_new(memory, vertices, sizeof *work->own_rest_uv);
+    work->lengths = SS_NEW(memory, double, edges);
+    work->density = SS_NEW(memory, double, edges);
+    work->uv = ss_new(memory, vertices, sizeof *work->uv);
+    work->queries = ss_new(memory, free_count, sizeof *work->queries);
+    work->locations = SS_NEW(memory, ss_location, free_count);
+    work->displacement = ss_new(memory, free_count, sizeof *work->displacement);
+    work->corner_weights = SS_NEW(memory, double, ss_largest_face(&patch->faces));
     if (memory->failed)
         return ss_out_of_memory(error);
-    memcpy(bench->uv, patch->fixed_uv, (size_t)vertices * sizeof *bench->uv);
-    memcpy(bench->own_rest_uv, patch->fixed_uv, (size_t)vertices * sizeof *bench->own_rest_uv);
-    skinslide_status status = ss_factor_create(part->system, &bench->factor, error);
+    memcpy(work->uv, patch->fixed_uv, (size_t)vertices * sizeof *work->uv);
+    memcpy(work->own_rest_uv, patch->fixed_uv, (size_t)vertices * sizeof *work->own_rest_uv);
+    skinslide_status status = ss_factor_create(part->system, &work->factor, error);
     if (!status && part->cage)
-        status = ss_cage_work_create(part->cage, &bench->cage, error);
+        status = ss_cage_work_create(part->cage, &work->cage, error);
     if (!status)
-        status = ss_locator_create(patch, &bench->locator, error);
+        status = ss_locator_create(patch, &work->locator, error);
     if (!status)
-        status = ss_traveller_create(part->surface, &bench->traveller, error);
+        status = ss_traveller_create(part->triangles, &work->traveller, error);
     if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
-        status = ss_relaxer_create(part->chart, part->system, &bench->relaxer, error);
+        status = ss_relaxer_create(part->chart, part->system, &work->relaxer, error);
     return status;
 }
 
@@ -42,12 +42,12 @@ skinslide_status ss_workspace_create(const skinslide_slider *slider, const skins
     if (!workspace)
         return ss_out_of_memory(error);
     workspace->slider = slider;
-    workspace->benches = SS_NEW(&workspace->memory, ss_bench, slider->part_count);
+    workspace->patches = SS_NEW(&workspace->memory, ss_patch_work, slider->part_count);
     workspace->results = SS_NEW(&workspace->memory, skinslide_patch_result, slider->part_count);
     workspace->sum = ss_new(&workspace->memory, slider->vertex_count, sizeof *workspace->sum);
     skinslide_status status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t p = 0; p < slider->part_count && !status; p++)
-        status = make_bench(&workspace->memory, &slider->parts[p], &workspace->benches[p], error);
+        status = make_patch_work(&workspace->memory, &slider->parts[p], &workspace->patches[p], error);
     if (!status)
         status = ss_workspace_open_lookup(workspace, options, load, error);
     if (status)
@@ -66,12 +66,12 @@ void skinslide_workspace_destroy(skinslide_workspace *workspace) {
     if (!workspace)
         return;
     ss_idbuffer_destroy(workspace->idbuffer);
-    for (int32_t p = 0; workspace->benches && p < workspace->slider->part_count; p++) {
-        ss_factor_destroy(workspace->benches[p].factor);
-        ss_locator_destroy(workspace->benches[p].locator);
-        ss_cage_work_destroy(workspace->benches[p].cage);
-        ss_relaxer_destroy(workspace->benches[p].relaxer);
-        ss_traveller_destroy(workspace->benches[p].traveller);
+    for (int32_t p = 0; workspace->patches && p < workspace->slider->part_count; p++) {
+        ss_factor_destroy(workspace->patches[p].factor);
+        ss_locator_destroy(workspace->patches[p].locator);
+        ss_cage_work_destroy(workspace->patches[p].cage);
+        ss_relaxer_destroy(workspace->patches[p].relaxer);
+        ss_traveller_destroy(workspace->patches[p].traveller);
     }
     ss_free(&workspace->memory);
     free(workspace);

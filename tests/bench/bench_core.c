@@ -111,12 +111,12 @@ static void print_lookups(int32_t side) {
     float *points = bumped(&mesh, 0.5 * side, 0.5 * side, 0.15 * side, 0.15 * side), *slid = copy_points(&mesh);
     stop_unless(!skinslide_workspace_create(slider, &exact, &workspace, NULL), "no workspace");
     stop_unless(!skinslide_slide(workspace, points, NULL, slid, NULL, NULL), "no frame");
-    const ss_bench *bench = &workspace->benches[0];
-    const double(*uv)[2] = (const double(*)[2])bench->uv, (*queries)[2] = (const double(*)[2])bench->queries;
+    const ss_patch_work *work = &workspace->patches[0];
+    const double(*uv)[2] = (const double(*)[2])work->uv, (*queries)[2] = (const double(*)[2])work->queries;
     double seconds[2] = {1e9, 1e9};
     for (int i = 0; i < 2 * FRAMES; i++) {
         double start = now();
-        ss_locate(bench->locator, uv, i % 2 == 0, queries, NULL, bench->locations);
+        ss_locate(work->locator, uv, i % 2 == 0, queries, NULL, work->locations);
         double taken = now() - start;
         seconds[i % 2] = taken < seconds[i % 2] ? taken : seconds[i % 2];
     }

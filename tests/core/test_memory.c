@@ -83,7 +83,7 @@ typedef struct scene {
     float *points, *slid, *slide, *normals;
 } scene;
 
-/* Two set-ups, of two pieces and holes, painted by the frame, with edges. */
+/* Two set-ups, of two grids and holes, painted by the frame, with edges. */
 static void make_scene(scene *s) {
     static const int32_t edges[2] = {0, 1};
     static const float factors[1] = {2};

@@ -185,7 +185,7 @@ static double point_distance(const double a[3], const double b[3]) {
 
 typedef struct surfaces_of_patch {
     ss_patch *patch;
-    ss_surfaces *surfaces;
+    ss_limit_surfaces *surfaces;
     float *points;
     double (*uv)[2], *scratch;
     bool loop;
@@ -199,16 +199,16 @@ static surfaces_of_patch surfaces_for(const test_mesh *mesh, const skinslide_sub
     skinslide_error error;
     assert_ok(ss_check_subdivision(&view, &error), &error);
     assert_ok(ss_topology_create(&view, &topology, &error), &error);
-    assert_ok(ss_surfaces_create(topology, s.patch->mesh_face, mesh->face_count, "all", &s.surfaces, &error), &error);
+    assert_ok(ss_limit_surfaces_create(topology, s.patch->mesh_face, mesh->face_count, "all", &s.surfaces, &error), &error);
     ss_topology_destroy(topology);
     s.points = random_pose(mesh, seed);
     s.uv = embedding_of(s.patch, s.points);
-    s.scratch = malloc((size_t)ss_surfaces_scratch(s.surfaces) * sizeof *s.scratch);
+    s.scratch = malloc((size_t)ss_limit_surfaces_scratch(s.surfaces) * sizeof *s.scratch);
     return s;
 }
 
 static void free_surfaces(surfaces_of_patch *s) {
-    ss_surfaces_destroy(s->surfaces);
+    ss_limit_surfaces_destroy(s->surfaces);
     ss_patch_destroy(s->patch);
     free(s->points), free(s->uv), free(s->scratch);
 }

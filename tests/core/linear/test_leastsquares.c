@@ -38,16 +38,16 @@ static void multiply(const ss_rows *rows, bool transposed, const double *x, doub
 static void check(int32_t row_count, int32_t column_count, int32_t count, uint64_t seed) {
     ss_rows rows = random_rows(row_count, column_count, seed);
     dice d = {seed};
-    ss_sparse *sparse;
-    ss_sparse_work *work;
+    ss_least_squares *sparse;
+    ss_least_squares_work *work;
     skinslide_error error;
-    assert_ok(ss_sparse_create(&rows, "all", &sparse, &error), &error);
-    assert_ok(ss_sparse_work_create(sparse, &work, &error), &error);
+    assert_ok(ss_least_squares_create(&rows, "all", &sparse, &error), &error);
+    assert_ok(ss_least_squares_work_create(sparse, &work, &error), &error);
     size_t size = (size_t)(count * column_count) * sizeof(double);
     double *b = malloc(size), *x = malloc(size), *image = malloc((size_t)row_count * sizeof *image), *again = malloc(size);
     for (int32_t i = 0; i < count * column_count; i++)
         b[i] = x[i] = roll_between(&d, -1, 1);
-    ss_sparse_solve(work, x, count);
+    ss_least_squares_solve(work, x, count);
     for (int32_t k = 0; k < count; k++) {
         multiply(&rows, false, x + k * column_count, image);
         multiply(&rows, true, image, again + k * column_count);
@@ -55,8 +55,8 @@ static void check(int32_t row_count, int32_t column_count, int32_t count, uint64
     for (int32_t i = 0; i < count * column_count; i++)
         assert_near(again[i], b[i], 1e-12);
     free(b), free(x), free(image), free(again);
-    ss_sparse_work_destroy(work);
-    ss_sparse_destroy(sparse);
+    ss_least_squares_work_destroy(work);
+    ss_least_squares_destroy(sparse);
     free_rows(&rows);
 }
 
@@ -75,27 +75,27 @@ static void no_columns_are_no_work(void **state) {
     int32_t start[3] = {0, 0, 0}, column[1] = {0};
     double value[1] = {0};
     ss_rows rows = {2, 0, start, column, value};
-    ss_sparse *sparse;
-    ss_sparse_work *work;
+    ss_least_squares *sparse;
+    ss_least_squares_work *work;
     skinslide_error error;
-    assert_ok(ss_sparse_create(&rows, "all", &sparse, &error), &error);
-    assert_ok(ss_sparse_work_create(sparse, &work, &error), &error);
-    ss_sparse_solve(work, value, 1);
+    assert_ok(ss_least_squares_create(&rows, "all", &sparse, &error), &error);
+    assert_ok(ss_least_squares_work_create(sparse, &work, &error), &error);
+    ss_least_squares_solve(work, value, 1);
     assert_true(value[0] == 0);
-    ss_sparse_work_destroy(work);
-    ss_sparse_destroy(sparse);
+    ss_least_squares_work_destroy(work);
+    ss_least_squares_destroy(sparse);
 }
 
 /* Two columns that are the same, nearly the same, or empty. */
 static void dependent_columns_are_refused(void **state) {
     (void)state;
     int32_t start[3] = {0, 2, 4}, column[4] = {0, 1, 0, 1};
-    ss_sparse *sparse = NULL;
+    ss_least_squares *sparse = NULL;
     skinslide_error error;
     for (int i = 0; i < 3; i++) {
         double value[4] = {1, 1, 1, i == 0 ? 1 : 1 + 1e-7};
         ss_rows rows = {2, i == 2 ? 3 : 2, start, column, value};
-        assert_fails(ss_sparse_create(&rows, "patch all", &sparse, &error), &error, SKINSLIDE_SINGULAR,
+        assert_fails(ss_least_squares_create(&rows, "patch all", &sparse, &error), &error, SKINSLIDE_SINGULAR,
                      "patch all: its vertices do not follow from points of its limit surface");
         assert_null(sparse);
     }
@@ -110,9 +110,9 @@ static void a_square_that_is_too_large(void **state) {
     for (int32_t j = 0; j < COLUMNS; j++)
         column[j] = j, value[j] = 1;
     const ss_rows rows = {1, COLUMNS, start, column, value};
-    ss_sparse *sparse = NULL;
+    ss_least_squares *sparse = NULL;
     skinslide_error error;
-    assert_fails(ss_sparse_create(&rows, "patch all", &sparse, &error), &error, SKINSLIDE_UNSUPPORTED,
+    assert_fails(ss_least_squares_create(&rows, "patch all", &sparse, &error), &error, SKINSLIDE_UNSUPPORTED,
                  "patch all: its limit system is too large");
     assert_null(sparse);
     free(column), free(value);

@@ -118,11 +118,11 @@ static void end(made *m) {
 /* ---- Places in faces ---- */
 
 /* The place of a vertex of a grid, in the quad at a corner of its face. */
-static skinslide_limit_place place_in_grid(const made *m, const ss_piece *piece, int32_t x, int32_t y) {
-    float s = (float)x / (float)piece->side, t = (float)y / (float)piece->side;
-    int32_t start = m->own->face_start[piece->face];
-    if (piece->corner >= 0)
-        return (skinslide_limit_place){start + piece->corner, s, t};
+static skinslide_limit_place place_in_grid(const made *m, const ss_grid *grid, int32_t x, int32_t y) {
+    float s = (float)x / (float)grid->side, t = (float)y / (float)grid->side;
+    int32_t start = m->own->face_start[grid->face];
+    if (grid->corner >= 0)
+        return (skinslide_limit_place){start + grid->corner, s, t};
     if (t <= 0.5f)
         return s <= 0.5f ? (skinslide_limit_place){start, 2 * s, 2 * t}
                          : (skinslide_limit_place){start + 1, 2 * t, 2 * (1 - s)};
@@ -137,14 +137,14 @@ static double distance(const float *a, const float *b) {
 /* Places of all vertices but those that may be joined to a coarse face's, and whether each is at the border of its grid. */
 static int32_t list_places(const made *m, skinslide_limit_place *places, int32_t *vertices, bool *at_border) {
     int32_t count = 0;
-    for (int32_t p = 0; p < m->own->piece_count; p++) {
-        const ss_piece *piece = &m->own->pieces[p];
-        for (int32_t i = 0, side = piece->side; side && i < (side + 1) * (side + 1); i++) {
+    for (int32_t p = 0; p < m->own->grid_count; p++) {
+        const ss_grid *grid = &m->own->grids[p];
+        for (int32_t i = 0, side = grid->side; side && i < (side + 1) * (side + 1); i++) {
             int32_t x = i % (side + 1), y = i / (side + 1);
             at_border[count] = x == 0 || y == 0 || x == side || y == side;
-            vertices[count] = piece->first_vertex + i;
-            places[count] = place_in_grid(m, piece, x, y);
-            count += !at_border[count] || !piece->coarse;
+            vertices[count] = grid->first_vertex + i;
+            places[count] = place_in_grid(m, grid, x, y);
+            count += !at_border[count] || !grid->coarse;
         }
     }
     return count;
@@ -170,12 +170,12 @@ static void check_places(made *m) {
 
 /* Fans are the mesh's own vertices; and every face that is not subdivided is one, and none other but the refused. */
 static void check_fans(made *m) {
-    for (int32_t p = 0; p < m->own->piece_count; p++) {
-        const ss_piece *piece = &m->own->pieces[p];
-        assert_true(m->own->flat_faces || (piece->side == 0) == (m->view.subdivision == NULL));
-        for (int32_t k = 0; !piece->side && k < m->mesh.face_counts[piece->face]; k++) {
-            int32_t v = m->mesh.face_indices[m->own->face_start[piece->face] + k];
-            assert_same_bytes(m->work.vertices[piece->first_vertex + k].place, m->pose + 3 * v, sizeof(float[3]));
+    for (int32_t p = 0; p < m->own->grid_count; p++) {
+        const ss_grid *grid = &m->own->grids[p];
+        assert_true(m->own->flat_faces || (grid->side == 0) == (m->view.subdivision == NULL));
+        for (int32_t k = 0; !grid->side && k < m->mesh.face_counts[grid->face]; k++) {
+            int32_t v = m->mesh.face_indices[m->own->face_start[grid->face] + k];
+            assert_same_bytes(m->work.vertices[grid->first_vertex + k].place, m->pose + 3 * v, sizeof(float[3]));
         }
     }
 }
@@ -184,35 +184,35 @@ static void check_fans(made *m) {
 
 enum { MOST_ALONG = 17 };
 
-static uint32_t vertex_at(const ss_piece *piece, int32_t x, int32_t y) {
-    return (uint32_t)(piece->first_vertex + y * (piece->side + 1) + x);
+static uint32_t vertex_at(const ss_grid *grid, int32_t x, int32_t y) {
+    return (uint32_t)(grid->first_vertex + y * (grid->side + 1) + x);
 }
 
 /* Piece of a face: of its grid, its fan, or its grid at a corner. NULL where it is not drawn. */
-static const ss_piece *piece_of(const made *m, int32_t face, int32_t corner) {
-    for (int32_t p = 0; p < m->own->piece_count; p++)
-        if (m->own->pieces[p].face == face && (m->own->pieces[p].corner < 0 || m->own->pieces[p].corner == corner))
-            return &m->own->pieces[p];
+static const ss_grid *piece_of(const made *m, int32_t face, int32_t corner) {
+    for (int32_t p = 0; p < m->own->grid_count; p++)
+        if (m->own->grids[p].face == face && (m->own->grids[p].corner < 0 || m->own->grids[p].corner == corner))
+            return &m->own->grids[p];
     return NULL;
 }
 
 /* The vertices along side k of a face, from its corner k on; their count, 0 where it is not drawn. */
 static int32_t along_side(const made *m, int32_t face, int32_t k, uint32_t *out) {
     int32_t n = m->mesh.face_counts[face], count = 0;
-    const ss_piece *piece = piece_of(m, face, k), *next = piece_of(m, face, (k + 1) % n);
-    if (!piece)
+    const ss_grid *grid = piece_of(m, face, k), *next = piece_of(m, face, (k + 1) % n);
+    if (!grid)
         return 0;
-    int32_t side = piece->side;
+    int32_t side = grid->side;
     if (!side) {
-        out[0] = (uint32_t)(piece->first_vertex + k), out[1] = (uint32_t)(piece->first_vertex + (k + 1) % n);
+        out[0] = (uint32_t)(grid->first_vertex + k), out[1] = (uint32_t)(grid->first_vertex + (k + 1) % n);
         return 2;
     }
     for (int32_t i = 0; i <= side; i++) {
         const int32_t at[4][2] = {{i, 0}, {side, i}, {side - i, side}, {0, side - i}};
-        int32_t of = piece->corner < 0 ? k : 0;
-        out[count++] = vertex_at(piece, at[of][0], at[of][1]);
+        int32_t of = grid->corner < 0 ? k : 0;
+        out[count++] = vertex_at(grid, at[of][0], at[of][1]);
     }
-    for (int32_t i = 1; piece->corner >= 0 && i <= side; i++)
+    for (int32_t i = 1; grid->corner >= 0 && i <= side; i++)
         out[count++] = vertex_at(next, 0, side - i);
     return count;
 }
@@ -245,8 +245,8 @@ static double farthest(const made *m, const uint32_t *line, int32_t count, const
 }
 
 static bool is_fan(const made *m, int32_t face) {
-    const ss_piece *piece = piece_of(m, face, 0);
-    return piece && !piece->side;
+    const ss_grid *grid = piece_of(m, face, 0);
+    return grid && !grid->side;
 }
 
 static int32_t compared_sides, uneven_sides;
@@ -273,9 +273,9 @@ static void check_cracks(made *m) {
                     if ((a == c && b == d) || (a == d && b == c))
                         compare_sides(m, f, k, g, j);
                 }
-            const ss_piece *piece = piece_of(m, f, k), *next = piece_of(m, f, (k + 1) % n);
-            for (int32_t i = 0; piece && piece->corner >= 0 && i <= piece->side; i++)
-                assert_near(distance(m->work.vertices[vertex_at(piece, piece->side, i)].place,
+            const ss_grid *grid = piece_of(m, f, k), *next = piece_of(m, f, (k + 1) % n);
+            for (int32_t i = 0; grid && grid->corner >= 0 && i <= grid->side; i++)
+                assert_near(distance(m->work.vertices[vertex_at(grid, grid->side, i)].place,
                                      m->work.vertices[vertex_at(next, i, next->side)].place),
                             0, 0);
         }
@@ -301,20 +301,20 @@ static void check_corners(made *m) {
 
 /* ---- Triangles ---- */
 
-/* Directed sides of all triangles of a piece: each turned round by another, but for those along the border of the piece, which
+/* Directed sides of all triangles of a grid: each turned round by another, but for those along the border of the grid, which
  * go as the face does. */
-static void check_winding(const made *m, const ss_piece *piece, const uint32_t (*triangles)[3], int32_t count) {
-    int32_t size = piece->side ? (piece->side + 1) * (piece->side + 1) : m->mesh.face_counts[piece->face];
+static void check_winding(const made *m, const ss_grid *grid, const uint32_t (*triangles)[3], int32_t count) {
+    int32_t size = grid->side ? (grid->side + 1) * (grid->side + 1) : m->mesh.face_counts[grid->face];
     int8_t *net = calloc((size_t)size * (size_t)size, 1);
     for (int32_t t = 0; t < count; t++)
         for (int k = 0; k < 3; k++) {
-            int32_t a = (int32_t)triangles[t][k] - piece->first_vertex;
-            int32_t b = (int32_t)triangles[t][(k + 1) % 3] - piece->first_vertex;
+            int32_t a = (int32_t)triangles[t][k] - grid->first_vertex;
+            int32_t b = (int32_t)triangles[t][(k + 1) % 3] - grid->first_vertex;
             assert_true(a >= 0 && a < size && b >= 0 && b < size && a != b);
             net[a * size + b]++, net[b * size + a]--;
         }
-    for (int32_t i = 0, sides = piece->side ? 4 * piece->side : size; i < sides; i++) {
-        int32_t row = piece->side + 1, side = piece->side, step = side ? i % side : 0;
+    for (int32_t i = 0, sides = grid->side ? 4 * grid->side : size; i < sides; i++) {
+        int32_t row = grid->side + 1, side = grid->side, step = side ? i % side : 0;
         const int32_t at[4] = {step, step * row + side, side * row + side - step, (side - step) * row};
         const int32_t on[4] = {1, row, -1, -row};
         int32_t a = side ? at[i / side] : i, b = side ? a + on[i / side] : (i + 1) % size;
@@ -328,11 +328,11 @@ static void check_winding(const made *m, const ss_piece *piece, const uint32_t (
 static void check_triangles(made *m) {
     uint8_t *used = calloc((size_t)m->own->vertex_count + 1, 1);
     int32_t first = 0;
-    for (int32_t p = 0; p < m->own->piece_count; p++) {
-        const ss_piece *piece = &m->own->pieces[p];
-        int32_t count = piece->side ? 2 * piece->side * piece->side : m->mesh.face_counts[piece->face] - 2;
+    for (int32_t p = 0; p < m->own->grid_count; p++) {
+        const ss_grid *grid = &m->own->grids[p];
+        int32_t count = grid->side ? 2 * grid->side * grid->side : m->mesh.face_counts[grid->face] - 2;
         if (p % 5 == 0)
-            check_winding(m, piece, (const uint32_t(*)[3])m->own->triangles + first, count);
+            check_winding(m, grid, (const uint32_t(*)[3])m->own->triangles + first, count);
         first += count;
     }
     skinslide_tessellation_info info;
@@ -353,12 +353,12 @@ static double length_of(const float n[3]) {
 
 /* Along a side that was joined to a coarse face's, means of two. */
 static void check_normals(made *m) {
-    for (int32_t p = 0; p < m->own->piece_count; p++) {
-        const ss_piece *piece = &m->own->pieces[p];
-        for (int32_t i = 0, side = piece->side; i < ss_piece_size(m->own, piece); i++) {
-            double length = length_of(m->work.vertices[piece->first_vertex + i].normal);
+    for (int32_t p = 0; p < m->own->grid_count; p++) {
+        const ss_grid *grid = &m->own->grids[p];
+        for (int32_t i = 0, side = grid->side; i < ss_grid_size(m->own, grid); i++) {
+            double length = length_of(m->work.vertices[grid->first_vertex + i].normal);
             int32_t x = side ? i % (side + 1) : 0, y = side ? i / (side + 1) : 0;
-            bool mean = piece->coarse && (x == 0 || y == 0 || x == side || y == side);
+            bool mean = grid->coarse && (x == 0 || y == 0 || x == side || y == side);
             assert_true(length < 1 + 1e-6 && (mean || length == 0 || length > 1 - 1e-6));
         }
     }
@@ -393,27 +393,27 @@ static double blend(const float *at, int32_t n, int32_t corner, double s, double
     return (1 - s) * (1 - t) * own + s * (1 - t) * 0.5 * (own + next) + (1 - s) * t * 0.5 * (own + previous) + s * t * middle;
 }
 
-static void check_blend_at(const made *m, const ss_piece *piece, int32_t i) {
-    int32_t n = m->mesh.face_counts[piece->face], start = m->own->face_start[piece->face], row = piece->side + 1;
-    skinslide_limit_place at = {start + (piece->side ? 0 : i), 0, 0};
+static void check_blend_at(const made *m, const ss_grid *grid, int32_t i) {
+    int32_t n = m->mesh.face_counts[grid->face], start = m->own->face_start[grid->face], row = grid->side + 1;
+    skinslide_limit_place at = {start + (grid->side ? 0 : i), 0, 0};
     float corners[3][512];
-    const ss_fixed_vertex *fixed = &m->own->fixed[piece->first_vertex + i];
-    double found[3] = {fixed->coordinates[0], fixed->coordinates[1], m->work.vertices[piece->first_vertex + i].value};
-    if (piece->side)
-        at = place_in_grid(m, piece, i % row, i / row);
+    const ss_fixed_vertex *fixed = &m->own->fixed[grid->first_vertex + i];
+    double found[3] = {fixed->coordinates[0], fixed->coordinates[1], m->work.vertices[grid->first_vertex + i].value};
+    if (grid->side)
+        at = place_in_grid(m, grid, i % row, i / row);
     for (int32_t k = 0; k < n; k++) {
         corners[0][k] = m->st[2 * (start + k)], corners[1][k] = m->st[2 * (start + k) + 1];
         corners[2][k] = m->values[m->mesh.face_indices[start + k]];
     }
     for (int k = 0; k < 3; k++)
         assert_near(found[k], blend(corners[k], n, at.corner - start, at.s, at.t), 1e-6);
-    assert_true(m->own->outline->inside[piece->face] == m->inside[piece->face]);
+    assert_true(m->own->outline->inside[grid->face] == m->inside[grid->face]);
 }
 
 static void check_blends(made *m) {
-    for (int32_t p = 0; p < m->own->piece_count; p++)
-        for (int32_t i = 0; i < ss_piece_size(m->own, &m->own->pieces[p]); i++)
-            check_blend_at(m, &m->own->pieces[p], i);
+    for (int32_t p = 0; p < m->own->grid_count; p++)
+        for (int32_t i = 0; i < ss_grid_size(m->own, &m->own->grids[p]); i++)
+            check_blend_at(m, &m->own->grids[p], i);
 }
 
 /* Without st, places at rest: and wherever the mesh is, exactly those, in the middle of its own box. */
@@ -502,10 +502,10 @@ static void check_fineness(made *m) {
             for (int32_t k = 0; reached[f] && k < m->mesh.face_counts[f]; k++)
                 marked[m->mesh.face_indices[m->own->face_start[f] + k]] = 1;
     }
-    for (int32_t p = 0; p < m->own->piece_count; p++) {
-        const ss_piece *piece = &m->own->pieces[p];
-        int32_t cells = piece->corner < 0 ? piece->side : 2 * piece->side, ring = reached[piece->face];
-        if (!piece->side)
+    for (int32_t p = 0; p < m->own->grid_count; p++) {
+        const ss_grid *grid = &m->own->grids[p];
+        int32_t cells = grid->corner < 0 ? grid->side : 2 * grid->side, ring = reached[grid->face];
+        if (!grid->side)
             continue;
         assert_true(cells >= 2 && cells <= 16);
         if (!ring)
@@ -606,7 +606,7 @@ static void refused_faces_are_flat(void **state) {
     ss_tessellation_work work = {0};
     skinslide_error error;
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 2, &flat, &error), &error);
-    assert_int_equal(flat->flat_faces, flat->pieces[0].side ? 0 : 2);
+    assert_int_equal(flat->flat_faces, flat->grids[0].side ? 0 : 2);
     assert_true(ss_tessellation_work_allocate(flat, &work));
     ss_tessellate(flat, &points[0][0], NULL, origin, &work);
     for (int32_t v = 0; v < flat->vertex_count && flat->flat_faces; v++) {

@@ -101,7 +101,7 @@ static void gradients_of_a_linear_map(void **state) {
     test_mesh mesh = grid_with_holes(false);
     rig r = rig_of(&mesh, relaxed());
     const ss_chart *chart = r.slider->parts[0].chart;
-    int32_t count = chart->surface->patch->vertex_count;
+    int32_t count = chart->triangles->patch->vertex_count;
     double(*points)[3] = malloc((size_t)count * sizeof *points), (*gradient)[2][3] = malloc((size_t)count * sizeof *gradient);
     for (int32_t v = 0; v < count; v++)
         for (int k = 0; k < 3; k++)
