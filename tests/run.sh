@@ -9,6 +9,7 @@ cd "$root"
 say "Format and lint"
 git ls-files -z '*.c' '*.h' '*.cpp' | xargs -0 clang-format --dry-run --Werror
 "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .
+PYTHONPATH=plugin/python "$venv/bin/lint-imports" --no-cache --no-logo
 
 c_tests() {
     local build=$root/build/$1

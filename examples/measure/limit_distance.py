@@ -15,8 +15,8 @@ import numpy as np
 from pxr import Usd
 from scipy.spatial import cKDTree
 
-from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.slider import limit_points
+from skinslide.arrays.slider import limit_points
+from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 WAYS = ("linear", "meanValue", "limit")
 HEADINGS = ("example", "interpolation", "max", "mean", "closer: max", "mean", "stretch", "change", "ms")
@@ -25,7 +25,7 @@ AROUND = 2  # rings of faces around the patch, whose surface its vertices still 
 CANDIDATES = 8  # triangles tried for a sample, nearest first
 
 
-def rings(mesh: SlidMesh, faces: np.ndarray, count: int) -> np.ndarray:
+def rings(mesh: PatchedMesh, faces: np.ndarray, count: int) -> np.ndarray:
     """Faces, and `count` rings of faces around them."""
     face_of_corner = np.repeat(np.arange(mesh.topology.face_count), mesh.face_counts)
     for _ in range(count):
@@ -33,7 +33,7 @@ def rings(mesh: SlidMesh, faces: np.ndarray, count: int) -> np.ndarray:
     return faces
 
 
-def surface(mesh: SlidMesh, points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def surface(mesh: PatchedMesh, points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The limit surface over some faces: samples (n, 3) and the triangles (m, 3) that they make."""
     corners = np.flatnonzero(np.isin(np.repeat(np.arange(mesh.topology.face_count), mesh.face_counts), faces))
     steps = np.linspace(0, 1, SAMPLES + 1)
@@ -83,7 +83,7 @@ def to_segment(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
 class Ways:
     """One patch of a mesh, slid in each way at the frame where the cache has most stretch."""
 
-    def __init__(self, mesh: SlidMesh, index: int):
+    def __init__(self, mesh: PatchedMesh, index: int):
         self.mesh, self.patch = mesh, mesh.patches[index]
         self.faces = rings(mesh, self.patch.faces, AROUND)
         self.around = rings(mesh, self.faces, 1)  # where what is nearest to a sample may lie

@@ -16,7 +16,7 @@ import numpy as np
 from pxr import Usd
 
 from skinslide import Frame, Lookup, choose_lookup
-from skinslide.meshes import SlidMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 EXAMPLES = ("elbow", "bicep", "face", "finger", "sleeve", "chequer")
 PICTURED = ("elbow", "face", "chequer")
@@ -24,13 +24,13 @@ SIDE, GAP = 512, 16
 FOUND = ("found_in_centre", "found_in_3x3", "walked_vertices", "searched_vertices")
 
 
-def open_mesh(stage_path: Path) -> SlidMesh:
+def open_mesh(stage_path: Path) -> PatchedMesh:
     """The one mesh of an example."""
     (mesh,), _problems = read_meshes(Usd.Stage.Open(str(stage_path)))
     return mesh
 
 
-def frames(mesh: SlidMesh, lookup: str | Lookup) -> Iterator[Frame]:
+def frames(mesh: PatchedMesh, lookup: str | Lookup) -> Iterator[Frame]:
     """Every frame of the cache, slid."""
     slider = mesh.slider(lookup)
     for time in mesh.sample_times():
@@ -38,7 +38,7 @@ def frames(mesh: SlidMesh, lookup: str | Lookup) -> Iterator[Frame]:
         yield slider.slide(mesh.points_at(time), mesh.controls_at(time))
 
 
-def shares(mesh: SlidMesh, lookup: Lookup) -> tuple[np.ndarray, bool]:
+def shares(mesh: PatchedMesh, lookup: Lookup) -> tuple[np.ndarray, bool]:
     """How many vertices were found in each way over all frames, and whether lookup exact gives the same bytes."""
     found, same = np.zeros(len(FOUND), int), True
     for egl, exact in zip(frames(mesh, lookup), frames(mesh, "exact"), strict=True):
@@ -47,7 +47,7 @@ def shares(mesh: SlidMesh, lookup: Lookup) -> tuple[np.ndarray, bool]:
     return found, same
 
 
-def picture(mesh: SlidMesh) -> np.ndarray:
+def picture(mesh: PatchedMesh) -> np.ndarray:
     """The texture at the frame with most stretch in the cache: uint8 (SIDE, SIDE, 3), v upwards, white without face."""
     times = [Usd.TimeCode(time) for time in mesh.sample_times()]
     stretch = [frame.patches[0].stretch_before for frame in frames(mesh, "exact")]

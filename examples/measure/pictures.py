@@ -13,16 +13,16 @@ import numpy as np
 from PIL import Image
 from pxr import Usd
 
-from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.options import PictureOptions
-from skinslide.pictures import Canvas
-from skinslide.series import Column, Series, Skin
+from skinslide.arrays.canvas import Canvas
+from skinslide.picture.series import Column, Series, Skin
+from skinslide.shot.options import PictureOptions
+from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 COLUMN, HEIGHT = 480, 480
 MOST_STRETCH = 0.5
 
 
-def columns(mesh: SlidMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list[Column]:
+def columns(mesh: PatchedMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list[Column]:
     """The cache, and what each rule makes of it."""
     cached, controls, found = mesh.points_at(time), mesh.controls_at(time), []
     for rule in rules:

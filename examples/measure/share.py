@@ -18,7 +18,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from pxr import Usd
 
-from skinslide.meshes import SlidMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 RULES = ("unit", "fast", "relaxed")
 HEADINGS = ("example", "frame", "cache", "best", *RULES, "steps", "off", "folded")
@@ -38,7 +38,7 @@ class Skin:
     free: np.ndarray  # vertices that may slide
 
     @classmethod
-    def of(cls, mesh: SlidMesh, faces: np.ndarray) -> "Skin":
+    def of(cls, mesh: PatchedMesh, faces: np.ndarray) -> "Skin":
         starts = np.concatenate([[0], np.cumsum(mesh.face_counts)])
         polygons = [mesh.face_indices[starts[face] : starts[face + 1]] for face in faces]
         vertices = np.unique(np.concatenate(polygons))

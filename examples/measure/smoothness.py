@@ -20,7 +20,7 @@ import numpy as np
 from pxr import Usd
 from scipy.interpolate import CubicSpline
 
-from skinslide.meshes import SlidMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 RULES = ("unit", "relaxed")
 HEADINGS = ("example", "rule", "ratio", "above 2", "worst", "vertex", "frame", "shrinks")
@@ -62,7 +62,7 @@ def shrinks(motion: Motion, rough: Rough) -> float:
     return rough.most / float(Rough.of(motion, near).lengths[:, vertex].max())
 
 
-def motions(mesh: SlidMesh) -> tuple[np.ndarray, np.ndarray, dict[str, Motion]]:
+def motions(mesh: PatchedMesh) -> tuple[np.ndarray, np.ndarray, dict[str, Motion]]:
     """Mesh vertices of the first patch, the times of its sub-frames, and what moves it: "cache" or a rule."""
     samples = np.array(mesh.sample_times())
     spline = CubicSpline(samples, np.stack([mesh.points_at(Usd.TimeCode(time)) for time in samples]).astype(float))
@@ -80,7 +80,7 @@ def motions(mesh: SlidMesh) -> tuple[np.ndarray, np.ndarray, dict[str, Motion]]:
     return vertices, np.arange(samples[0], samples[-1] + STEP / 2, STEP), found
 
 
-def mean_edge(mesh: SlidMesh, faces: np.ndarray) -> float:
+def mean_edge(mesh: PatchedMesh, faces: np.ndarray) -> float:
     starts = np.concatenate([[0], np.cumsum(mesh.face_counts)])
     corners = [mesh.rest_points[mesh.face_indices[starts[face] : starts[face + 1]]] for face in faces]
     sides = np.concatenate([points - np.roll(points, -1, axis=0) for points in corners])

@@ -554,7 +554,7 @@ def run_python(script: str, **environment: str) -> subprocess.CompletedProcess:
 
 def test_another_usd_leaves_the_format_out_and_the_bake_working(path, tmp_path, expected):
     script = (
-        "from pxr import Usd; Usd.GetVersion = lambda: (0, 99, 1); import skinslide; import skinslide.bake; "
+        "from pxr import Usd; Usd.GetVersion = lambda: (0, 99, 1); import skinslide; import skinslide.shot.bake; "
         f"skinslide.bake_to_file({str(path)!r}, {str(tmp_path / 'other.usdc')!r})"
     )
     done = run_python(script)

@@ -1,6 +1,8 @@
 """What an installed skinslide holds."""
 
+import ast
 import importlib.metadata
+import pkgutil
 import re
 import shutil
 import subprocess
@@ -24,6 +26,60 @@ def test_one_version():
 
 def test_public_names_exist():
     assert [name for name in skinslide.__all__ if not hasattr(skinslide, name)] == []
+    assert set(skinslide.__all__) <= set(dir(skinslide))
+    with pytest.raises(AttributeError, match="no attribute 'slide'"):
+        _ = skinslide.slide
+
+
+def test_type_checkers_are_told_what_there_is():
+    """The imports for them, the names that are public, and where they come from are three lists of the same."""
+    tree = ast.parse(Path(skinslide.__file__).read_text())
+    (told,) = (node for node in tree.body if isinstance(node, ast.If))
+    imported = [node for node in told.body if isinstance(node, ast.ImportFrom)]
+    homes = {node.module.removeprefix("skinslide."): tuple(each.name for each in node.names) for node in imported}
+    assert homes == skinslide._HOMES
+    own = {"cmake_dir", "plugin_dir"}
+    assert sorted(own.union(*homes.values())) == skinslide.__all__
+
+
+def test_no_module_is_in_the_place_of_a_function():
+    modules = {each.name for each in pkgutil.iter_modules(skinslide.__path__)}
+    assert not modules & set(skinslide.__all__)
+
+
+def run_python(code: str) -> str:
+    command = [sys.executable, "-c", textwrap.dedent(code)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("words", ["--help", "bake --help", "slide"])
+def test_help_loads_neither_usd_nor_numpy(words):
+    said = run_python(f"""
+        import sys
+        from skinslide.command.start import main
+        sys.argv = ["skinslide", *{words.split()}]
+        code = main()
+        print(code, *{{"pxr", "numpy", "tqdm", "PIL"}} & sys.modules.keys())
+    """)
+    assert said.splitlines()[-1].strip() in ("0", "2")
+
+
+def test_a_slider_needs_no_usd():
+    said = run_python("""
+        import sys
+        sys.modules["pxr"] = None  # whoever imports it gets an ImportError
+        import numpy as np
+        import skinslide
+        points = np.array([[x, y, 0] for y in range(3) for x in range(3)], np.float32)
+        faces = [[i, i + 1, i + 4, i + 3] for i in (0, 1, 3, 4)]
+        slider = skinslide.Slider([4] * 4, np.ravel(faces), points, [skinslide.PatchSetup("all", np.arange(4))])
+        pulled = points + np.where(np.arange(9) == 4, 0.25, 0)[:, None] * [1, 0, 0]
+        print(*slider.slide(pulled).points[4])
+    """)
+    x, y, z = map(float, said.split())
+    assert 1 < x < 1.25 and (y, z) == (1, 0)
 
 
 def test_the_schema_is_registered_on_import():
@@ -42,7 +98,7 @@ def test_the_command_is_installed(command):
 def test_an_interruption_while_the_command_is_loaded(tmp_path):
     code = """
         import os, signal, sys
-        from skinslide_command import main
+        from skinslide.command.start import main
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         os.kill(os.getpid(), signal.SIGINT)  # comes as soon as it is let through
         sys.exit(main())

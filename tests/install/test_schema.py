@@ -10,7 +10,7 @@ from pxr import Plug, Usd, UsdGeom
 
 import stages
 from repository import ROOT
-from skinslide import names
+from skinslide.stage import schema
 
 SCHEMA = ROOT / "schema"
 GENERATED = ("generatedSchema.usda", "plugInfo.json")
@@ -53,7 +53,7 @@ def test_applies_to_meshes_only():
     for patch in ("elbow_L", "left:elbow"):
         assert mesh.CanApplyAPI("SkinSlideAPI", patch)
         assert mesh.ApplyAPI("SkinSlideAPI", patch)
-    assert names.patch_names(mesh) == ["elbow_L", "left:elbow"]
+    assert schema.patch_names(mesh) == ["elbow_L", "left:elbow"]
     assert not stage.GetPrimAtPath("/World").CanApplyAPI("SkinSlideAPI", "elbow_L")
 
 
@@ -65,7 +65,7 @@ def test_fallbacks(patch):
     for name, fallback in FALLBACKS.items():
         attr = mesh.GetAttribute(f"skinSlide:{patch}:{name}")
         assert attr.IsDefined() and attr.Get() == fallback
-        assert names.value(mesh, patch, name, Usd.TimeCode.Default()) == fallback
+        assert schema.value(mesh, patch, name, Usd.TimeCode.Default()) == fallback
 
 
 def test_every_property_is_documented():
@@ -85,9 +85,9 @@ stage = Usd.Stage.CreateInMemory()
 prim = UsdGeom.Mesh.Define(stage, "/mesh").GetPrim()
 prim.GetPropertyNames()
 prim.AddAppliedSchema("SkinSlideAPI:elbow_L")
-from skinslide import names
-assert names.patch_names(prim) == ["elbow_L"]
-assert names.value(prim, "elbow_L", "envelope", Usd.TimeCode.Default()) == 1
-assert names.token(prim, "elbow_L", "holes") == "pinned"
+from skinslide.stage import schema
+assert schema.patch_names(prim) == ["elbow_L"]
+assert schema.value(prim, "elbow_L", "envelope", Usd.TimeCode.Default()) == 1
+assert schema.token(prim, "elbow_L", "holes") == "pinned"
 """
     subprocess.run([sys.executable, "-c", script], check=True)

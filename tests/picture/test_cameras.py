@@ -8,7 +8,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 import stages
 from sheets import NAME, contrast, draw, halves, picture, sheet
-from skinslide.cli import main
+from skinslide.command.cli import main
 from stages import PATCH
 
 

@@ -16,11 +16,11 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 import skinslide
 import stages
 from skinslide import FrameProblem, StageError, StageProblems, UsageError, maps
-from skinslide.cli import main
-from skinslide.images import Corners, decode_exr, draw_map
-from skinslide.meshes import read_meshes
-from skinslide.outputs import frame_label
-from skinslide.stage import open_stage
+from skinslide.arrays.images import Corners, decode_exr, draw_map
+from skinslide.command.cli import main
+from skinslide.stage.mesh import read_meshes
+from skinslide.stage.opening import open_stage
+from skinslide.write.folder import frame_label
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames
@@ -651,7 +651,7 @@ def test_a_folder_that_goes_away(tmp_path, shot):
 def test_an_ended_command_leaves_whole_files(number, code, word, tmp_path, shot):
     program = f"""
         import os, signal, sys
-        from skinslide import cli, progress
+        from skinslide.command import cli, progress
         def end(done, total):
             os.kill(os.getpid(), signal.{number})
         progress._lines = lambda: end

@@ -19,10 +19,10 @@ from selenium.webdriver.support.wait import WebDriverWait
 
 import stages
 from skinslide import BakeReport, bake
-from skinslide.cli import main
-from skinslide.page import Strip, compressed, page
+from skinslide.command.cli import main
+from skinslide.picture.page import Strip, compressed, page
 from skinslide.problems import Problem
-from skinslide.report import PatchReport
+from skinslide.shot.report import PatchReport
 
 SHEET, RING, STILL = "/World/char/sheet_GEO", "/World/char/ring_GEO", "/World/char/still_GEO"
 FRAMES = [1001.0, 1002.0, 1003.0, 1004.0, 1004.5, 1005.0]

@@ -1,4 +1,4 @@
-"""`skinslide.pictures` on numpy arrays: that they cross to the core and back unharmed. The rest is tested in C."""
+"""`skinslide.arrays.canvas` on numpy arrays: that they cross to the core and back unharmed. The rest is tested in C."""
 
 import gc
 import threading
@@ -8,7 +8,7 @@ import pytest
 
 import stages
 from skinslide import SliderError, Subdivision
-from skinslide.pictures import Camera, Canvas, Scale, Shape, Tessellation, Viewport, false_colour, frame_faces
+from skinslide.arrays.canvas import Camera, Canvas, Scale, Shape, Tessellation, Viewport, false_colour, frame_faces
 
 SIZE = 6  # quads a side
 FACES = SIZE**2

@@ -1,7 +1,6 @@
 """Pictures of a shot: what is on them, and where they go."""
 
 import os
-import sys
 import warnings
 
 import numpy as np
@@ -14,8 +13,8 @@ import skinslide
 import stages
 from repository import EXAMPLES, load
 from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
-from skinslide.cli import main
-from skinslide.images import decode_exr
+from skinslide.arrays.images import decode_exr
+from skinslide.command.cli import main
 from stages import FRAMES, PATCH
 
 # ---- What is drawn ----
@@ -121,8 +120,7 @@ def test_a_cache_without_samples_has_one_picture(tmp_path):
 def test_what_is_kept_for_a_sheet_is_small(shot, tmp_path, monkeypatch):
     """Of each patch and view some pictures are kept to the end: in far less than their pixels would take."""
     kept = []
-    module = sys.modules["skinslide.preview"]  # skinslide.preview is the function
-    monkeypatch.setattr(module, "contact_sheets", lambda strips: kept.extend(strips) or [])
+    monkeypatch.setattr("skinslide.picture.preview.contact_sheets", lambda strips: kept.extend(strips) or [])
     draw(shot, tmp_path, views=("chequer", "stretch"))
     assert [len(strip) for strip in kept] == [len(FRAMES)] * 2
     assert sum(len(file) for strip in kept for file in strip) < 0.25 * 6 * 3 * SIZE[0] * SIZE[1]

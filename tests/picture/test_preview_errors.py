@@ -17,7 +17,7 @@ from pxr import UsdGeom
 import skinslide
 import stages
 from sheets import NAME, SIZE, add_st, draw, picture, sheet
-from skinslide.cli import main
+from skinslide.command.cli import main
 from stages import PATCH
 
 
@@ -184,7 +184,7 @@ def test_an_interrupted_command_says_what_it_left(words, said, shot, tmp_path, c
         raise KeyboardInterrupt
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("skinslide.meshpictures.work_ahead", interrupt)
+    monkeypatch.setattr("skinslide.picture.drawing.work_ahead", interrupt)
     assert main(["preview", str(shot), "--size", "64x32", *words]) == 130
     assert capfd.readouterr().err == f"error: interrupted{said}\n"
     assert not list(tmp_path.glob("**/.*")) and not (tmp_path / "page.html").exists()
@@ -212,7 +212,7 @@ def test_a_bad_frame_leaves_the_others_whole(tmp_path, capfd):
 def test_an_ended_command_says_what_there_is(option, place, said, tmp_path, shot):
     program = """
         import os, signal, sys
-        from skinslide import cli, progress
+        from skinslide.command import cli, progress
         progress._lines = lambda: lambda done, total: os.kill(os.getpid(), signal.SIGTERM)
         sys.exit(cli.main(["preview", sys.argv[1], sys.argv[2], sys.argv[3], "--size", "64x32"]))
     """

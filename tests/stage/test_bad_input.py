@@ -9,7 +9,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
 
 import stages
-from skinslide.cli import main
+from skinslide.command.cli import main
 from stages import FRAMES, MESH, PATCH
 
 NAN, INFINITY = float("nan"), float("inf")

@@ -9,8 +9,9 @@ from pxr import Usd, UsdGeom, Vt
 import stages
 from makers import refine
 from repository import load
-from skinslide import PatchSetup, Slider, SliderError, Subdivision, bake_to_file, slider
-from skinslide.meshes import read_meshes
+from skinslide import PatchSetup, Slider, SliderError, Subdivision, bake_to_file
+from skinslide.arrays import slider
+from skinslide.stage.mesh import read_meshes
 from stages import FRAMES, MESH, PATCH
 
 CATMULL_CLARK = Subdivision()
@@ -168,7 +169,7 @@ SPOILED = {
 
 @pytest.mark.parametrize("case", SPOILED)
 def test_bad_subdivisions_are_named_and_nothing_is_written(tmp_path, capfd, case):
-    from skinslide.cli import main
+    from skinslide.command.cli import main
 
     spoil, patch, says = SPOILED[case]
     stage, mesh = subdivided_stage(stages.grid())

@@ -5,18 +5,17 @@ import pytest
 from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
-from skinslide.frames import UsageError
-from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.names import unapplied_patch_names
-from skinslide.problems import FrameProblem, errors
-from skinslide.stage import open_stage
-from skinslide.values import merged_times
+from skinslide.problems import FrameProblem, UsageError, errors
+from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.opening import open_stage
+from skinslide.stage.schema import unapplied_patch_names
+from skinslide.stage.values import merged_times
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames
 
 
-def only_mesh(stage: Usd.Stage) -> SlidMesh:
+def only_mesh(stage: Usd.Stage) -> PatchedMesh:
     meshes, problems = read_meshes(stage)
     assert not errors(problems), problems
     assert len(meshes) == 1
@@ -51,7 +50,7 @@ def test_left_handed():
 
 
 def test_a_mesh_outlives_the_caller_s_stage():
-    def read() -> SlidMesh:
+    def read() -> PatchedMesh:
         stage, _mesh = stages.patched_stage()
         return only_mesh(stage)
 

@@ -12,10 +12,10 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdUtils
 import layers
 import stages
 from skinslide import check
-from skinslide.cli import main
-from skinslide.images import Corners, Image, decode_exr, encode_exr, sample_map
-from skinslide.meshes import read_meshes
-from skinslide.stage import open_stage
+from skinslide.arrays.images import Corners, Image, decode_exr, encode_exr, sample_map
+from skinslide.command.cli import main
+from skinslide.stage.mesh import read_meshes
+from skinslide.stage.opening import open_stage
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames

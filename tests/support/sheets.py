@@ -63,8 +63,8 @@ def contrast(pixels):
 
 def projected(stage, vertices, points, size):
     """Where points are on one half of a picture by the camera that the tool finds: by hand, with USD's own matrices."""
-    from skinslide.cameras import ShotCamera
-    from skinslide.meshes import read_meshes
+    from skinslide.picture.cameras import ShotCamera
+    from skinslide.stage.mesh import read_meshes
 
     mesh = read_meshes(stage)[0][0]
     camera = ShotCamera(mesh, mesh.patches[0].faces, size[0] / 2 / size[1]).camera(Usd.TimeCode(FRAMES[-1]))

@@ -13,14 +13,7 @@ from pxr import Sdf
 
 import stages
 from shots import MESH, REST, Shot, baked_mesh, digest, pose
-from skinslide import (
-    FrameProblem,
-    Lookup,
-    Slider,
-    StageProblems,
-    UsageError,
-    bake_to_file,
-)
+from skinslide import FrameProblem, Lookup, Slider, StageProblems, UsageError, bake_to_file
 from stages import vectors
 
 

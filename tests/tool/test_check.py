@@ -8,8 +8,8 @@ from pxr import Sdf, UsdGeom
 
 import skinslide
 import stages
-from skinslide.check import CheckReport
-from skinslide.cli import main
+from skinslide.command.cli import main
+from skinslide.shot.check import CheckReport
 from stages import FRAMES, MESH, PATCH
 
 WEIGHT = f"skinSlide:{PATCH}:weight"

@@ -10,7 +10,8 @@ from pxr import Sdf
 
 import skinslide
 import stages
-from skinslide import cli, parse_frames
+from skinslide import parse_frames
+from skinslide.command import cli
 from stages import FRAMES, MESH, PATCH
 
 
@@ -66,7 +67,7 @@ def test_what_ends_a_command_early(raised, code, message, shot, tmp_path, monkey
     def end(*_arguments, **_options):
         raise raised
 
-    monkeypatch.setattr("skinslide.meshes.SlidMesh.points_at", end)
+    monkeypatch.setattr("skinslide.stage.mesh.PatchedMesh.points_at", end)
     output = tmp_path / "out.usda"
     assert cli.main(["bake", str(shot), "-o", str(output), "--quiet"]) == code
     said = capsys.readouterr().err
@@ -79,7 +80,7 @@ def test_an_interruption_after_the_output_is_in_place(raised, shot, tmp_path, mo
     def end(_report):
         raise raised
 
-    monkeypatch.setattr("skinslide.report.BakeReport.text", end)
+    monkeypatch.setattr("skinslide.shot.report.BakeReport.text", end)
     output = tmp_path / "out.usda"
     for _ in range(2):  # also where there was one before
         assert cli.main(["bake", str(shot), "-o", str(output)]) in (130, 143)
@@ -175,6 +176,6 @@ def test_a_core_without_memory(shot, tmp_path, monkeypatch, capsys):
     def refuse(*_arguments, **_options):
         raise skinslide.SliderError("OUT_OF_MEMORY", "out of memory")
 
-    monkeypatch.setattr("skinslide.meshes.SlidMesh.build", refuse)
+    monkeypatch.setattr("skinslide.stage.mesh.PatchedMesh.build", refuse)
     assert cli.main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--quiet"]) == 1
     assert "error: out of memory" in capsys.readouterr().err

@@ -20,12 +20,9 @@ from shots import (
     direct,
     pose,
 )
-from skinslide import (
-    bake,
-    bake_to_file,
-    slider,
-)
-from skinslide.derived import samples_around
+from skinslide import bake, bake_to_file
+from skinslide.arrays import slider
+from skinslide.shot.derived import samples_around
 from stages import vectors
 
 

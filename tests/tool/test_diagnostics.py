@@ -7,8 +7,8 @@ from pxr import Sdf, Usd, UsdGeom, UsdValidation
 import skinslide
 import stages
 from skinslide import Controls, PatchSetup, Slider, SliderError, StageProblems, bake, bake_to_file, stitch
-from skinslide.cli import main
-from skinslide.stage import open_stage
+from skinslide.command.cli import main
+from skinslide.stage.opening import open_stage
 from stages import FRAMES, MESH
 
 STRETCH, SLIDE = "primvars:skinSlide:stretch", "primvars:skinSlide:slide"

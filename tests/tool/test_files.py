@@ -9,7 +9,7 @@ from pxr import Sdf, Usd, UsdGeom
 
 import stages
 from skinslide import StageError, UsageError, bake_to_file, setup
-from skinslide.cli import main
+from skinslide.command.cli import main
 from stages import FRAMES, MESH
 
 

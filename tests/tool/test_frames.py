@@ -4,7 +4,8 @@ import time
 
 import pytest
 
-from skinslide.frames import MOST_FRAMES, FrameSpecError, UsageError, parse_frames
+from skinslide.problems import MOST_FRAMES, FrameSpecError, UsageError
+from skinslide.shot.frames import parse_frames
 
 
 @pytest.mark.parametrize(

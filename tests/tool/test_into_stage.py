@@ -10,13 +10,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 import stages
 from shots import MESH, OFFSET, REST, baked_mesh, direct, pose
-from skinslide import (
-    FrameProblem,
-    StageError,
-    UsageError,
-    bake,
-    bake_to_file,
-)
+from skinslide import FrameProblem, StageError, UsageError, bake, bake_to_file
 from stages import vectors
 
 

@@ -11,7 +11,7 @@ import skinslide
 import stages
 from repository import load
 from skinslide import Lookup, SliderError
-from skinslide.cli import main
+from skinslide.command.cli import main
 
 NAMES = ("elbow", "bicep", "face", "finger", "sleeve", "chequer")
 SIDES = (256, 512, 1024, 2048, 4096)

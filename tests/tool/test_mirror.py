@@ -8,13 +8,13 @@ from pxr import Gf, Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
 from skinslide import PatchSetup, StageProblems, UsageError, check, mirror
-from skinslide.cli import main
-from skinslide.controls import PatchControls
-from skinslide.geometry import mirror_faces
-from skinslide.images import encode_exr
-from skinslide.meshes import SlidMesh, read_meshes
-from skinslide.mirror import other_side
-from skinslide.stage import open_stage
+from skinslide.arrays.geometry import mirror_faces
+from skinslide.arrays.images import encode_exr
+from skinslide.author.mirror import other_side
+from skinslide.command.cli import main
+from skinslide.stage.controls import PatchControls
+from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.opening import open_stage
 from stages import FRAMES, MESH
 
 Types = Sdf.ValueTypeNames
@@ -64,7 +64,7 @@ class Read(NamedTuple):
 
     patch: PatchSetup
     controls: PatchControls
-    mesh: SlidMesh
+    mesh: PatchedMesh
 
 
 def read(path) -> dict[str, Read]:

@@ -5,12 +5,11 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom
 
 import stages
-from skinslide.cli import main
-from skinslide.frames import UsageError
-from skinslide.meshes import read_meshes
-from skinslide.problems import StageProblems
-from skinslide.setup import parse_faces, setup
-from skinslide.stage import open_stage
+from skinslide.author.setup import parse_faces, setup
+from skinslide.command.cli import main
+from skinslide.problems import StageProblems, UsageError
+from skinslide.stage.mesh import read_meshes
+from skinslide.stage.opening import open_stage
 from stages import FRAMES, MESH
 
 

@@ -9,7 +9,8 @@ import pytest
 
 import skinslide
 import stages
-from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError, slider
+from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
+from skinslide.arrays import slider
 
 SIZE = 12  # quads a side
 VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2

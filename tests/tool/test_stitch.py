@@ -9,7 +9,7 @@ from pxr import Sdf, Usd
 import skinslide
 import stages
 from skinslide import StageError, StageProblems, UsageError, bake_to_file, stitch
-from skinslide.cli import main
+from skinslide.command.cli import main
 from stages import FRAMES, MESH
 
 NAMES = ("points", "extent", "velocities", "normals")

@@ -21,11 +21,9 @@ from shots import (
     direct,
     pose,
 )
-from skinslide import (
-    bake_to_file,
-    output,
-    progress,
-)
+from skinslide import bake_to_file
+from skinslide.command import progress
+from skinslide.write import overs
 from stages import vectors
 
 # ---- what is written ----
@@ -107,7 +105,7 @@ def test_any_number_of_jobs_writes_the_same_bytes(shot, tmp_path, extension):
 def test_saving_in_parts_loses_nothing(shot, tmp_path, monkeypatch):
     shot.save()
     bake_to_file(shot.path, tmp_path / "whole.usdc")
-    monkeypatch.setattr(output, "_UNSAVED_BYTES", 1)
+    monkeypatch.setattr(overs, "_UNSAVED_BYTES", 1)
     bake_to_file(shot.path, tmp_path / "parts.usdc")
     texts = [Sdf.Layer.FindOrOpen(str(tmp_path / name)).ExportToString() for name in ("whole.usdc", "parts.usdc")]
     assert texts[0] == texts[1]
@@ -232,7 +230,7 @@ def test_plain_progress_is_short(capsys):
 
 def test_a_terminal_gets_a_bar():
     code = """
-        from skinslide import progress
+        from skinslide.command import progress
         with progress.reporter() as report:
             for done in range(1, 6):
                 report(done, 5)

@@ -2,57 +2,43 @@
 
 `bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `preview` draws it
 before and after, `maps` in texture coordinates; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on
-a mesh's other side. `Slider` is the same on numpy arrays.
+a mesh's other side. `Slider` is the same on numpy arrays, and needs no USD.
+
+Importing skinslide loads nothing but this: each name brings what it needs when it is first asked for.
 """
 
+from __future__ import annotations
+
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from pxr import Plug
+from skinslide import registration
 
-from skinslide import fileformat
-from skinslide.bake import bake, bake_to_file
-from skinslide.check import check
-from skinslide.frames import FrameSpecError, UsageError, parse_frames
-from skinslide.maps import MapsReport, maps
-from skinslide.mirror import mirror
-from skinslide.paint import PaintReport, paint
-from skinslide.preview import PreviewReport, preview
-from skinslide.problems import FrameProblem, Problem, StageError, StageProblems
-from skinslide.report import BakeReport
-from skinslide.setup import setup
-from skinslide.slider import (
-    Controls,
-    Diagnostics,
-    Frame,
-    Lookup,
-    LookupInfo,
-    PatchSetup,
-    Slider,
-    SliderError,
-    Subdivision,
-    choose_lookup,
-    version,
-)
-from skinslide.stitch import StitchReport, stitch
+if TYPE_CHECKING:
+    from skinslide.arrays.native import Controls, Lookup, LookupInfo, PatchSetup, Subdivision
+    from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
+    from skinslide.author.mirror import mirror
+    from skinslide.author.paint import PaintReport, paint
+    from skinslide.author.setup import setup
+    from skinslide.picture.maps import MapsReport, maps
+    from skinslide.picture.preview import PreviewReport, preview
+    from skinslide.problems import (
+        FrameProblem,
+        FrameSpecError,
+        Problem,
+        SliderError,
+        StageError,
+        StageProblems,
+        UsageError,
+    )
+    from skinslide.shot.bake import bake, bake_to_file
+    from skinslide.shot.check import check
+    from skinslide.shot.frames import parse_frames
+    from skinslide.shot.report import BakeReport
+    from skinslide.write.stitch import StitchReport, stitch
 
-__version__ = version()
-
-Plug.Registry().RegisterPlugins(str(Path(__file__).parent / "schema"))
-fileformat.register()
-
-
-def cmake_dir() -> str:
-    """The folder with skinslideConfig.cmake, for `find_package(skinslide)` in a C or C++ project."""
-    return str(Path(__file__).parent / "lib" / "cmake" / "skinslide")
-
-
-def plugin_dir() -> str:
-    """The folder to add to PXR_PLUGINPATH_NAME, for a host with a USD that skinslide was built for with pxr_DIR.
-
-    Not with the wheel usd-core, whose library hides its symbols until skinslide is imported: import it first there.
-    """
-    return str(fileformat.PLUGIN_DIR)
-
+    __version__: str
 
 __all__ = [
     "BakeReport",
@@ -89,3 +75,60 @@ __all__ = [
     "setup",
     "stitch",
 ]
+
+# The modules that have them; a test holds these to what type checkers are told above.
+_HOMES = {
+    "arrays.native": ("Controls", "Lookup", "LookupInfo", "PatchSetup", "Subdivision"),
+    "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
+    "author.mirror": ("mirror",),
+    "author.paint": ("PaintReport", "paint"),
+    "author.setup": ("setup",),
+    "picture.maps": ("MapsReport", "maps"),
+    "picture.preview": ("PreviewReport", "preview"),
+    "problems": (
+        "FrameProblem",
+        "FrameSpecError",
+        "Problem",
+        "SliderError",
+        "StageError",
+        "StageProblems",
+        "UsageError",
+    ),
+    "shot.bake": ("bake", "bake_to_file"),
+    "shot.check": ("check",),
+    "shot.frames": ("parse_frames",),
+    "shot.report": ("BakeReport",),
+    "write.stitch": ("StitchReport", "stitch"),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        value = import_module("skinslide.arrays.slider").version()
+    elif name in _HOME_OF:
+        value = getattr(import_module(f"skinslide.{_HOME_OF[name]}"), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, "__version__"})
+
+
+def cmake_dir() -> str:
+    """The folder with skinslideConfig.cmake, for `find_package(skinslide)` in a C or C++ project."""
+    return str(Path(__file__).parent / "lib" / "cmake" / "skinslide")
+
+
+def plugin_dir() -> str:
+    """The folder to add to PXR_PLUGINPATH_NAME, for a host with a USD that skinslide was built for with pxr_DIR.
+
+    Not with the wheel usd-core, whose library hides its symbols until skinslide is imported: import it first there.
+    """
+    return str(registration.PLUGIN_DIR)
+
+
+registration.register_early()

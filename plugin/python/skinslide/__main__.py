@@ -2,6 +2,6 @@
 
 import sys
 
-from skinslide.cli import main
+from skinslide.command.start import main
 
 sys.exit(main())

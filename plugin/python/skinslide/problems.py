@@ -1,12 +1,16 @@
-"""What can be wrong with a stage, and the exceptions that say so."""
+"""What can be wrong, and every exception that says so."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
 
-from pxr import Tf
+if TYPE_CHECKING:
+    from pxr import Tf
+
+MOST_FRAMES = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,22 @@ class FrameProblem(Exception):
 
 class StageError(RuntimeError):
     """A stage cannot be opened, or a file cannot be written."""
+
+
+class UsageError(ValueError):
+    """What the caller asked for cannot be done, whatever the stage holds."""
+
+
+class FrameSpecError(UsageError):
+    """A frame spec that is none; the message names the part."""
+
+
+class SliderError(RuntimeError):
+    """What the core says, in one line that names patch and element. `status` is its code, such as "BAD_PATCH"."""
+
+    def __init__(self, status: str, message: str):
+        super().__init__(message)
+        self.status = status
 
 
 class Fault(Exception):

@@ -1,0 +1,1 @@
+"""The C library on numpy arrays: no USD here."""

@@ -1,0 +1,201 @@
+"""Pictures of skin drawn offscreen, on numpy arrays: no USD, no files. The manual is `picture.h`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from skinslide._core import ffi, lib
+from skinslide.arrays.native import (
+    Arguments,
+    LookupInfo,
+    Subdivision,
+    as_array,
+    call,
+    device_number,
+    enum_value,
+    read,
+    writable,
+)
+from skinslide.problems import SliderError
+
+
+class Viewport(NamedTuple):
+    """Part of a canvas, pixels from its lower left corner."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+
+class Camera(NamedTuple):
+    """Matrices (4, 4) as USD has them, for points as rows: from the world, and to clip space."""
+
+    to_camera: np.ndarray
+    to_screen: np.ndarray
+
+
+class Shape(NamedTuple):
+    """The faces of a mesh."""
+
+    face_counts: np.ndarray  # (F,)
+    face_indices: np.ndarray  # (sum of counts,)
+
+
+class Tessellation:
+    """A mesh made into triangles, with some of its faces outlined. Immutable: any number of threads may draw it.
+
+    st           (sum of counts, 2) at the mesh's corners; None: chequers are squares in space, at rest
+    faces        (n,) the patch
+    subdivision  draws the limit surface; None: the faces
+    """
+
+    def __init__(
+        self,
+        shape: Shape,
+        rest_points: np.ndarray,
+        st: np.ndarray | None,
+        faces: np.ndarray,
+        subdivision: Subdivision | None = None,
+    ):
+        native, out = Arguments(), ffi.new("skinslide_tessellation **")
+        mesh = native.mesh(*shape, rest_points, subdivision)
+        corners = native.optional(st, np.float32, (len(shape.face_indices), 2), "st")
+        chosen = native.pointer(faces, np.int32, (-1,), "faces")
+        call(lib.skinslide_tessellation_create, ffi.addressof(mesh), corners, chosen, len(faces), out)
+        self.handle = ffi.gc(out[0], lib.skinslide_tessellation_destroy)
+        self.vertex_count = len(rest_points)
+        info = ffi.new("skinslide_tessellation_info *")
+        call(lib.skinslide_tessellation_describe, self.handle, info)
+        self.triangle_count, self.flat_faces = info.triangle_count, info.flat_faces
+
+
+class Outline:
+    """Some faces (n,) of a tessellated mesh, to be outlined; what is outside them is drawn paler. Immutable."""
+
+    def __init__(self, tessellation: Tessellation, faces: np.ndarray):
+        native, out = Arguments(), ffi.new("skinslide_outline **")
+        chosen = native.pointer(faces, np.int32, (-1,), "faces")
+        call(lib.skinslide_outline_create, tessellation.handle, chosen, len(faces), out)
+        # The default argument keeps the tessellation until the outline is gone, as the core asks.
+        self.handle = ffi.gc(out[0], lambda outline, mesh=tessellation: lib.skinslide_outline_destroy(outline))
+
+
+class Scale(NamedTuple):
+    """What is drawn in false colours: values (V,), from the lowest to the highest colour."""
+
+    values: np.ndarray
+    lowest: float
+    highest: float
+
+
+class Canvas:
+    """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light)."""
+
+    def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None):
+        out = ffi.new("skinslide_canvas **")
+        settings = (width, height, enum_value("pixels", pixels, ""), device_number(device))
+        options = _struct("canvas_options", settings)
+        call(lib.skinslide_canvas_create, options, out)
+        self._handle = ffi.gc(out[0], lib.skinslide_canvas_destroy)
+        self.width, self.height = width, height
+        self._dtype: Any = np.uint8 if pixels == "bytes" else np.float32
+
+    @property
+    def device(self) -> LookupInfo:
+        """What it is drawn with."""
+        info = ffi.new("skinslide_lookup_info *")
+        call(lib.skinslide_canvas_device, self._handle, info)
+        return read(LookupInfo, info)
+
+    def clear(self, colour: Sequence[float]) -> None:
+        """Fills it with a colour, linear light."""
+        native = Arguments()
+        call(lib.skinslide_canvas_clear, self._handle, native.pointer(colour, np.float32, (3,), "colour"))
+
+    def draw(
+        self,
+        tessellation: Tessellation,
+        points: np.ndarray,
+        camera: Camera,
+        viewport: Viewport,
+        *,
+        to_world: np.ndarray | None = None,
+        squares: float = 1.0,
+        scale: Scale | None = None,
+        outline: Outline | None = None,
+        double_sided: bool = False,
+        left_handed: bool = False,
+    ) -> None:
+        """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale."""
+        native, figure = Arguments(), ffi.new("skinslide_figure *")
+        world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
+        figure.tessellation = tessellation.handle
+        figure.outline = ffi.NULL if outline is None else outline.handle
+        figure.points = native.points(points, tessellation.vertex_count, "points")
+        figure.to_world = ffi.NULL if world is None else world
+        figure.squares, figure.double_sided, figure.left_handed = squares, double_sided, left_handed
+        if scale:
+            figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
+            figure.lowest, figure.highest = scale.lowest, scale.highest
+        call(lib.skinslide_canvas_draw, self._handle, _struct("viewport", viewport), _camera(camera), figure)
+
+    def read(self) -> np.ndarray:
+        """(height, width, 4), from the top row on."""
+        pixels = np.empty((self.height, self.width, 4), self._dtype)
+        call(lib.skinslide_canvas_read, self._handle, writable("char[]", pixels))
+        return pixels
+
+
+def frame_faces(
+    shape: Shape,
+    faces: np.ndarray,
+    poses: Sequence[np.ndarray],
+    to_world: np.ndarray,
+    up: Sequence[float],
+    aspect: float,
+    *,
+    left_handed: bool = False,
+) -> Camera:
+    """A camera that has faces in sight in each of the poses, (V, 3), with to_world (poses, 4, 4)."""
+    native, subject, found = Arguments(), ffi.new("skinslide_subject *"), ffi.new("skinslide_camera *")
+    if not len(poses):
+        raise SliderError("BAD_ARGUMENT", "no faces, or no poses")
+    mesh = native.mesh(*shape, poses[0])
+    pointers = ffi.new("float *[]", [native.points(points, len(poses[0]), "points") for points in poses])
+    matrices = _doubles(to_world, (len(poses), 4, 4), "to_world")
+    subject.mesh = ffi.addressof(mesh)
+    subject.faces, subject.face_count = native.pointer(faces, np.int32, (-1,), "faces"), len(faces)
+    subject.pose_count, subject.poses, subject.to_world = len(poses), pointers, matrices
+    subject.left_handed = left_handed
+    call(lib.skinslide_frame_faces, subject, _doubles(up, (3,), "up"), aspect, found)
+    return Camera(*(np.array(list(field)).reshape(4, 4) for field in (found.to_camera, found.to_screen)))
+
+
+def false_colour(share: float) -> tuple[float, float, float]:
+    """A colour of the scale, linear light: 0 is the lowest, 1 the highest."""
+    colour = ffi.new("float[3]")
+    lib.skinslide_false_colour(share, colour)
+    return colour[0], colour[1], colour[2]
+
+
+def _doubles(values: Any, shape: tuple[int, ...], what: str) -> Any:
+    return ffi.from_buffer("double[]", as_array(values, np.float64, shape, what).reshape(-1))
+
+
+def _camera(camera: Camera) -> Any:
+    made = ffi.new("skinslide_camera *")
+    for name, values in camera._asdict().items():
+        ffi.memmove(getattr(made, name), _doubles(values, (4, 4), name), 16 * 8)
+    return made
+
+
+def _struct(name: str, values: Sequence[int]) -> Any:
+    """Of whole numbers; SliderError where one is too large for it."""
+    try:
+        return ffi.new(f"skinslide_{name} *", tuple(values))
+    except OverflowError as error:
+        raise SliderError("BAD_ARGUMENT", f"{name.replace('_', ' ')}: {error}") from error

@@ -1,0 +1,89 @@
+"""What painting needs of a mesh's geometry, on numpy arrays: no USD here. The manual is `skinslide.h`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from skinslide._core import ffi, lib
+from skinslide.arrays.native import Arguments, call, enum_value, writable
+
+AXES = ("x", "y", "z")
+
+
+class Curves(NamedTuple):
+    """Curves as UsdGeomBasisCurves has them."""
+
+    vertex_counts: np.ndarray  # (n,)
+    points: np.ndarray  # (sum of counts, 3)
+    basis: str = "linear"  # linear, bezier, bspline or catmullRom
+    wrap: str = "nonperiodic"  # nonperiodic, periodic or pinned
+    to_mesh: np.ndarray | None = None  # (4, 4), takes points, as rows, to the mesh's object space
+
+
+def edges_near(
+    points: np.ndarray, edges: np.ndarray, curves: Curves, distance: float, direction: str = "any"
+) -> np.ndarray:
+    """Which edges (n, 2) of a mesh with points (V, 3) have their middle within a distance of a curve: bool (n,).
+
+    direction  "along": at 45 degrees or less to the curve; "across": at more; or "any"
+    """
+    native, near = Arguments(), np.zeros(len(edges), np.uint8)
+    given = ffi.new("skinslide_curves *")
+    given.curve_count, given.point_count = len(curves.vertex_counts), len(curves.points)
+    given.vertex_counts = native.pointer(curves.vertex_counts, np.int32, (-1,), "curve vertex counts")
+    given.points = native.points(curves.points, -1, "curve points")
+    given.basis = enum_value("curve_basis", curves.basis, "")
+    given.wrap = enum_value("curve_wrap", curves.wrap, "")
+    if curves.to_mesh is not None:
+        matrix = ffi.new("double[]", np.asarray(curves.to_mesh, np.float64).reshape(16).tolist())
+        given.to_mesh = matrix
+    call(
+        lib.skinslide_edges_near,
+        native.points(points, -1, "points"),
+        len(points),
+        native.pointer(edges, np.int32, (-1, 2), "edges"),
+        len(edges),
+        given,
+        distance,
+        enum_value("direction", direction, ""),
+        writable("uint8_t[]", near),
+    )
+    return near.astype(bool)
+
+
+class Mirrored(NamedTuple):
+    faces: np.ndarray  # (n,) int32, of each face asked for
+    vertices: np.ndarray  # (V,) int32, -1 for vertices of none of the faces
+
+
+def mirror_faces(
+    face_counts: np.ndarray,
+    face_indices: np.ndarray,
+    rest_points: np.ndarray,
+    faces: np.ndarray,
+    *,
+    axis: str = "x",
+    plane: float = 0.0,
+    tolerance: float | None = None,
+) -> Mirrored:
+    """The faces and vertices on the other side of a mesh that is symmetric about the plane where `axis` is `plane`.
+
+    tolerance  None: 1e-4 of the mesh's largest extent
+    """
+    native = Arguments()
+    mesh = native.mesh(face_counts, face_indices, rest_points)
+    found = Mirrored(np.empty(len(faces), np.int32), np.empty(len(rest_points), np.int32))
+    call(
+        lib.skinslide_mirror,
+        ffi.addressof(mesh),
+        AXES.index(axis),
+        plane,
+        -1.0 if tolerance is None else tolerance,
+        native.pointer(faces, np.int32, (-1,), "faces"),
+        len(faces),
+        writable("int32_t[]", found.faces),
+        writable("int32_t[]", found.vertices),
+    )
+    return found

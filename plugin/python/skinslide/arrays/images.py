@@ -1,0 +1,104 @@
+"""OpenEXR images, the maps painted on a mesh, and those drawn of it, on numpy arrays: no USD, no files.
+
+The manuals are `skinslide.h` and `picture.h`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from skinslide._core import ffi, lib
+from skinslide.arrays.native import Arguments, call, enum_value, text, token_of, writable
+
+FIRST_TILE = 1001
+LARGEST_MAP: int = lib.SKINSLIDE_LARGEST_MAP  # texels along each side of a map drawn
+
+
+class Image(NamedTuple):
+    """One channel of an image. The wraps say what is beyond the border along width and height."""
+
+    pixels: np.ndarray  # (height, width) float32, from the top row on
+    channel: str
+    wrap_s: str = "clamp"
+    wrap_t: str = "clamp"
+
+
+class Corners(NamedTuple):
+    """Some faces of a mesh of V vertices, with the texture coordinates of all its corners."""
+
+    face_counts: np.ndarray  # (F,)
+    face_indices: np.ndarray  # (sum of counts,)
+    vertex_count: int
+    faces: np.ndarray  # (n,)
+    st: np.ndarray  # (sum of counts, 2)
+
+
+def decode_exr(data: Any, channel: str = "") -> Image:
+    """One channel of the OpenEXR file in `data`, by its name, PART.NAME, or "": R, else Y, else the first but A."""
+    out = ffi.new("skinslide_image **")
+    buffer = ffi.from_buffer("uint8_t[]", data)
+    call(lib.skinslide_exr_decode, buffer, len(buffer), channel.encode(), out)
+    image = ffi.gc(out[0], lib.skinslide_image_destroy)
+    shape = (image.height, image.width)
+    pixels = np.frombuffer(ffi.buffer(image.pixels, 4 * shape[0] * shape[1]), np.float32).reshape(shape).copy()
+    return Image(pixels, text(image.channel), token_of("wrap", image.wrap_s), token_of("wrap", image.wrap_t))
+
+
+def encode_exr(channels: Mapping[str, np.ndarray], wrap: str = "clamp") -> bytes:
+    """An OpenEXR file of float channels, each (height, width) from the top row on."""
+    native = Arguments()
+    shape = next((np.shape(pixels) for pixels in channels.values()), (0, 0))
+    given = ffi.new("skinslide_channel[]", len(channels))
+    names = [ffi.new("char[]", name.encode()) for name in channels]
+    for target, name, (word, pixels) in zip(given, names, channels.items(), strict=True):
+        target.name = name
+        target.pixels = native.pointer(pixels, np.float32, shape if len(shape) == 2 else (-1, -1), f"channel {word}")
+    out = ffi.new("skinslide_bytes **")
+    call(lib.skinslide_exr_encode, given, len(channels), shape[1], shape[0], enum_value("wrap", wrap, ""), out)
+    made = ffi.gc(out[0], lib.skinslide_bytes_destroy)
+    return ffi.buffer(made.data, made.size)[:]
+
+
+def map_tiles(corners: Corners) -> np.ndarray:
+    """The UDIM tile of each corner of the mesh, int32, 0 at those of other faces."""
+    native, tiles = Arguments(), np.zeros(len(corners.face_indices), np.int32)
+    call(lib.skinslide_map_tiles, *_given(native, corners), writable("int32_t[]", tiles))
+    return tiles
+
+
+def sample_map(corners: Corners, images: Mapping[int, Image]) -> np.ndarray:
+    """Values by vertex, float32 (V,): means over corners in the faces; 1 at vertices of none of them.
+
+    images  by the number of their tile; {0: image} covers every texture coordinate by its wraps
+    """
+    native, values = Arguments(), np.empty(corners.vertex_count, np.float32)
+    tiles = ffi.new("skinslide_map_tile[]", len(images))
+    structs = ffi.new("skinslide_image[]", len(images))
+    for i, (number, image) in enumerate(images.items()):
+        structs[i].pixels = native.pointer(image.pixels, np.float32, (-1, -1), f"tile {number}")
+        structs[i].height, structs[i].width = image.pixels.shape
+        structs[i].wrap_s, structs[i].wrap_t = (enum_value("wrap", wrap, "") for wrap in (image.wrap_s, image.wrap_t))
+        tiles[i].image, tiles[i].number = ffi.addressof(structs, i), number
+    call(lib.skinslide_map_sample, *_given(native, corners), tiles, len(images), writable("float[]", values))
+    return values
+
+
+def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_TILE) -> tuple[np.ndarray, int]:
+    """Values by vertex (V,) over a tile, float32 (side, side) from the top row on, and how many faces have no texel."""
+    native, layout = Arguments(), ffi.new("skinslide_texture_layout *")
+    layout.mesh, layout.faces, layout.face_count, layout.st = _given(native, corners)
+    given = native.pointer(values, np.float32, (corners.vertex_count,), "values")
+    texels, missed = np.empty((side, side), np.float32), ffi.new("int32_t *")
+    call(lib.skinslide_map_draw, layout, tile, given, side, writable("float[]", texels), missed)
+    return texels, missed[0]
+
+
+def _given(native: Arguments, corners: Corners) -> tuple[Any, ...]:
+    """The mesh, faces, their count, and texture coordinates. Points are not read."""
+    mesh = native.mesh(corners.face_counts, corners.face_indices, np.zeros((corners.vertex_count, 3), np.float32))
+    faces = native.pointer(corners.faces, np.int32, (-1,), "faces")
+    st = native.pointer(corners.st, np.float32, (len(corners.face_indices), 2), "st")
+    return ffi.addressof(mesh), faces, len(corners.faces), st

@@ -1,0 +1,290 @@
+"""Between numpy arrays and the public headers' structs: shapes and types checked, statuses raised, tokens looked up.
+
+Fields and enums are read from the declarations; only what C cannot see, the lengths of arrays, is checked here.
+"""
+
+import re
+from collections import namedtuple
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from skinslide._core import ffi, lib
+from skinslide.problems import SliderError
+
+
+@dataclass(frozen=True, eq=False)
+class Controls:
+    """What an artist paints and animates on a patch, for a mesh of V vertices and F faces.
+
+    None is 1 everywhere, and of max_distance no limit.
+    """
+
+    vertex_density: np.ndarray | None = None  # (V,)
+    face_density: np.ndarray | None = None  # (F,)
+    edges: np.ndarray | None = None  # (k, 2) vertices
+    edge_density: np.ndarray | None = None  # (k,)
+    weight: np.ndarray | None = None  # (V,), 0..1
+    envelope: float = 1.0
+    max_distance: np.ndarray | None = None  # (V,), along the surface
+
+
+@dataclass(frozen=True, eq=False)
+class PatchSetup:
+    """One patch as an artist sets it up; the settings are the tokens of `SkinSlideAPI`."""
+
+    name: str
+    faces: np.ndarray  # (n,)
+    corners: np.ndarray | None = None  # (4,) vertices
+    boundary: str = "auto"
+    holes: str = "pinned"
+    rule: str = "unit"
+    interpolation: str = "auto"
+    controls: Controls = field(default_factory=Controls)
+
+
+@dataclass(frozen=True, eq=False)
+class Subdivision:
+    """How a mesh is subdivided, in the words of UsdGeomMesh; None is none. Sharpness 10 or more is infinitely sharp."""
+
+    scheme: str = "catmullClark"
+    boundary_rule: str = "edgeAndCorner"
+    triangle_rule: str = "catmullClark"
+    crease_lengths: np.ndarray | None = None  # (c,) vertices of each crease
+    crease_indices: np.ndarray | None = None  # (sum of lengths,)
+    crease_sharpnesses: np.ndarray | None = None  # (c,), or one for each edge of each crease
+    corner_indices: np.ndarray | None = None  # (k,)
+    corner_sharpnesses: np.ndarray | None = None  # (k,)
+    hole_indices: np.ndarray | None = None  # (h,) faces
+
+
+@dataclass(frozen=True)
+class Lookup:
+    """How rest vertices are looked up, as in `skinslide_workspace_options`. Where they are found is always the same."""
+
+    method: str = "auto"  # auto, egl, exact
+    device: int | None = None  # number of one of EGL's devices; None: the first that works
+    resolution: int = 0  # texels along a side; 0: by the patch
+
+    @staticmethod
+    def of(lookup: "str | Lookup") -> "Lookup":
+        return lookup if isinstance(lookup, Lookup) else Lookup(lookup)
+
+    def options(self) -> Any:
+        method, device = enum_value("lookup", self.method, ""), device_number(self.device)
+        if not 0 <= self.resolution < 2**31:
+            raise SliderError("BAD_ARGUMENT", f"no such resolution: {self.resolution}")
+        return ffi.new("skinslide_workspace_options *", (method, device, self.resolution))
+
+
+def device_number(device: int | None) -> int:
+    """One of EGL's devices as the core has it; SliderError for a number that none can have."""
+    if device is None:
+        return -1
+    if not 0 <= device < 2**31:
+        raise SliderError("BAD_ARGUMENT", f"no such device: {device}")
+    return device
+
+
+def _tuple_of(struct: str, name: str) -> type:
+    """A named tuple with the fields of a struct of the header."""
+    return namedtuple(name, [field_name for field_name, _ in ffi.typeof(struct).fields])
+
+
+PatchInfo: Any = _tuple_of("skinslide_patch_info", "PatchInfo")
+PatchResult: Any = _tuple_of("skinslide_patch_result", "PatchResult")
+LookupInfo: Any = _tuple_of("skinslide_lookup_info", "LookupInfo")
+
+
+def tokens(setting: str) -> tuple[str, ...]:
+    """The tokens of a setting: boundary, holes, rule, interpolation, lookup, normals_layout, scheme, boundary_rule,
+    triangle_rule, pixels."""
+    return tuple(_values_by_token(setting))
+
+
+class Sizes(NamedTuple):
+    """Of a mesh."""
+
+    vertices: int
+    faces: int
+
+
+class Arguments:
+    """Fills the core's structs from arrays, and holds the memory they point into for as long as this object lives."""
+
+    def __init__(self) -> None:
+        self._alive: list[Any] = []
+
+    def pointer(self, values: Any, dtype: type, shape: tuple[int, ...], what: str) -> Any:
+        """A pointer to values as a contiguous array of that type and shape; -1 in the shape is any length."""
+        ctype = "int32_t[]" if dtype == np.int32 else "float[]"
+        buffer = ffi.from_buffer(ctype, as_array(values, dtype, shape, what))
+        self._alive.append(buffer)
+        return buffer
+
+    def optional(self, values: Any, dtype: type, shape: tuple[int, ...], what: str) -> Any:
+        return ffi.NULL if values is None else self.pointer(values, dtype, shape, what)
+
+    def points(self, values: Any, vertex_count: int, what: str) -> Any:
+        return self.pointer(values, np.float32, (vertex_count, 3), what)
+
+    def mesh(
+        self,
+        face_counts: np.ndarray,
+        face_indices: np.ndarray,
+        points: np.ndarray,
+        subdivision: Subdivision | None = None,
+    ) -> Any:
+        mesh = ffi.new("skinslide_mesh *")
+        self._alive.append(mesh)
+        mesh.face_counts = self.pointer(face_counts, np.int32, (-1,), "face counts")
+        mesh.face_indices = self.pointer(face_indices, np.int32, (-1,), "face indices")
+        mesh.rest_points = self.points(points, -1, "points")
+        mesh.face_count, mesh.index_count, mesh.vertex_count = len(face_counts), len(face_indices), len(points)
+        if subdivision is not None:
+            mesh.subdivision = self.subdivision(subdivision)
+        return mesh[0]
+
+    def subdivision(self, given: Subdivision) -> Any:
+        target = ffi.new("skinslide_subdivision *")
+        self._alive.append(target)
+        for setting in ("scheme", "boundary_rule", "triangle_rule"):
+            setattr(target, setting, enum_value(setting, getattr(given, setting), ""))
+        for name, dtype in _SUBDIVISION_ARRAYS.items():
+            values = getattr(given, name)
+            setattr(target, name, self.optional(values, dtype, (-1,), name.replace("_", " ")))
+        if _length(given.corner_indices) != _length(given.corner_sharpnesses):
+            got = f"{_length(given.corner_sharpnesses)} values for {_length(given.corner_indices)} corners"
+            raise SliderError("BAD_MESH", f"corner sharpnesses: {got}")
+        target.crease_count, target.crease_index_count = _length(given.crease_lengths), _length(given.crease_indices)
+        target.crease_sharpness_count = _length(given.crease_sharpnesses)
+        target.corner_count, target.hole_count = _length(given.corner_indices), _length(given.hole_indices)
+        return target
+
+    def fill_setup(self, target: Any, patch: PatchSetup, sizes: Sizes) -> None:
+        where = f"patch {patch.name}: "
+        name = ffi.new("char[]", encoded_name(patch.name))
+        self._alive.append(name)
+        target.name = name
+        target.faces = self.pointer(patch.faces, np.int32, (-1,), f"{where}faces")
+        target.face_count = len(patch.faces)
+        target.corners = self.optional(patch.corners, np.int32, (4,), f"{where}corners")
+        for setting in ("boundary", "holes", "rule", "interpolation"):
+            setattr(target, setting, enum_value(setting, getattr(patch, setting), where))
+        self.fill_controls(target.controls, patch.controls, sizes, where)
+
+    def fill_controls(self, target: Any, controls: Controls, sizes: Sizes, where: str) -> None:
+        counts = {
+            "vertex_density": sizes.vertices,
+            "face_density": sizes.faces,
+            "weight": sizes.vertices,
+            "max_distance": sizes.vertices,
+        }
+        for name, count in counts.items():
+            values = getattr(controls, name)
+            setattr(target, name, self.optional(values, np.float32, (count,), where + name.replace("_", " ")))
+        edges, density = controls.edges, controls.edge_density
+        if edges is not None and density is not None and not np.size(edges) and not np.size(density):
+            edges = density = None
+        if (edges is None) != (density is None):
+            raise SliderError("BAD_ARGUMENT", f"{where}edges and edge density must be given together")
+        target.edge_count = 0 if edges is None else len(edges)
+        target.edges = self.optional(edges, np.int32, (-1, 2), f"{where}edges")
+        target.edge_density = self.optional(density, np.float32, (target.edge_count,), f"{where}edge density")
+        target.envelope = controls.envelope
+
+    def frame_controls(self, controls: Sequence[Controls] | None, names: tuple[str, ...], sizes: Sizes) -> Any:
+        if controls is None:
+            return ffi.NULL
+        if len(controls) != len(names):
+            raise SliderError("BAD_ARGUMENT", f"controls: {len(controls)} given for {len(names)} patches")
+        targets = ffi.new("skinslide_controls[]", len(names))
+        self._alive.append(targets)
+        for target, patch, name in zip(targets, controls, names, strict=True):
+            self.fill_controls(target, patch, sizes, f"patch {name}: ")
+        return targets
+
+
+_SUBDIVISION_ARRAYS = {
+    "crease_lengths": np.int32,
+    "crease_indices": np.int32,
+    "crease_sharpnesses": np.float32,
+    "corner_indices": np.int32,
+    "corner_sharpnesses": np.float32,
+    "hole_indices": np.int32,
+}
+
+
+def _length(values: Any) -> int:
+    return 0 if values is None else len(values)
+
+
+def encoded_name(name: str) -> bytes:
+    try:
+        encoded = name.encode()
+    except (AttributeError, UnicodeEncodeError) as error:
+        raise SliderError("BAD_ARGUMENT", f"{name!r} cannot name a patch") from error
+    if b"\0" in encoded:
+        raise SliderError("BAD_ARGUMENT", f"{name!r} cannot name a patch")
+    return encoded
+
+
+def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.ndarray:
+    """values as a contiguous array, or SliderError with both shapes."""
+    try:
+        source = np.asarray(values)
+    except (TypeError, ValueError) as error:  # rows of different lengths
+        raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error
+    if source.ndim != len(shape) or any(size not in (-1, got) for size, got in zip(shape, source.shape, strict=True)):
+        wanted = " x ".join("n" if size == -1 else str(size) for size in shape)
+        got = " x ".join(map(str, source.shape)) or "a single value"
+        raise SliderError("BAD_ARGUMENT", f"{what}: the shape is {got}; it must be {wanted}")
+    # Casts of the same kind lose digits at most, but for integers that do not fit.
+    fits = source.size == 0 or (np.can_cast(source.dtype, dtype, "same_kind") and source.dtype != np.bool_)
+    with np.errstate(over="ignore"):
+        result = np.ascontiguousarray(source, dtype) if fits else source
+    if not fits or (dtype == np.int32 and not np.array_equal(result, source)):
+        raise SliderError("BAD_ARGUMENT", f"{what}: {source.dtype} values do not fit {np.dtype(dtype)}")
+    return result
+
+
+def writable(ctype: str, array: np.ndarray) -> Any:
+    return ffi.from_buffer(ctype, array, require_writable=True)
+
+
+def _values_by_token(setting: str) -> dict[str, int]:
+    """The enum of a setting by its stage tokens: SKINSLIDE_INTERPOLATION_MEAN_VALUE is meanValue."""
+    names = ffi.typeof(f"skinslide_{setting}").relements
+    prefix = f"SKINSLIDE_{setting.removesuffix('_layout').upper()}_"
+    words = {name: name.removeprefix(prefix).lower() for name in names}
+    by_value = sorted(names, key=names.__getitem__)
+    return {re.sub("_([a-z])", lambda match: match[1].upper(), words[name]): names[name] for name in by_value}
+
+
+def enum_value(setting: str, token: str, where: str) -> int:
+    values = _values_by_token(setting)
+    if token not in values:
+        raise SliderError("BAD_ARGUMENT", f"{where}{setting} {token!r} is not one of {', '.join(values)}")
+    return values[token]
+
+
+def token_of(setting: str, value: int) -> str:
+    return next(token for token, number in _values_by_token(setting).items() if number == value)
+
+
+def call(function: Any, *arguments: Any) -> None:
+    error = ffi.new("skinslide_error *")
+    status = function(*arguments, error)
+    if status != lib.SKINSLIDE_OK:
+        raise SliderError(text(lib.skinslide_status_name(status)), ffi.string(error.message).decode(errors="replace"))
+
+
+def read(kind: type, struct: Any) -> Any:
+    values = (getattr(struct, name) for name in kind._fields)
+    return kind(*(text(value) if isinstance(value, ffi.CData) else value for value in values))
+
+
+def text(characters: Any) -> str:
+    return ffi.string(characters).decode(errors="replace")

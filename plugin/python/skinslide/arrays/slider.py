@@ -1,0 +1,306 @@
+"""The C core on numpy arrays: a slider for a mesh and its patches, and what else a cache holds. No USD here.
+
+The manual is `skinslide.h`. Arrays of other types are converted where that loses no more than digits.
+"""
+
+import threading
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from skinslide._core import ffi, lib
+from skinslide.arrays.native import (
+    Arguments,
+    Controls,
+    Lookup,
+    LookupInfo,
+    PatchInfo,
+    PatchResult,
+    PatchSetup,
+    Sizes,
+    Subdivision,
+    as_array,
+    call,
+    enum_value,
+    read,
+    text,
+    tokens,
+    writable,
+)
+from skinslide.problems import SliderError
+
+__all__ = [
+    "Controls",
+    "Diagnostics",
+    "Frame",
+    "Lookup",
+    "LookupInfo",
+    "PatchInfo",
+    "PatchResult",
+    "PatchSetup",
+    "Sample",
+    "Slider",
+    "SliderError",
+    "Subdivision",
+    "accelerations",
+    "choose_lookup",
+    "limit_points",
+    "normals",
+    "tokens",
+    "velocities",
+    "version",
+]
+
+
+class Frame(NamedTuple):
+    """A slid frame: `points` float32 (V, 3); a `PatchResult` for each patch, fields as in `skinslide_patch_result`."""
+
+    points: np.ndarray
+    patches: tuple[PatchResult, ...]
+    embeddings: tuple[np.ndarray, ...] | None  # float64 (patch vertices, 2) each, where asked for
+
+
+class Diagnostics(NamedTuple):
+    """What a slide did to each vertex, float32 (V,) each, as in `skinslide_diagnostics`."""
+
+    stretch_before: np.ndarray
+    stretch_after: np.ndarray
+    slide: np.ndarray
+    force_density: np.ndarray
+
+
+def version() -> str:
+    """The library's version, "major.minor.patch"."""
+    return text(lib.skinslide_version())
+
+
+class Slider:
+    """A mesh with all its patches. Immutable; any number of threads may slide frames at once.
+
+    face_counts   (F,) vertices of each face
+    face_indices  (sum of counts,) vertices, face by face
+    rest_points   (V, 3) the pose in which nothing slides
+    patches       faces that fall into several connected pieces become several patches, in `Slider.patches`
+    subdivision   how the mesh is subdivided, on which the interpolation limit depends; None: it is not
+    """
+
+    def __init__(
+        self,
+        face_counts: np.ndarray,
+        face_indices: np.ndarray,
+        rest_points: np.ndarray,
+        patches: Sequence[PatchSetup],
+        *,
+        lookup: str | Lookup = "auto",
+        subdivision: Subdivision | None = None,
+    ):
+        native = Arguments()
+        mesh = native.mesh(face_counts, face_indices, rest_points, subdivision)
+        self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
+        self._lookup = Lookup.of(lookup).options()
+        self._names = tuple(patch.name for patch in patches)
+        setups = ffi.new("skinslide_patch_setup[]", len(patches))
+        for setup, patch in zip(setups, patches, strict=True):
+            native.fill_setup(setup, patch, self._sizes)
+        out = ffi.new("skinslide_slider **")
+        call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, len(patches), out)
+        self._slider = ffi.gc(out[0], lib.skinslide_slider_destroy)
+        self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider)))
+        self._idle = [self._new_workspace()]
+        self._lock = threading.Lock()
+
+    def slide(
+        self, points: np.ndarray, controls: Sequence[Controls] | None = None, *, embeddings: bool = False
+    ) -> Frame:
+        """Slides one frame: points (V, 3) of the deformed mesh; controls, one a set-up, or None: the set-ups' own."""
+        native = Arguments()
+        cached = native.points(points, self._sizes.vertices, "points")
+        given = native.frame_controls(controls, self._names, self._sizes)
+        slid = np.empty((self._sizes.vertices, 3), np.float32)
+        results = ffi.new("skinslide_patch_result[]", len(self.patches))
+        workspace = self._take_workspace()
+        try:
+            call(lib.skinslide_slide, workspace, cached, given, writable("float[]", slid), results)
+            planes = self._frame_embeddings(workspace) if embeddings else None
+        finally:
+            self._give_back(workspace)
+        return Frame(slid, tuple(read(PatchResult, result) for result in results), planes)
+
+    def diagnose(
+        self,
+        cached: np.ndarray,
+        slid: np.ndarray,
+        controls: Sequence[Controls] | None = None,
+        *,
+        chosen: Sequence[bool] | None = None,
+    ) -> Diagnostics:
+        """What a slide from cached to slid, (V, 3) each, did. chosen: the set-ups whose patches count; None: all."""
+        native, count = Arguments(), self._sizes.vertices
+        before, after = native.points(cached, count, "cached"), native.points(slid, count, "slid")
+        given = native.frame_controls(controls, self._names, self._sizes)
+        if chosen is not None and len(chosen) != len(self._names):
+            raise SliderError("BAD_ARGUMENT", f"chosen: {len(chosen)} given for {len(self._names)} patches")
+        wanted = ffi.NULL if chosen is None else ffi.new("uint8_t[]", [bool(each) for each in chosen])
+        result = Diagnostics(*(np.empty(count, np.float32) for _ in Diagnostics._fields))
+        arrays = ffi.new("skinslide_diagnostics *", [writable("float[]", array) for array in result])
+        call(lib.skinslide_diagnose, self._slider, given, wanted, before, after, arrays)
+        return result
+
+    def vertices(self, patch: int) -> np.ndarray:
+        """Mesh vertices of a patch, int32, ascending."""
+        return self._patch_array(lib.skinslide_slider_patch_vertices, patch, "vertex_count", np.int32)
+
+    def faces(self, patch: int) -> np.ndarray:
+        """Mesh faces of a patch, int32, ascending."""
+        return self._patch_array(lib.skinslide_slider_patch_faces, patch, "face_count", np.int32)
+
+    def embedding(self, patch: int) -> np.ndarray:
+        """The rest embedding of a patch in the unit square, float64 (patch vertices, 2)."""
+        return self._patch_array(lib.skinslide_slider_embedding, patch, "vertex_count", np.float64, 2)
+
+    def id_buffer(self, points: np.ndarray, patch: int) -> np.ndarray:
+        """The texture of lookup egl for a frame: uint32 (side, side), rows from v = 0; 1 + patch face, 0 for none."""
+        native, side = Arguments(), ffi.new("int32_t *")
+        cached = native.points(points, self._sizes.vertices, "points")
+        slid = ffi.new("float[]", 3 * self._sizes.vertices)
+        workspace = self._take_workspace()
+        try:
+            call(lib.skinslide_slide, workspace, cached, ffi.NULL, slid, ffi.NULL)
+            call(lib.skinslide_workspace_id_buffer, workspace, patch, side, ffi.NULL)
+            texels = np.empty((side[0], side[0]), np.uint32)
+            call(lib.skinslide_workspace_id_buffer, workspace, patch, side, writable("uint32_t[]", texels))
+        finally:
+            self._give_back(workspace)
+        return texels
+
+    def _info(self, patch: int) -> PatchInfo:
+        info = ffi.new("skinslide_patch_info *")
+        call(lib.skinslide_slider_patch_info, self._slider, patch, info)
+        return read(PatchInfo, info)
+
+    def _patch_array(self, function: Any, patch: int, size: str, dtype: type, width: int | None = None) -> np.ndarray:
+        if not 0 <= patch < len(self.patches):
+            raise SliderError("BAD_ARGUMENT", f"there is no patch {patch}; patches are 0 to {len(self.patches) - 1}")
+        count = getattr(self.patches[patch], size)
+        array = np.empty(count if width is None else (count, width), dtype)
+        call(function, self._slider, patch, writable("int32_t[]" if dtype == np.int32 else "double[]", array))
+        return array
+
+    def _frame_embeddings(self, workspace: Any) -> tuple[np.ndarray, ...]:
+        arrays = tuple(np.empty((patch.vertex_count, 2)) for patch in self.patches)
+        for i, array in enumerate(arrays):
+            call(lib.skinslide_workspace_embedding, workspace, i, writable("double[]", array))
+        return arrays
+
+    def _new_workspace(self) -> Any:
+        out = ffi.new("skinslide_workspace **")
+        call(lib.skinslide_workspace_create, self._slider, self._lookup, out)
+        # The default argument keeps the slider until the workspace is gone, as the core asks.
+        return ffi.gc(out[0], lambda workspace, slider=self._slider: lib.skinslide_workspace_destroy(workspace))
+
+    def _take_workspace(self) -> Any:
+        with self._lock:
+            if self._idle:
+                return self._idle.pop()
+        return self._new_workspace()
+
+    def _give_back(self, workspace: Any) -> None:
+        with self._lock:
+            self._idle.append(workspace)
+
+
+def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
+    """What a lookup comes to on this machine, as `skinslide_lookup_info`; SliderError where it cannot be had."""
+    info = ffi.new("skinslide_lookup_info *")
+    call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info)
+    chosen = read(LookupInfo, info)
+    return chosen._replace(lookup=tokens("lookup")[chosen.lookup])
+
+
+def limit_points(
+    face_counts: np.ndarray,
+    face_indices: np.ndarray,
+    points: np.ndarray,
+    subdivision: Subdivision,
+    corners: np.ndarray,
+    places: np.ndarray,
+) -> np.ndarray:
+    """Points of the limit surface of a subdivided mesh, float32 (n, 3).
+
+    A face of n vertices is n quads, one a corner, that meet at its middle.
+
+    corners  (n,) indices of face_indices: which quad
+    places   (n, 2) in 0..1: along the side to the next corner, and to the one before; (1, 1) is the middle of the face
+    """
+    native = Arguments()
+    mesh = native.mesh(face_counts, face_indices, points, subdivision)
+    given = np.empty(len(corners), [("corner", np.int32), ("st", np.float32, 2)])
+    given["corner"] = as_array(corners, np.int32, (-1,), "corners")
+    given["st"] = as_array(places, np.float32, (len(corners), 2), "places")
+    result = np.empty((len(corners), 3), np.float32)
+    pointer = ffi.cast("skinslide_limit_place *", ffi.from_buffer(given))
+    out = writable("float[]", result)
+    call(lib.skinslide_limit_points, ffi.addressof(mesh), mesh.rest_points, pointer, len(corners), out)
+    return result
+
+
+def normals(
+    face_counts: np.ndarray,
+    face_indices: np.ndarray,
+    cached: np.ndarray,
+    slid: np.ndarray,
+    normals: np.ndarray,
+    interpolation: str,
+    *,
+    left_handed: bool = False,
+) -> np.ndarray:
+    """The cache's normals, recomputed where the skin slid: float32 (n, 3), for any interpolation but constant."""
+    native = Arguments()
+    mesh = native.mesh(face_counts, face_indices, cached)
+    # On a mesh, varying values sit on the vertices.
+    layout = enum_value("normals_layout", "vertex" if interpolation == "varying" else interpolation, "")
+    sizes = {
+        lib.SKINSLIDE_NORMALS_VERTEX: mesh.vertex_count,
+        lib.SKINSLIDE_NORMALS_FACE_VARYING: mesh.index_count,
+        lib.SKINSLIDE_NORMALS_UNIFORM: mesh.face_count,
+    }
+    result = as_array(normals, np.float32, (sizes[layout], 3), "normals").copy()
+    after = native.points(slid, mesh.vertex_count, "slid")
+    before = mesh.rest_points
+    out = writable("float[]", result)
+    call(lib.skinslide_normals, ffi.addressof(mesh), before, after, layout, left_handed, out)
+    return result
+
+
+class Sample(NamedTuple):
+    """Points of one time, before and after sliding, each (V, 3)."""
+
+    seconds: float
+    cached: np.ndarray
+    slid: np.ndarray
+
+
+def velocities(samples: Sequence[Sample], velocities: np.ndarray) -> np.ndarray:
+    """The cache's velocities (V, 3), units per second, corrected by the rate of change over two samples."""
+    return _rates(lib.skinslide_velocities, 2, samples, velocities, "velocities")
+
+
+def accelerations(samples: Sequence[Sample], accelerations: np.ndarray) -> np.ndarray:
+    """The cache's accelerations (V, 3), units per second squared, corrected by the second difference over three."""
+    return _rates(lib.skinslide_accelerations, 3, samples, accelerations, "accelerations")
+
+
+def _rates(function: Any, sample_count: int, samples: Sequence[Sample], rates: np.ndarray, what: str) -> np.ndarray:
+    if len(samples) != sample_count:
+        raise SliderError("BAD_ARGUMENT", f"{what} need {sample_count} samples, not {len(samples)}")
+    native = Arguments()
+    vertex_count = len(samples[0].cached)
+    given = ffi.new("skinslide_sample[]", sample_count)
+    for target, sample in zip(given, samples, strict=True):
+        target.seconds = sample.seconds
+        target.cached = native.points(sample.cached, vertex_count, "cached")
+        target.slid = native.points(sample.slid, vertex_count, "slid")
+    result = as_array(rates, np.float32, (vertex_count, 3), what).copy()
+    call(function, vertex_count, given, writable("float[]", result))
+    return result

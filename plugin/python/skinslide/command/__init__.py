@@ -1,0 +1,1 @@
+"""The command `skinslide`: words in, exit code out. Nobody imports it."""

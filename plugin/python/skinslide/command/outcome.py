@@ -1,0 +1,127 @@
+"""How a command ends: what it prints and its exit code, whatever happens to it, to its output, or to its streams."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any, TextIO
+
+from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, UsageError, usd_message
+
+DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
+INTERRUPTED = 130
+EXIT_CODES = (
+    "exit codes: 0 done, 1 failed, 2 the arguments cannot be used, 3 the stage has problems, 130 interrupted, "
+    "143 terminated, 129 hung up"
+)
+_EXPECTED = (
+    StageProblems,
+    FrameProblem,
+    UsageError,
+    StageError,
+    OSError,
+    MemoryError,
+    KeyboardInterrupt,
+    SystemExit,
+)
+
+
+def expected() -> tuple[type[BaseException], ...]:
+    """What a command may raise; anything else is a defect, and ends in a traceback."""
+    return _EXPECTED + _usd_errors()
+
+
+def _usd_errors() -> tuple[type[BaseException], ...]:
+    """USD's exception; none where USD is not loaded, so that nothing waits for it."""
+    usd = sys.modules.get("pxr.Tf")
+    return (usd.ErrorException,) if usd else ()
+
+
+def prepare_streams() -> None:
+    """Makes printing safe: for names that the terminal's encoding lacks, and where a stream was closed."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            # Else the next file opened takes this number, and whatever is printed goes into it.
+            null = os.open(os.devnull, os.O_RDWR)
+            if null != number:
+                os.dup2(null, number)
+                os.close(null)
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115 (open for as long as the process)
+        if hasattr(getattr(sys, name), "reconfigure"):
+            getattr(sys, name).reconfigure(errors="backslashreplace")
+
+
+def tell(line: str) -> None:
+    """Prints to stderr, where that is possible."""
+    with suppress(OSError):
+        _print(line, sys.stderr)
+
+
+def say(text: str, code: int) -> int:
+    """Prints what a command was asked for, and gives its exit code: failed, where that cannot be printed."""
+    if not text:
+        return code
+    try:
+        _print(text, sys.stdout)
+        return code
+    except BrokenPipeError:  # whoever read us has left
+        return FAILED
+    except OSError as error:
+        tell(f"error: the report cannot be printed: {error.strerror}")
+        return FAILED
+
+
+def as_json(document: dict[str, Any]) -> str:
+    return json.dumps(document, indent=2)
+
+
+def failed(error: BaseException, json: bool, done: str = "") -> int:
+    """Says why nothing came of a command: on stderr, and with json as a document on stdout too. Gives the exit code.
+
+    done  what became of the output, for where that is in question
+    """
+    code, problems = _verdict(error, done)
+    for problem in problems:
+        tell(str(problem))
+    if json:
+        say(as_json({"problems": [problem.as_dict() for problem in problems]}), code)
+    return code
+
+
+def _verdict(error: BaseException, done: str) -> tuple[int, Sequence[Problem]]:
+    if isinstance(error, _usd_errors()):
+        return FAILED, [_plain(f"USD: {usd_message(error)}")]
+    match error:
+        case StageProblems():
+            return PROBLEMS, error.problems
+        case FrameProblem():
+            return FAILED, [error.problem]
+        case KeyboardInterrupt():
+            return INTERRUPTED, [_plain(f"interrupted{done}")]
+        case SystemExit():
+            return int(error.code or FAILED), [_plain(f"ended by a signal{done}")]
+        case MemoryError():
+            return FAILED, [_plain("out of memory")]
+        case _:
+            return USAGE if isinstance(error, UsageError) else FAILED, [_plain(str(error))]
+
+
+def _plain(message: str) -> Problem:
+    return Problem("error", "", None, None, message)
+
+
+def _print(text: str, stream: TextIO) -> None:
+    try:
+        print(text, file=stream, flush=True)
+    except OSError:
+        # What is left in the buffer would fail once more when Python closes the stream.
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        raise

@@ -1,0 +1,47 @@
+"""Progress on stderr: a bar on a terminal, at most some twenty plain lines elsewhere, or nothing."""
+
+import math
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+from tqdm import tqdm
+
+from skinslide.command.outcome import tell
+from skinslide.shot.workers import Progress
+
+_LINES = 20
+_SECONDS = 1.0  # between lines
+
+
+@contextmanager
+def reporter(*, quiet: bool = False) -> Iterator[Progress | None]:
+    """What a bake calls after each frame."""
+    if quiet:
+        yield None
+    elif sys.stderr.isatty():
+        with tqdm(unit="frame", dynamic_ncols=True, leave=False, file=sys.stderr) as bar:
+            yield lambda done, total: _move(bar, done, total)
+    else:
+        yield _lines()
+
+
+def _move(bar: tqdm, done: int, total: int) -> None:
+    bar.total = total
+    with suppress(OSError):  # a terminal that has gone
+        bar.update(done - bar.n)
+
+
+def _lines() -> Progress:
+    start = last = time.monotonic()
+
+    def report(done: int, total: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if done != total and (done % math.ceil(total / _LINES) or now - last < _SECONDS):
+            return
+        last, rate = now, done / max(now - start, 1e-9)
+        tell(f"{done} of {total} frames, {rate:.1f} frames/s, {(total - done) / rate:.0f} s left")
+
+    return report

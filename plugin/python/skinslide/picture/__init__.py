@@ -1,0 +1,1 @@
+"""What sliding does, to be looked at: pictures, maps, a page."""

@@ -1,0 +1,37 @@
+"""Canvases for threads that draw pictures."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from skinslide.arrays.canvas import Canvas
+from skinslide.problems import SliderError, StageError, UsageError
+
+
+class Canvases:
+    """A canvas for each thread that draws, made when it is needed; the first at once, so that its faults show."""
+
+    def __init__(self, make: Callable[[], Canvas], at_once: int):
+        """at_once: how many may be. Raises UsageError where there is no EGL, or where it has no such size."""
+        self._make, self._lock, self._room = make, threading.Lock(), threading.Semaphore(max(1, at_once))
+        try:
+            self._idle = [make()]
+        except SliderError as error:
+            if error.status == "OUT_OF_MEMORY":
+                raise MemoryError(str(error)) from error
+            asked_for = error.status in ("NO_DEVICE", "BAD_ARGUMENT")
+            raise (UsageError if asked_for else StageError)(str(error)) from error
+
+    @contextmanager
+    def taken(self) -> Iterator[Canvas]:
+        with self._room:
+            with self._lock:
+                canvas = self._idle.pop() if self._idle else None
+            canvas = canvas or self._make()
+            try:
+                yield canvas
+            finally:
+                with self._lock:
+                    self._idle.append(canvas)

@@ -1,0 +1,147 @@
+"""What stands on a picture beside the skin: titles, the scale of its colours; contact sheets; and files of pictures."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from skinslide.arrays.canvas import Viewport, false_colour
+from skinslide.arrays.images import encode_exr
+
+BACKGROUND = (0.045, 0.045, 0.052)  # linear light
+
+_TEXT, _SHADE = (244, 241, 236, 255), (18, 18, 22, 150)
+_GAP = 0.6  # of a line's height, around text
+
+
+def columns(width: int, height: int, count: int) -> list[Viewport]:
+    """Equal parts of a picture, side by side."""
+    edges = [round(i * width / count) for i in range(count + 1)]
+    return [Viewport(left, 0, right - left, height) for left, right in pairwise(edges)]
+
+
+def font_of(height: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    """The font of a picture of that height."""
+    return ImageFont.load_default(max(9, round(height / 42)))
+
+
+def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_foot: bool = False) -> None:
+    """Puts lines on a shade into the upper left corner of a part of a picture, or the lower left."""
+    font = font_of(place.height)
+    pad = round(font.size * _GAP)
+    boxes = [font.getbbox(line) for line in lines]
+    wide = math.ceil(max((box[2] for box in boxes), default=0)) + 2 * pad
+    step = round(font.size * 1.35)
+    card = Image.new("RGBA", (wide, step * len(lines) + pad), _SHADE)
+    draw = ImageDraw.Draw(card)
+    for number, line in enumerate(lines):
+        draw.text((pad, pad // 2 + number * step), line, _TEXT, font)
+    _lay(pixels, np.array(card), place, place.height - card.height if at_foot else 0)
+
+
+def write_scale(pixels: np.ndarray, highest: float, place: Viewport) -> None:
+    """Puts the scale of stretch, from none to `highest`, into the lower left corner of a part of a picture."""
+    font = font_of(place.height)
+    pad, wide, tall = round(font.size * _GAP), max(2, round(place.height * 0.34)), round(font.size * 0.7)
+    card = Image.new("RGBA", (wide + 4 * pad, round(font.size * 3.2) + tall), _SHADE)
+    draw = ImageDraw.Draw(card)
+    for x in range(wide):
+        colour = tuple(_encoded(np.array(false_colour(x / (wide - 1)))).tolist())
+        draw.line([(2 * pad + x, 2 * pad), (2 * pad + x, 2 * pad + tall)], (*colour, 255))
+    for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
+        draw.text((2 * pad + share * wide, 2.3 * pad + tall), f"{share * highest:.3g}", _TEXT, font, anchor=anchor)
+    draw.text((2 * pad, pad // 4), "stretch", _TEXT, font)
+    _lay(pixels, np.array(card), place, place.height - card.height)
+
+
+def _lay(pixels: np.ndarray, card: np.ndarray, place: Viewport, top: int) -> None:
+    """Lays a card over a part of a picture, in the picture's own colours; what reaches past its edges is cut."""
+    part = pixels[pixels.shape[0] - place.y - place.height :, place.x : place.x + place.width, :3]
+    part = part[max(top, 0) :][: card.shape[0], : card.shape[1]]
+    card = card[: part.shape[0], : part.shape[1]]
+    alpha = card[..., 3:] / 255
+    if pixels.dtype == np.uint8:
+        part[...] = np.rint(part * (1 - alpha) + card[..., :3] * alpha).astype(np.uint8)
+    else:
+        part[...] = part * (1 - alpha) + _decoded(card[..., :3]) * alpha
+
+
+def _encoded(light: np.ndarray) -> np.ndarray:
+    """sRGB bytes of linear light."""
+    light = np.clip(light, 0, 1)
+    encoded = np.where(light < 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return np.rint(255 * encoded).astype(np.uint8)
+
+
+def _decoded(encoded: np.ndarray) -> np.ndarray:
+    share = encoded / 255
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
+# ---- Files ----
+
+
+def as_file(pixels: np.ndarray, form: str) -> bytes:
+    """A picture (height, width, 4) as the bytes of a file: png of uint8, exr of float32."""
+    if form == "exr":
+        return encode_exr({name: np.ascontiguousarray(pixels[..., k]) for k, name in enumerate("RGB")})
+    return _as_bytes(Image.fromarray(displayed(pixels)), "PNG", compress_level=1)
+
+
+def displayed(pixels: np.ndarray) -> np.ndarray:
+    """A picture in sRGB, uint8 (height, width, 3)."""
+    return np.ascontiguousarray(pixels[..., :3] if pixels.dtype == np.uint8 else _encoded(pixels[..., :3]))
+
+
+def thumbnail(pixels: np.ndarray) -> bytes:
+    """A picture for a contact sheet, as a PNG file: of many patches there are thousands."""
+    image = Image.fromarray(displayed(pixels))
+    height = max(1, round(image.height * _THUMBNAIL / image.width))
+    small = image.resize((_THUMBNAIL, height), Image.Resampling.BOX) if image.width > _THUMBNAIL else image
+    return _as_bytes(small, "PNG", compress_level=1)
+
+
+def _as_bytes(image: Image.Image, form: str, **options) -> bytes:
+    file = io.BytesIO()
+    image.save(file, form, **options)
+    return file.getvalue()
+
+
+# ---- Contact sheets ----
+
+_THUMBNAIL = 480  # pixels wide
+_TALLEST = 16384  # pixels of a sheet
+_IN_A_ROW, _MARGIN = 4, 12
+
+
+def contact_sheets(strips: Sequence[Sequence[bytes]]) -> Iterator[bytes]:
+    """Thumbnails as PNG files: a strip begins a row; more than one file where they would be too tall."""
+    rows = [strip[i : i + _IN_A_ROW] for strip in strips for i in range(0, len(strip), _IN_A_ROW)]
+    tallest = max((_size(file)[1] for row in rows for file in row), default=1) + _MARGIN
+    most = max(1, (_TALLEST - _MARGIN) // tallest)
+    return (_sheet(rows[i : i + most]) for i in range(0, len(rows), most))
+
+
+def _sheet(rows: Sequence[Sequence[bytes]]) -> bytes:
+    wide = max(sum(_size(file)[0] + _MARGIN for file in row) for row in rows)
+    tall = [max(_size(file)[1] for file in row) + _MARGIN for row in rows]
+    sheet = Image.new("RGB", (wide + _MARGIN, sum(tall) + _MARGIN), (28, 28, 32))
+    top = _MARGIN
+    for row, height in zip(rows, tall, strict=True):
+        left = _MARGIN
+        for file in row:
+            with Image.open(io.BytesIO(file)) as image:
+                sheet.paste(image, (left, top))
+                left += image.width + _MARGIN
+        top += height
+    return _as_bytes(sheet, "PNG")
+
+
+def _size(file: bytes) -> tuple[int, int]:
+    """Width and height, from its header."""
+    return Image.open(io.BytesIO(file)).size

@@ -1,0 +1,1 @@
+"""Slides the frames of a shot."""

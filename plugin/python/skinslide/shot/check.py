@@ -1,0 +1,244 @@
+"""Says what a bake would slide, patch by patch, and everything that is wrong or worth knowing."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+from pxr import Usd
+
+from skinslide.arrays.native import Lookup, PatchInfo, PatchSetup
+from skinslide.arrays.slider import Slider, choose_lookup
+from skinslide.problems import Problem, SliderError, StageProblems, UsageError, errors, frame_text
+from skinslide.shot.derived import Derived
+from skinslide.shot.samples import sample_problems
+from skinslide.stage.controls import PatchControls
+from skinslide.stage.mesh import PatchedMesh, is_skinned, read_meshes
+from skinslide.stage.opening import open_stage
+from skinslide.stage.textures import SampledTexture
+
+
+@dataclass(frozen=True)
+class CheckedPatch:
+    """One piece of a patch. `free` counts the vertices that may slide; the last three are of the rest embedding."""
+
+    name: str
+    piece: int  # from 1
+    pieces: int
+    vertices: int
+    edges: int
+    faces: int
+    free: int
+    holes: int
+    zero_length_edges: int
+    collapsed_faces: int
+    folded_faces: int
+
+
+@dataclass(frozen=True)
+class CheckedMap:
+    """A map of a patch at the first time. `tiles` are those the patch lies in; 0 is the one image of a map without."""
+
+    patch: str
+    name: str  # of the attribute
+    file: str
+    channel: str
+    st: str
+    tiles: list[int]
+    width: int  # of the largest tile
+    height: int
+
+
+@dataclass(frozen=True)
+class CheckedMesh:
+    """A mesh that a bake would slide. `samples` are the stage times it would write."""
+
+    path: str
+    points: int
+    faces: int
+    rest: str
+    samples: list[float]
+    patches: list[CheckedPatch]
+    maps: list[CheckedMap]
+
+
+@dataclass(frozen=True)
+class CheckedLookup:
+    """What a bake would look up with. Where that is exact, the device is the one that egl would have, if any."""
+
+    lookup: str
+    reason: str
+    device: str
+    renderer: str
+    driver: str
+    software: bool
+
+    @classmethod
+    def choose(cls, lookup: Lookup) -> CheckedLookup:
+        chosen = choose_lookup(lookup)
+        device = chosen
+        if chosen.lookup != "egl":
+            with contextlib.suppress(SliderError):
+                device = choose_lookup(replace(lookup, method="egl"))
+        reason = chosen.reason or ("asked for" if lookup.method != "auto" else "")
+        return cls(chosen.lookup, reason, device.device_name, device.renderer, device.driver, bool(device.software))
+
+    def lines(self) -> Iterator[str]:
+        yield f"lookup {self.lookup}" + (f": {self.reason}" if self.reason else "")
+        kind = "a software rasteriser" if self.software else "hardware"
+        device = f"{self.device}: {self.renderer}, {self.driver}, {kind}" if self.device else "no device"
+        yield f"  {'' if self.lookup == 'egl' else 'egl would have '}{device}"
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    stage: str
+    meshes: list[CheckedMesh]
+    problems: list[Problem]
+    lookup: CheckedLookup
+
+    @property
+    def failed(self) -> bool:
+        return bool(errors(self.problems))
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+    def text(self) -> str:
+        """A line for each mesh, patch and problem, and the verdict."""
+        lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
+        return "\n".join([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
+
+    def _verdict(self) -> str:
+        counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}
+        found = [f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items() if count]
+        patches = sum(len(mesh.patches) for mesh in self.meshes)
+        meshes = f"{len(self.meshes)} mesh{'es' * (len(self.meshes) != 1)}"
+        return f"{self.stage}: {meshes}, {patches} patch{'es' * (patches != 1)}: {', '.join(found) or 'no problems'}"
+
+
+def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
+    if mesh.samples:
+        first, last = frame_text(mesh.samples[0]), frame_text(mesh.samples[-1])
+        samples = f"{len(mesh.samples)} samples, {first} to {last}"
+    else:
+        samples = "no samples"
+    yield f"{mesh.path}: {mesh.points} points, {mesh.faces} faces, rest from {mesh.rest}, {samples}"
+    for patch in mesh.patches:
+        name = patch.name if patch.pieces == 1 else f"{patch.name} ({patch.piece} of {patch.pieces})"
+        counts = ("vertices", "free", "edges", "faces", "holes")
+        yield f"  {name}: " + ", ".join(f"{count} {getattr(patch, count)}" for count in counts)
+    for used in mesh.maps:
+        tiles = f", tiles {', '.join(map(str, used.tiles))}" if used.tiles != [0] else ""
+        size = f"{used.width} x {used.height}"
+        yield f"  {used.name}: {used.file}, channel {used.channel}, {size}{tiles}, at primvars:{used.st}"
+
+
+def check(
+    stage: Usd.Stage | str | Path, prims: Sequence[str] | None = None, *, lookup: str | Lookup = "auto"
+) -> CheckReport:
+    """Checks a stage without changing it. Reads every sample; StageError where the stage cannot be opened.
+
+    prims   paths of prims to look at with everything below them; None: the whole stage
+    lookup  what a bake would be asked for; UsageError where it cannot be had
+    """
+    try:
+        chosen = CheckedLookup.choose(Lookup.of(lookup))
+    except SliderError as error:
+        raise UsageError(str(error)) from error
+    name = stage.GetRootLayer().identifier if isinstance(stage, Usd.Stage) else str(stage)
+    stage = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
+    meshes, problems = read_meshes(stage, prims)
+    checked = [_check_mesh(mesh, problems) for mesh in meshes]
+    severities = ("error", "warning", "note")
+    return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)), chosen)
+
+
+def _check_mesh(mesh: PatchedMesh, problems: list[Problem]) -> CheckedMesh:
+    patches = [_checked(info) for slider in _sliders(mesh, problems) for info in slider.patches]
+    for name in dict.fromkeys(patch.name for patch in patches):
+        problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
+    problems += _overlaps(mesh)
+    problems += _cache_problems(mesh)
+    problems += Derived(mesh).problems
+    times = mesh.sample_times()
+    problems += sample_problems(mesh, times)
+    used = [_checked_map(patch.name, each) for patch, read in _animated(mesh) for each in read.maps]
+    faces = mesh.topology.face_count
+    return CheckedMesh(mesh.path, mesh.vertex_count, faces, mesh.rest_source, times, patches, used)
+
+
+def _animated(mesh: PatchedMesh) -> Iterator[tuple[PatchSetup, PatchControls]]:
+    return zip(mesh.patches, mesh.animation, strict=True)
+
+
+def _checked_map(patch: str, used: SampledTexture) -> CheckedMap:
+    width, height = max(used.sizes.values())
+    return CheckedMap(patch, used.name, used.file, used.channel, used.st, list(used.sizes), width, height)
+
+
+def _sliders(mesh: PatchedMesh, problems: list[Problem]) -> list[Slider]:
+    """The slider of all patches, or one for each that is good."""
+    try:
+        return [mesh.slider()]
+    except StageProblems as bad:
+        problems += bad.problems
+    sliders = []
+    for patch in mesh.patches:
+        try:
+            sliders.append(mesh.build([patch]))
+        except SliderError:
+            continue
+    return sliders
+
+
+def _checked(info: PatchInfo) -> CheckedPatch:
+    return CheckedPatch(
+        name=info.name,
+        piece=info.piece + 1,
+        pieces=info.piece_count,
+        vertices=info.vertex_count,
+        edges=info.edge_count,
+        faces=info.face_count,
+        free=info.free_count,
+        holes=info.hole_count,
+        zero_length_edges=info.zero_length_edges,
+        collapsed_faces=info.collapsed_faces,
+        folded_faces=info.folded_faces,
+    )
+
+
+def _patch_problems(mesh: PatchedMesh, pieces: list[CheckedPatch]) -> Iterator[Problem]:
+    """What is worth knowing of the pieces of one patch, a line for each kind."""
+    stuck = sum(not piece.free for piece in pieces)
+    where = f"in {stuck} of its {len(pieces)} pieces " if len(pieces) > 1 else ""
+    told = {
+        f"nothing can slide {where}since every vertex is on a boundary": stuck,
+        "{} edges have no length at rest": sum(piece.zero_length_edges for piece in pieces),
+        "{} faces have no area in the rest embedding": sum(piece.collapsed_faces for piece in pieces),
+        "{} faces are turned over in the rest embedding": sum(piece.folded_faces for piece in pieces),
+    }
+    for message, count in told.items():
+        if count:
+            yield Problem("warning", mesh.path, pieces[0].name, None, message.format(count))
+
+
+def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:
+    for a, b in combinations(mesh.patches, 2):
+        if np.intersect1d(a.faces, b.faces).size:
+            shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
+            message = f"overlaps patch {b.name} in {np.count_nonzero(shared)} vertices, which take the mean of both"
+            yield Problem("note", mesh.path, a.name, None, message)
+
+
+def _cache_problems(mesh: PatchedMesh) -> Iterator[Problem]:
+    if not mesh.points_times() and mesh.rest_source == "points (default)":
+        message = "points have no samples and are themselves the rest points, so nothing slides"
+        yield Problem("warning", mesh.path, None, None, message)
+    if mesh.points_times() and is_skinned(mesh.prim):
+        message = "points have samples, but UsdSkel skins them again; remove the skinning where they are baked"
+        yield Problem("warning", mesh.path, None, None, message)

@@ -1,0 +1,64 @@
+"""Frame specs: `101:109x2` as USD writes them, `101-109x2` as farms do, `1001`, and comma lists of these."""
+
+import math
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+
+from skinslide.problems import MOST_FRAMES, FrameSpecError
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+_PART = re.compile(rf"(?P<first>{_NUMBER})(?:[:-](?P<last>{_NUMBER})(?:x(?P<step>{_NUMBER}))?)?", re.ASCII)
+
+
+def parse_frames(spec: str) -> list[float]:
+    """The frames of a spec, ascending, each once. Ranges include their ends and may descend; steps may be fractions."""
+    frames: set[float] = set()
+    left = MOST_FRAMES
+    for part in spec.split(","):
+        first, step, count = _parse_part(part.strip(), spec)
+        left -= count
+        if left < 0:
+            raise FrameSpecError(f"frames {spec!r}: more than {MOST_FRAMES} frames")
+        frames.update(_expand(first, step, count))
+    return sorted(frames)
+
+
+def checked_frames(frames: Sequence[float] | str) -> list[float]:
+    """Frames as a spec or one by one, ascending, each once."""
+    if isinstance(frames, str):
+        return parse_frames(frames)
+    try:
+        times = sorted({float(frame) for frame in frames})
+    except (TypeError, ValueError, OverflowError) as error:
+        raise FrameSpecError(f"frames {frames!r}: must be a spec such as 101:109x2, or a list of numbers") from error
+    if not times or not all(map(math.isfinite, times)):
+        raise FrameSpecError(f"frames {times}: there must be some, each a finite number")
+    return times
+
+
+def _parse_part(part: str, spec: str) -> tuple[Fraction, Fraction, int]:
+    """First frame, signed step and count of `part`, exactly."""
+    if not part:
+        raise FrameSpecError(f"frames {spec!r}: empty" if not spec.strip() else f"frames {spec!r}: a part is empty")
+    match = _PART.fullmatch(part)
+    if not match:
+        raise FrameSpecError(f"frames {spec!r}: {part!r} is neither a frame nor a range such as 101:109x2")
+    if any(len(number) > 40 for number in match.groups("")):
+        raise FrameSpecError(f"frames {spec!r}: a number of {part[:20]!r}... is too long")
+    first = Fraction(match["first"])
+    last = Fraction(match["last"] or first)
+    step = Fraction(match["step"] or 1)
+    if step < 0 and first > last:
+        step = -step
+    if step <= 0:
+        raise FrameSpecError(f"frames {spec!r}: the step of {part!r} leads nowhere")
+    count = int(abs(last - first) / step) + 1
+    return first, step if first <= last else -step, count
+
+
+def _expand(first: Fraction, step: Fraction, count: int) -> list[float]:
+    # Over one denominator every frame is a single, correctly rounded division: nothing accumulates.
+    denominator = first.denominator * step.denominator
+    start, stride = first.numerator * step.denominator, step.numerator * first.denominator
+    return [(start + i * stride) / denominator for i in range(count)]

@@ -1,0 +1,97 @@
+"""What is going to be slid: a slider for every mesh, and the times at which it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from pxr import Usd
+
+from skinslide.arrays.native import Lookup
+from skinslide.arrays.slider import Slider
+from skinslide.problems import Problem, StageProblems, UsageError, errors, frame_text
+from skinslide.shot.options import BakeOptions
+from skinslide.stage.mesh import PatchedMesh, read_meshes
+
+
+class PlannedMesh(NamedTuple):
+    mesh: PatchedMesh
+    slider: Slider
+    times: list[Usd.TimeCode]  # ascending
+
+    @property
+    def frames(self) -> list[float]:
+        """The times, without the default time."""
+        return [time.GetValue() for time in self.times if not time.IsDefault()]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Slides that are known to be possible."""
+
+    meshes: list[PlannedMesh]
+    problems: list[Problem]  # warnings
+    options: BakeOptions
+
+    @classmethod
+    def read(cls, stage: Usd.Stage, options: BakeOptions) -> Plan:
+        """Raises StageProblems where any mesh cannot be slid."""
+        meshes, problems = read_meshes(stage, options.prims)
+        sliders = _build_sliders(meshes, options.lookup, problems)
+        if errors(problems):
+            raise StageProblems(problems)
+        planned = [
+            PlannedMesh(mesh, slider, _times(mesh, options.frames))
+            for mesh, slider in zip(meshes, sliders, strict=True)
+        ]
+        return cls(planned, problems + list(_outside(planned, options.frames)), options)
+
+    def check_patches(self, wanted: Sequence[str] | None) -> None:
+        """Raises UsageError for no names, and StageProblems for those that no mesh has."""
+        there = {patch.name for planned in self.meshes for patch in planned.mesh.patches}
+        if wanted is not None and not wanted:
+            raise UsageError("patches: there are no names in it")
+        missing = [name for name in wanted or () if name not in there]
+        if missing:
+            message = f"no mesh has it; there are {', '.join(sorted(there))}"
+            raise StageProblems([Problem("error", "", name, None, message) for name in missing])
+
+    @property
+    def frame_count(self) -> int:
+        """Of all meshes."""
+        return sum(len(planned.times) for planned in self.meshes)
+
+
+def _outside(meshes: list[PlannedMesh], asked: list[float] | None) -> Iterator[Problem]:
+    """Warns of frames beyond the samples of a mesh, where USD holds the nearest."""
+    for mesh, _, _ in meshes:
+        samples = mesh.sample_times()
+        outside = [frame for frame in asked or () if samples and not samples[0] <= frame <= samples[-1]]
+        if outside:
+            span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
+            message = f"{len(outside)} frames are beyond the samples, which go {span}; the nearest is held there"
+            yield Problem("warning", mesh.path, None, outside[0], message)
+
+
+def _build_sliders(meshes: list[PatchedMesh], lookup: Lookup, problems: list[Problem]) -> list[Slider]:
+    sliders = []
+    for mesh in meshes:
+        try:
+            sliders.append(mesh.slider(lookup))
+        except StageProblems as error:
+            problems.extend(error.problems)
+    return sliders
+
+
+def _times(mesh: PatchedMesh, asked: list[float] | None) -> list[Usd.TimeCode]:
+    """A mesh that never changes has one value, whatever was asked; so has one whose splines have no knots."""
+    if not mesh.varies:
+        return [Usd.TimeCode.Default()]
+    times = mesh.sample_times() if asked is None else asked
+    return [Usd.TimeCode(time) for time in times] or [Usd.TimeCode.Default()]
+
+
+def frame_of(time: Usd.TimeCode) -> float | None:
+    """None for the default time."""
+    return None if time.IsDefault() else time.GetValue()

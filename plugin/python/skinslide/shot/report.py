@@ -1,0 +1,215 @@
+"""What a bake did, patch by patch: for people as a table, for programs as a dictionary."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from skinslide.arrays.native import PatchInfo, PatchResult
+from skinslide.problems import Problem, frame_text
+
+STAGES = ("density", "embed", "relax", "locate", "interpolate")
+
+# Counts that say a result is less than it should be.
+_AT_REST = {
+    "zero_length_edges": "edges of no length at rest, taken as 1e-6 of the mean edge",
+    "collapsed_faces": "faces of no area in the rest embedding",
+    "folded_faces": "faces turned over in the rest embedding",
+}
+_AT_FRAMES = {
+    "clamped_vertices": "vertices looked up outside every face, put on the nearest",
+    "clamped_weights": "weights or envelopes outside 0..1, clamped",
+    "damped_vertices": "vertices brought back towards their place on the faces, where the limit surface rings",
+    "folded_faces": "faces turned over in the embedding",
+    "zero_length_edges": "edges of no length, taken as 1e-6 of the mean rest edge",
+    "lost_textures": "textures lost by a failing device, each vertex walked for instead",
+}
+
+
+_NO_STRETCH = 1e-4  # less is not to be seen
+
+
+@dataclass
+class PatchReport:
+    """One patch over all frames."""
+
+    info: PatchInfo
+    frames: list[float | None] = field(default_factory=list)
+    results: list[PatchResult] = field(default_factory=list)
+
+    def column(self, name: str) -> np.ndarray:
+        """A field of the results, frame by frame."""
+        return np.array([getattr(result, name) for result in self.results])
+
+    @property
+    def worst(self) -> int:
+        """The index of the frame with the most stretch in the cache."""
+        return int(np.argmax(self.column("stretch_before")))
+
+    @property
+    def change(self) -> float | None:
+        """Of stretch by sliding, at the worst frame, as a share of the cache's; None where the cache has none."""
+        worst = self.results[self.worst]
+        return worst.stretch_after / worst.stretch_before - 1 if worst.stretch_before > _NO_STRETCH else None
+
+    def milliseconds(self) -> dict[str, np.ndarray]:
+        """Time by stage and in total, frame by frame."""
+        stages = {stage: 1e3 * self.column(f"{stage}_seconds") for stage in STAGES}
+        return {**stages, "total": sum(stages.values())}
+
+    @property
+    def label(self) -> str:
+        info = self.info
+        return info.name if info.piece_count == 1 else f"{info.name} ({info.piece + 1} of {info.piece_count})"
+
+    def as_dict(self) -> dict[str, Any]:
+        fields = {name: self.column(name) for name in PatchResult._fields}
+        worst = self.results[self.worst]
+        return {
+            **self.info._asdict(),
+            "max": {name: values.max().item() for name, values in fields.items()},
+            "mean": {name: values.mean().item() for name, values in fields.items()},
+            "frames": [_frame_dict(*each) for each in zip(self.frames, self.results, strict=True)],
+            "worst_frame": self.frames[self.worst],
+            "worst_frame_stretch_before": worst.stretch_before,
+            "worst_frame_stretch_after": worst.stretch_after,
+        }
+
+    def problems(self, prim: str) -> list[Problem]:
+        """A warning for each kind of degradation."""
+        at_rest = [(None, getattr(self.info, name), text) for name, text in _AT_REST.items()]
+        at_frames = [self._most(name, text) for name, text in _AT_FRAMES.items()]
+        warnings = [*at_rest, *at_frames]
+        counted = [
+            Problem("warning", prim, self.label, frame, f"{count} {text}") for frame, count, text in warnings if count
+        ]
+        return counted + self._stretched(prim)
+
+    def _stretched(self, prim: str) -> list[Problem]:
+        """A warning where sliding adds stretch, as on a smile, or a closed tube embedded from its open end."""
+        added = self.column("stretch_after") - self.column("stretch_before")
+        if not (added > _NO_STRETCH).any():
+            return []
+        worst = added.argmax()
+        before = stretch_text(self.results[worst].stretch_before)
+        after = stretch_text(self.results[worst].stretch_after)
+        where = f" ({np.count_nonzero(added > _NO_STRETCH)} of {len(added)} frames have such; this one most)"
+        message = f"sliding adds stretch: {before} in the cache, {after} slid{where if len(added) > 1 else ''}"
+        return [Problem("warning", prim, self.label, self.frames[worst], message)]
+
+    def _most(self, name: str, text: str) -> tuple[float | None, int, str]:
+        counts = self.column(name)
+        where = f" ({np.count_nonzero(counts)} of {len(counts)} frames have such; this one most)"
+        return self.frames[counts.argmax()], counts.max().item(), text + (where if len(counts) > 1 else "")
+
+
+def stretch_text(stretch: float) -> str:
+    return f"{stretch:.4f}"
+
+
+def milliseconds_text(milliseconds: float) -> str:
+    return f"{milliseconds:.2f}"
+
+
+def time_text(frame: float | None) -> str:
+    return "default" if frame is None else frame_text(frame)
+
+
+_OF_A_FRAME = ("stretch_before", "stretch_after", "slid_vertices", "largest_slide", "clamped_vertices", "folded_faces")
+
+
+def _frame_dict(frame: float | None, result: PatchResult) -> dict[str, Any]:
+    return {"frame": frame, **{name: getattr(result, name) for name in _OF_A_FRAME}}
+
+
+@dataclass
+class MeshReport:
+    """One mesh over all frames."""
+
+    path: str
+    vertex_count: int
+    rest_source: str
+    patches: list[PatchReport]
+
+    @classmethod
+    def start(cls, path: str, vertex_count: int, rest_source: str, patches: Sequence[PatchInfo]) -> "MeshReport":
+        return cls(path, vertex_count, rest_source, [PatchReport(info) for info in patches])
+
+    def add(self, frame: float | None, results: Sequence[PatchResult]) -> None:
+        """Takes in one frame; None is the default time."""
+        for patch, result in zip(self.patches, results, strict=True):
+            patch.frames.append(frame)
+            patch.results.append(result)
+
+    @property
+    def frame_count(self) -> int:
+        return max((len(patch.frames) for patch in self.patches), default=0)
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "prim": self.path,
+            "vertex_count": self.vertex_count,
+            "rest": self.rest_source,
+            "frames": self.patches[0].frames if self.patches else [],
+            "patches": [patch.as_dict() for patch in self.patches],
+        }
+
+
+@dataclass
+class BakeReport:
+    """Every mesh of a bake. `problems`: what reading the stage warned of, and every degradation."""
+
+    warnings: list[Problem]
+    meshes: list[MeshReport] = field(default_factory=list)
+
+    @property
+    def frame_count(self) -> int:
+        return sum(mesh.frame_count for mesh in self.meshes)
+
+    @property
+    def problems(self) -> list[Problem]:
+        patches = [(mesh.path, patch) for mesh in self.meshes for patch in mesh.patches]
+        return self.warnings + [problem for prim, patch in patches for problem in patch.problems(prim)]
+
+    def as_dict(self) -> dict[str, Any]:
+        """What `--json` prints. Frame None is the default time; stretch is RMS log(length / rest length)."""
+        return {
+            "meshes": [mesh.as_dict() for mesh in self.meshes],
+            "problems": [problem.as_dict() for problem in self.problems],
+        }
+
+    def text(self) -> str:
+        """The table for a terminal, and every problem."""
+        rows = [_HEADINGS, *(_row(patch) for mesh in self.meshes for patch in mesh.patches)]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = [_line(_HEADINGS, widths)]
+        for mesh in self.meshes:
+            counts = f"{mesh.vertex_count} points, {mesh.frame_count} frames"
+            lines.append(f"{mesh.path}: {counts}, rest from {mesh.rest_source}")
+            lines.extend(_line(_row(patch), widths) for patch in mesh.patches)
+        return "\n".join([*lines, *map(str, self.problems)])
+
+
+_HEADINGS = ["patch", "vertices", "edges", *STAGES, "ms/frame", "stretch", "slid", "at frame", "folded", "clamped"]
+
+
+def _row(patch: PatchReport) -> list[str]:
+    """Mean ms a frame by stage; stretch in the cache and slid, at the worst frame; the most folds and clamps."""
+    worst = patch.results[patch.worst]
+    return [
+        f"  {patch.label}",
+        str(patch.info.vertex_count),
+        str(patch.info.edge_count),
+        *(milliseconds_text(values.mean()) for values in patch.milliseconds().values()),
+        stretch_text(worst.stretch_before),
+        stretch_text(worst.stretch_after),
+        time_text(patch.frames[patch.worst]),
+        str(patch.column("folded_faces").max()),
+        str(patch.column("clamped_vertices").max()),
+    ]
+
+
+def _line(cells: list[str], widths: list[int]) -> str:
+    first, *others = (cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
+    return "  ".join([cells[0].ljust(len(first)), *others])

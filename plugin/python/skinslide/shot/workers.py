@@ -1,0 +1,72 @@
+"""The frames of a mesh worked on in a pool of threads, a few ahead, and given in order."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import TypeVar
+
+from pxr import Usd
+
+from skinslide.problems import FrameProblem, SliderError, StageError, core_problem
+from skinslide.shot.plan import frame_of
+from skinslide.stage.mesh import PatchedMesh
+
+T = TypeVar("T")
+Progress = Callable[[int, int], None]  # frames done, frames in all
+
+
+@contextmanager
+def pool_of(jobs: int, frame_count: int) -> Iterator[ThreadPoolExecutor]:
+    """Threads for frames; when the block ends, those that have not begun never do."""
+    pool = ThreadPoolExecutor(min(jobs, frame_count), "skinslide")
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def work_ahead(
+    mesh: PatchedMesh,
+    times: Iterable[Usd.TimeCode],
+    read: Callable[[Usd.TimeCode], Callable[[], T]],
+    pool: ThreadPoolExecutor,
+    in_flight: int,
+) -> Iterator[tuple[Usd.TimeCode, T]]:
+    """What the work on each time gives, in the order of times.
+
+    read       what of the stage a time needs, on this thread; gives the work, which is done in the pool
+    in_flight  times read before the first of them is waited for
+    Raises FrameProblem for the first time that cannot be had.
+    """
+    waiting: deque[tuple[Usd.TimeCode, Future[T]]] = deque()
+    for time in times:
+        waiting.append((time, _submit(time, read, pool)))
+        if len(waiting) > in_flight:
+            yield _take(mesh, *waiting.popleft())
+    while waiting:
+        yield _take(mesh, *waiting.popleft())
+
+
+def _submit(time: Usd.TimeCode, read: Callable[[Usd.TimeCode], Callable[[], T]], pool: ThreadPoolExecutor) -> Future[T]:
+    try:
+        work = read(time)
+    except FrameProblem as problem:
+        # Kept until its turn, so that the first bad frame is the one named, whatever jobs is.
+        failed: Future[T] = Future()
+        failed.set_exception(problem)
+        return failed
+    try:
+        return pool.submit(work)
+    except RuntimeError as error:  # the machine gives no more threads
+        raise StageError(f"{error}; ask for fewer jobs") from error
+
+
+def _take(mesh: PatchedMesh, time: Usd.TimeCode, future: Future[T]) -> tuple[Usd.TimeCode, T]:
+    try:
+        return time, future.result()
+    except SliderError as error:
+        names = [patch.name for patch in mesh.patches]
+        raise FrameProblem(core_problem(mesh.path, names, str(error), frame_of(time))) from error

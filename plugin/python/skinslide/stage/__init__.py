@@ -1,0 +1,1 @@
+"""Fetches what SkinSlideAPI means from a stage; writes nothing."""

@@ -1,0 +1,28 @@
+"""The marks on the values of a bake, so that none is taken for a cache and slid twice."""
+
+from __future__ import annotations
+
+from pxr import Sdf, Usd, UsdGeom
+
+MARK = "skinslide"  # in the customData of an attribute
+VALUES = ("default", "timeSamples", "spline")
+
+
+def mark(spec: Sdf.AttributeSpec) -> None:
+    """Says that the values of an attribute are a bake's."""
+    spec.SetInfoDictionaryValue("customData", MARK, "baked")
+
+
+def is_marked(spec: Sdf.PropertySpec) -> bool:
+    return MARK in (spec.GetInfo("customData") or {})
+
+
+def has_values(spec: Sdf.PropertySpec) -> bool:
+    return any(map(spec.HasInfo, VALUES))
+
+
+def baked_layer(prim: Usd.Prim) -> Sdf.Layer | None:
+    """The layer of an earlier bake that the points of a mesh, or their default value, come from."""
+    opinions = [spec for spec in UsdGeom.PointBased(prim).GetPointsAttr().GetPropertyStack() if has_values(spec)]
+    strongest = opinions[:1] + [spec for spec in opinions if spec.HasInfo("default")][:1]
+    return next((spec.layer for spec in strongest if is_marked(spec)), None)

@@ -1,0 +1,97 @@
+"""Opens a stage with its payloads; a `.skinslide` file as its text, so that its points are those of the cache."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+from pathlib import Path
+
+from pxr import Ar, Sdf, Tf, Usd, UsdUtils
+
+from skinslide.problems import StageError, usd_message
+from skinslide.registration import registered
+
+EXTENSION = ".skinslide"
+# Has the file format read the text of a `.skinslide` file and compute nothing.
+_TEXT_ONLY = {"live": "0"}
+
+
+def open_stage(path: str | Path) -> Usd.Stage:
+    """Opens a stage with its payloads. A `.skinslide` file opens as its text, with the points of the cache."""
+    path = str(path)
+    try:
+        if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+            raise StageError(f"cannot open {path}: it is not a regular file")
+        return Usd.Stage.Open(_text_of(Path(path)) if path.endswith(EXTENSION) else path)
+    except (Tf.ErrorException, OSError, ValueError) as error:
+        raise StageError(f"cannot open {path}: {why_not_opened(path, error)}") from error
+
+
+def _text_of(path: Path) -> Sdf.Layer:
+    """The text of a `.skinslide` file as a layer; where USD has no format for it, as an anonymous one."""
+    text = read_text_layer(path)  # whose errors are the better ones
+    if registered():
+        return Sdf.Layer.FindOrOpen(str(path), _TEXT_ONLY)
+    anchor_assets(text, path)
+    return text
+
+
+def is_live(layer: Sdf.Layer) -> bool:
+    """Whether a layer is a `.skinslide` file whose points are computed."""
+    return layer.GetFileFormat().formatId == "skinslide" and layer.GetFileFormatArguments().get("live") != "0"
+
+
+def why_not_opened(path: str, error: Exception) -> str:
+    """The cause of an exception that opening a file raised."""
+    if not path:
+        return "the name is empty"
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    if isinstance(error, Tf.ErrorException):
+        if os.path.isdir(path):
+            return "it is a folder"
+        try:
+            os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK))
+        except PermissionError as denied:
+            return denied.strerror
+        except OSError:
+            pass  # a resolver may know it under this name
+        if not Ar.GetResolver().Resolve(path):
+            return "there is no such file"
+        return usd_message(error)
+    return "it is not text"
+
+
+def read_text_layer(path: Path) -> Sdf.Layer:
+    """The USDA text of a file in an anonymous layer, as it stands."""
+    text = path.read_text(encoding="utf-8")
+    layer = Sdf.Layer.CreateAnonymous(f"{path.name}.usda")
+    if not text.startswith("#usda"):
+        raise StageError(f"cannot open {path}: it is not USDA text (the first line must be #usda 1.0)")
+    layer.ImportFromString(text)
+    return layer
+
+
+def anchor_assets(layer: Sdf.Layer, path: Path) -> None:
+    """Makes the relative asset paths of a layer mean what they mean in the file at `path`."""
+    resolver, anchor = Ar.GetResolver(), Ar.ResolvedPath(str(path.absolute()))
+
+    def anchored(asset: str) -> str:
+        # An expression is evaluated first and anchored by USD, or names a full path.
+        return asset if not asset or asset.startswith("`") else resolver.CreateIdentifier(asset, anchor)
+
+    UsdUtils.ModifyAssetPaths(layer, anchored)
+    layer.Traverse(Sdf.Path.absoluteRootPath, lambda at: _anchor_clip_template(layer, at, path.absolute().parent))
+
+
+def _anchor_clip_template(layer: Sdf.Layer, at: Sdf.Path, folder: Path) -> None:
+    """The template of value clips is a plain string, which UsdUtils passes over."""
+    spec = layer.GetPrimAtPath(at) if at.IsPrimPath() else None
+    if spec is None or not spec.HasInfo("clips"):
+        return
+    clips = dict(spec.GetInfo("clips"))
+    for name, clip_set in clips.items():
+        template = clip_set.get("templateAssetPath", "")
+        if template.startswith("."):
+            clips[name] = {**clip_set, "templateAssetPath": posixpath.normpath(folder.as_posix() + "/" + template)}
+    spec.SetInfo("clips", clips)

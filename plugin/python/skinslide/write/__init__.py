@@ -1,0 +1,1 @@
+"""Files and opinions, put in place whole or not at all."""

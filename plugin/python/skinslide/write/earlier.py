@@ -1,0 +1,140 @@
+"""What an earlier bake left on a stage: its values are marked, so that none is taken for a cache and slid twice.
+
+A bake into an edit target takes the place of the earlier one there:
+
+set aside the marked values            the stage is as if it had never been baked
+read, slide                            any error: bring the earlier bake back
+author                                 values of a cache in that layer move to skinSlide:cached:*, for the next time
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from pxr import Sdf, Usd
+
+from skinslide.stage import schema
+from skinslide.stage.marks import MARK, VALUES, has_values, is_marked, mark
+
+
+class EarlierBake:
+    """The edit target of a stage, without what an earlier bake left there."""
+
+    def __init__(self, target: Usd.EditTarget):
+        self._target, self._layer = target, target.GetLayer()
+        # Attributes as they were, by path; None where there was none.
+        self._before: dict[Sdf.Path, Sdf.AttributeSpec | None] = {}
+        self._store = Sdf.Layer.CreateAnonymous(".usda")
+
+    def set_aside(self, prims: Sequence[str] | None) -> None:
+        """Gives the attributes that are marked, everywhere or at and below `prims`, the values they had before."""
+        with Sdf.ChangeBlock():
+            for path in self._marked(prims):
+                self._keep(path)
+                self._revert(path)
+
+    def replace(self, attribute: Sdf.Path, samples: bool) -> None:
+        """Makes room for the values of a bake; those that are the cache's are kept beside them.
+
+        attribute  on the stage, which need not have it
+        samples    whether samples will be authored; the default value, which may be the rest pose, then stays
+        """
+        path = self._target.MapToSpecPath(attribute)
+        self._keep(path)
+        spec = self._layer.GetAttributeAtPath(path)
+        if not spec:
+            return
+        if has_values(spec):
+            self._keep(_cached(path))
+            Sdf.CopySpec(self._layer, path, self._layer, _cached(path))
+        _clear(spec, VALUES[1:] if samples else VALUES)
+
+    def mark(self, attribute: Usd.Attribute) -> None:
+        mark(self._layer.GetAttributeAtPath(self._target.MapToSpecPath(attribute.GetPath())))
+
+    def bring_back(self) -> None:
+        """Undoes everything."""
+        with Sdf.CleanupEnabler(), Sdf.ChangeBlock():
+            for path, before in self._before.items():
+                if before:
+                    Sdf.CopySpec(self._store, before.path, self._layer, path)
+                else:
+                    self._remove(path)
+
+    def tidy(self) -> None:
+        """Removes what the new bake did not need again."""
+        with Sdf.ChangeBlock():
+            for path in self._before:
+                spec = self._layer.GetAttributeAtPath(path)
+                if not spec or is_marked(spec):
+                    continue
+                self._remove(_cached(path))
+                if spec.hasOnlyRequiredFields:
+                    self._remove(path)
+
+    def _marked(self, prims: Sequence[str] | None) -> list[Sdf.Path]:
+        found: list[Sdf.Path] = []
+
+        def look(path: Sdf.Path) -> None:
+            spec = self._layer.GetAttributeAtPath(path) if path.IsPropertyPath() else None
+            if spec and is_marked(spec):
+                found.append(path)
+
+        for root in [Sdf.Path.absoluteRootPath] if prims is None else map(self._mapped, prims):
+            if root and self._layer.GetObjectAtPath(root):
+                self._layer.Traverse(root, look)
+        return list(dict.fromkeys(found))
+
+    def _mapped(self, prim: str) -> Sdf.Path:
+        valid = Sdf.Path.IsValidPathString(prim) and Sdf.Path(prim).IsAbsoluteRootOrPrimPath()
+        return self._target.MapToSpecPath(Sdf.Path(prim)) if valid else Sdf.Path()
+
+    def _keep(self, path: Sdf.Path) -> None:
+        if path in self._before:
+            return
+        self._before[path] = None
+        if self._layer.GetAttributeAtPath(path):
+            place = Sdf.CreatePrimInLayer(self._store, "/before").path.AppendProperty(f"at{len(self._before)}")
+            Sdf.CopySpec(self._layer, path, self._store, place)
+            self._before[path] = self._store.GetAttributeAtPath(place)
+
+    def _revert(self, path: Sdf.Path) -> None:
+        spec = self._layer.GetAttributeAtPath(path)
+        if self._layer.GetAttributeAtPath(_cached(path)):
+            self._keep(_cached(path))
+            Sdf.CopySpec(self._layer, _cached(path), self._layer, path)
+            return
+        _clear(spec, (*VALUES, "interpolation") if spec.name in (schema.STRETCH, schema.SLIDE) else VALUES)
+        data = dict(spec.GetInfo("customData"))
+        del data[MARK]
+        if data:
+            spec.SetInfo("customData", data)
+        else:
+            spec.ClearInfo("customData")
+
+    def _remove(self, path: Sdf.Path) -> None:
+        spec = self._layer.GetAttributeAtPath(path)
+        if spec:
+            spec.owner.RemoveProperty(spec)
+
+
+@contextmanager
+def replacing_earlier_bake(stage: Usd.Stage, prims: Sequence[str] | None) -> Iterator[EarlierBake]:
+    """The stage without the earlier bake in its edit target, which an exception brings back as it was."""
+    earlier = EarlierBake(stage.GetEditTarget())
+    try:
+        earlier.set_aside(prims)
+        yield earlier
+        earlier.tidy()
+    except BaseException:
+        earlier.bring_back()
+        raise
+
+
+def _cached(path: Sdf.Path) -> Sdf.Path:
+    """Where the values of an attribute are kept that a bake into the same layer replaces."""
+    return path.GetPrimOrPrimVariantSelectionPath().AppendProperty(f"{schema.CACHED}:{path.name}")
+
+
+def _clear(spec: Sdf.AttributeSpec, fields: Sequence[str]) -> None:
+    for field in fields:
+        spec.ClearInfo(field)

@@ -1,0 +1,126 @@
+"""What a bake writes: a layer of `over`s with nothing but what was slid, or the same in a stage's edit target."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import Any
+
+from pxr import Sdf, Usd, UsdGeom, Vt
+
+from skinslide.arrays.slider import version
+from skinslide.stage.marks import mark
+from skinslide.write.earlier import EarlierBake
+from skinslide.write.place import check_not_read, replacing, writing
+
+EXTENSIONS = (".usda", ".usdc", ".usd")
+_UNSAVED_BYTES = 256 << 20  # a crate file takes what is saved out of memory
+
+
+class OverLayer:
+    """Collects values for attributes of a stage in a layer of overs, typed as the stage has them."""
+
+    def __init__(self, layer: Sdf.Layer, output: Path | None = None):
+        """output  whose fault it is when the layer cannot be saved; None: it is never saved."""
+        self.layer, self._output = layer, output
+        self._saves_in_parts = not layer.anonymous and not layer.realPath.lower().endswith(".usda")
+        self._unsaved = 0
+
+    def set(self, attribute: Usd.Attribute, value: Any, time: Usd.TimeCode) -> None:
+        """Authors a sample, or the default value where time is the default time."""
+        self._set(self._spec(attribute), value, time)
+
+    def set_primvar(self, prim: Sdf.Path, name: str, values: Vt.FloatArray, time: Usd.TimeCode) -> None:
+        """Authors a float primvar by vertex, which the stage need not have."""
+        spec = self.layer.GetAttributeAtPath(prim.AppendProperty(name))
+        if not spec:
+            spec = self._new_spec(prim, name, Sdf.ValueTypeNames.FloatArray, Sdf.VariabilityVarying)
+            spec.SetInfo("interpolation", UsdGeom.Tokens.vertex)
+        self._set(spec, values, time)
+
+    def block(self, attribute: Usd.Attribute) -> None:
+        """Makes the attribute have no value at any time."""
+        spec = self._spec(attribute)
+        spec.ClearInfo("timeSamples")
+        spec.default = Sdf.ValueBlock()
+
+    def save(self) -> None:
+        with writing(self._output) if self._output else nullcontext():
+            if not self.layer.Save():
+                raise OSError("USD could not save it")
+        self._unsaved = 0
+
+    def _set(self, spec: Sdf.AttributeSpec, value: Any, time: Usd.TimeCode) -> None:
+        if time.IsDefault():
+            spec.default = value
+        else:
+            self.layer.SetTimeSample(spec.path, time.GetValue(), value)
+        self._unsaved += 4 * getattr(value, "size", 0)
+        if self._saves_in_parts and self._unsaved > _UNSAVED_BYTES:
+            self.save()
+
+    def _spec(self, attribute: Usd.Attribute) -> Sdf.AttributeSpec:
+        spec = self.layer.GetAttributeAtPath(attribute.GetPath())
+        kind = (attribute.GetTypeName(), attribute.GetVariability())
+        return spec or self._new_spec(attribute.GetPrimPath(), attribute.GetName(), *kind)
+
+    def _new_spec(
+        self, prim: Sdf.Path, name: str, type_name: Sdf.ValueTypeName, variability: Sdf.Variability
+    ) -> Sdf.AttributeSpec:
+        spec = Sdf.AttributeSpec(Sdf.CreatePrimInLayer(self.layer, prim), name, type_name, variability)
+        mark(spec)
+        return spec
+
+
+@contextmanager
+def layer_in_place(output: Path, stage: Usd.Stage) -> Iterator[OverLayer]:
+    """A layer that becomes `output` when the block ends. An exception or a signal leaves `output` as it was."""
+    with replacing(output) as partial:
+        with writing(output):
+            overs = OverLayer(Sdf.Layer.CreateNew(str(partial)), output)
+        yield overs
+        _describe(overs.layer, stage)
+        overs.save()
+        check_not_read(output, stage)  # some layers, such as value clips, are not opened before they are needed
+
+
+def author_on_stage(overs: OverLayer, stage: Usd.Stage, earlier: EarlierBake) -> None:
+    """Copies every value into the stage's edit target, through the target's time offset."""
+    paths: list[Sdf.Path] = []
+    overs.layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)
+    for path in filter(Sdf.Path.IsPropertyPath, paths):
+        times = overs.layer.ListTimeSamplesForPath(path)
+        earlier.replace(path, samples=bool(times))
+        attribute = _attribute_for(overs.layer.GetAttributeAtPath(path), stage)
+        for time in times:
+            attribute.Set(overs.layer.QueryTimeSample(path, time), time)
+        default = overs.layer.GetAttributeAtPath(path).default
+        if isinstance(default, Sdf.ValueBlock):
+            attribute.Block()
+        elif default is not None:
+            attribute.Set(default)
+        earlier.mark(attribute)
+
+
+def _attribute_for(spec: Sdf.AttributeSpec, stage: Usd.Stage) -> Usd.Attribute:
+    """The stage's attribute; of a primvar that it need not have, made in the edit target."""
+    if not spec.HasInfo("interpolation"):
+        return stage.GetAttributeAtPath(spec.path)
+    prim, name = stage.GetPrimAtPath(spec.path.GetPrimPath()), spec.name.removeprefix("primvars:")
+    return UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, spec.typeName, spec.GetInfo("interpolation")).GetAttr()
+
+
+def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
+    """Gives the layer the stage's clock and units, so that it reads the same alone and sublayered."""
+    layer.comment = f"Slid by skinslide {version()}. Sublayer this above the cache."
+    layer.timeCodesPerSecond = stage.GetTimeCodesPerSecond()
+    layer.framesPerSecond = stage.GetFramesPerSecond()
+    if stage.HasAuthoredTimeCodeRange():
+        layer.startTimeCode, layer.endTimeCode = stage.GetStartTimeCode(), stage.GetEndTimeCode()
+    root = layer.pseudoRoot
+    root.SetInfo(UsdGeom.Tokens.upAxis, UsdGeom.GetStageUpAxis(stage))
+    root.SetInfo(UsdGeom.Tokens.metersPerUnit, UsdGeom.GetStageMetersPerUnit(stage))
+    default = stage.GetDefaultPrim()  # invalid where the stage names none, or one that is not there
+    if default and layer.GetPrimAtPath(default.GetPath()):
+        layer.defaultPrim = stage.GetRootLayer().defaultPrim
+    elif layer.rootPrims:
+        layer.defaultPrim = layer.rootPrims[0].name

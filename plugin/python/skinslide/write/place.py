@@ -1,0 +1,208 @@
+"""The files that are written: where one may be, and putting it in place in one step or not at all."""
+
+import glob
+import os
+import re
+import secrets
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from pxr import Tf, Usd, UsdUtils
+
+from skinslide.problems import StageError, UsageError, usd_message
+
+_ABANDONED = 24 * 60 * 60  # seconds
+
+
+def check_output(output: Path, extensions: Sequence[str], made: Path | None = None) -> None:
+    """Raises UsageError for an output that cannot be, before any work is done.
+
+    made  a folder that will be made, where it is missing, before the output is written
+    """
+    if output.suffix.lower() not in extensions:
+        raise UsageError(f"output {output}: the name must end in {', '.join(extensions)}")
+    check_place(output, lambda path: _fault(path, made))
+
+
+def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
+    """Raises UsageError where something is wrong with an output: with what it says, or with being looked at."""
+    try:
+        fault = find_fault(output)
+    except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
+        fault = getattr(error, "strerror", None) or str(error)
+    if fault:
+        raise UsageError(f"output {output}: {fault}")
+
+
+def _fault(output: Path, made: Path | None) -> str | None:
+    """Why a file cannot be put at the output."""
+    target = output.resolve()  # what a link leads to is what is replaced
+    folder = target.parent
+    if made and folder == made.resolve():
+        folder = nearest_folder(folder)
+    if target.suffix.lower() != output.suffix.lower():
+        return f"is a link to {target}, whose name says that it is in another format"
+    if not folder.is_dir():
+        return f"the folder {folder} does not exist"
+    if target.is_dir():
+        return "is a folder"
+    if target.exists() and not target.is_file():
+        return "is not a regular file"
+    # A partial file has a longer name; on Linux a name has at most 255 bytes.
+    if len(os.fsencode(partial_name(target))) > os.pathconf(folder, "PC_NAME_MAX"):
+        return "the name is too long"
+    if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
+        return "is not writable"
+    return None
+
+
+def nearest_folder(folder: Path) -> Path:
+    """The folder itself, or the nearest above it that is there; else what is there in its place."""
+    nearest = folder.resolve()
+    while not nearest.exists():
+        nearest = nearest.parent
+    return nearest
+
+
+def partial_name(output: Path, token: str = 8 * "0") -> str:
+    """The name under which an output is written, beside it."""
+    return f".{output.stem}.{token}{output.suffix}"
+
+
+def check_not_input(output: Path, stage: Usd.Stage, *others: str | os.PathLike) -> None:
+    """Raises UsageError where the output is a file that the stage may read, in whatever variant and clip."""
+    if output.exists():
+        Inputs(stage, *others).refuse(output)
+
+
+def check_not_read(output: Path, stage: Usd.Stage) -> None:
+    """Raises UsageError where the output is a file that the stage has read so far."""
+    _refuse(output, _read_so_far(stage))
+
+
+class Inputs:
+    """The files that a stage may read, in whatever variant and clip."""
+
+    def __init__(self, stage: Usd.Stage, *others: str | os.PathLike):
+        self._stage = stage
+        self._known = _identities([*map(os.fspath, others), *_dependencies(stage)])
+
+    def refuse(self, output: Path) -> None:
+        """Raises UsageError where the output is one of them, or one that the stage has read so far."""
+        _refuse(output, self._known | _read_so_far(self._stage))
+
+
+def _read_so_far(stage: Usd.Stage) -> set[tuple[int, int]]:
+    return _identities([layer.realPath for layer in stage.GetUsedLayers()])
+
+
+def _refuse(output: Path, files: set[tuple[int, int]]) -> None:
+    if files & _identities([str(output)]):
+        raise UsageError(f"output {output}: the stage reads this file; name another, or open the stage without it")
+
+
+def _identities(files: Sequence[str]) -> set[tuple[int, int]]:
+    """Of those that are there: whatever they are called, and through links. What cannot be looked at cannot be read."""
+    found = set()
+    for file in files:
+        with suppress(OSError, ValueError):
+            status = os.stat(file)
+            found.add((status.st_dev, status.st_ino))
+    return found
+
+
+def _dependencies(stage: Usd.Stage) -> list[str]:
+    """Every file that the layers of a stage name, and those that these name in turn."""
+    found: list[str] = []
+
+    def collect(layer: Any, named: UsdUtils.DependencyInfo) -> UsdUtils.DependencyInfo:
+        clips = "#" in named.assetPath and named.dependencies
+        files = _clips(named) if clips else [named.assetPath, *named.dependencies]
+        found.extend(layer.ComputeAbsolutePath(file) for file in files if file)
+        return UsdUtils.DependencyInfo() if clips else named  # USD would look for a file of the template's name
+
+    with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
+        UsdUtils.ComputeAllDependencies(stage.GetRootLayer().identifier, collect)
+    return found
+
+
+def _clips(template: UsdUtils.DependencyInfo) -> list[str]:
+    """The files that a template of value clips stands for; USD gives those with anything in place of the number."""
+    wanted = re.compile("-?[0-9]+".join(map(re.escape, re.split("#+", template.assetPath))))
+    return [file for file in template.dependencies if wanted.fullmatch(file)]
+
+
+@contextmanager
+def replacing(output: Path) -> Iterator[Path]:
+    """A new file that becomes `output` when the block ends. An exception or a signal leaves `output` as it was."""
+    output = output.resolve()
+    partial = output.with_name(partial_name(output, secrets.token_hex(4)))
+    with signals_as_exceptions():
+        try:
+            with writing(output):
+                _remove_abandoned(output)
+                partial.touch(exist_ok=False)
+                if output.exists():
+                    shutil.copymode(output, partial)
+            yield partial
+            with writing(output):
+                _flush(partial)
+                os.replace(partial, output)
+        finally:
+            partial.unlink(missing_ok=True)
+
+
+@contextmanager
+def writing(output: Path) -> Iterator[None]:
+    """Whatever fails here is said to be the output's fault."""
+    try:
+        yield
+    except (OSError, Tf.ErrorException) as error:
+        reason = usd_message(error) if isinstance(error, Tf.ErrorException) else str(error)
+        raise StageError(f"output {output}: {reason}") from error
+
+
+def _remove_abandoned(output: Path) -> None:
+    """Removes what earlier writers of this output left when they were killed, a day ago or more."""
+    for other in output.parent.glob(glob.escape(partial_name(output, "")[: -len(output.suffix)]) + "*"):
+        ours = re.fullmatch(
+            re.escape(partial_name(output, "\0")).replace("\0", "[0-9a-f]{8}") + r"(\.\w+)?", other.name
+        )
+        with suppress(OSError):
+            if ours and other.is_file() and time.time() - other.stat().st_mtime > _ABANDONED:
+                other.unlink()
+
+
+def _flush(file: Path) -> None:
+    """Without this a machine that loses power may be left with the new name and none of the bytes."""
+    descriptor = os.open(file, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def signals_as_exceptions() -> Iterator[None]:
+    """Lets `finally` run when the farm ends the process: SIGTERM and SIGHUP become SystemExit."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def leave(number: int, _frame: Any) -> None:
+        raise SystemExit(128 + number)
+
+    numbers = [number for number in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(number) is signal.SIG_DFL]
+    for number in numbers:
+        signal.signal(number, leave)
+    try:
+        yield
+    finally:
+        for number in numbers:
+            signal.signal(number, signal.SIG_DFL)
