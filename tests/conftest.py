@@ -10,6 +10,10 @@ import skinslide  # noqa: F401 (registers the file format before any test opens 
 from repository import load
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--record", action="store_true", help="record the digests of what is baked")
+
+
 @pytest.fixture
 def public_folder():
     """A folder that every user can reach, unlike pytest's."""
