@@ -11,12 +11,11 @@ git ls-files -z '*.c' '*.h' '*.cpp' | xargs -0 clang-format --dry-run --Werror
 "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .
 PYTHONPATH=plugin/python "$venv/bin/lint-imports" --no-cache --no-logo
 
+# What CMakePresets.json has by that name, in build/NAME.
 c_tests() {
-    local build=$root/build/$1
-    shift
-    cmake -S "$root" -B "$build" -G Ninja -DSKINSLIDE_TESTS=ON "$@" >"$build.log" || { cat "$build.log"; exit 1; }
-    cmake --build "$build" >>"$build.log" || { cat "$build.log"; exit 1; }
-    ctest --test-dir "$build" --output-on-failure --no-tests=error -j "$(nproc)"
+    local log=build/$1.log
+    { cmake --preset "$1" && cmake --build --preset "$1"; } >"$log" || { cat "$log"; exit 1; }
+    ctest --preset "$1" -j "$(nproc)"
 }
 
 say "Device of the lookup egl"
@@ -25,7 +24,7 @@ say "Device of the lookup egl"
 say "C tests"
 c_tests tests
 say "C tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-c_tests sanitize -DSKINSLIDE_SANITIZE=ON -DSKINSLIDE_FILE_FORMAT=ON -DPython_EXECUTABLE="$python"
+c_tests sanitize
 
 # Leaks are not counted: Python and USD never free what they keep. libstdc++ goes first too, or exceptions are not seen.
 say "Mutated .skinslide files under AddressSanitizer"
