@@ -2,12 +2,12 @@
 # Sets up the machine and runs every test: format, lint, the C tests plain and sanitized, the Python tests.
 # Arguments go to pytest: ./tests/run.sh -k bake
 set -euo pipefail
-EXTRA_PACKAGES=(libcmocka-dev clang-format chromium chromium-driver)
+EXTRA_PACKAGES=(libcmocka-dev chromium chromium-driver)
 . "$(dirname "$0")/../examples/setup.sh"
 cd "$root"
 
 say "Format and lint"
-git ls-files -z '*.c' '*.h' '*.cpp' | xargs -0 clang-format --dry-run --Werror
+git ls-files -z '*.c' '*.h' '*.cpp' | xargs -0 "$venv/bin/clang-format" --dry-run --Werror
 "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .
 PYTHONPATH=plugin/python "$venv/bin/lint-imports" --no-cache --no-logo
 
