@@ -6,13 +6,12 @@ prints a line an example. Writes OUTDIR/id_buffers.png: the textures of the elbo
 chequer at the frame where the cache has most stretch, a colour a face.
 """
 
-import struct
 import sys
-import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 from pxr import Usd
 
 from skinslide import Frame, Lookup, choose_lookup
@@ -58,19 +57,6 @@ def picture(mesh: PatchedMesh) -> np.ndarray:
     return colours[texels[::-1]]
 
 
-def write_png(path: Path, pixels: np.ndarray) -> None:
-    """Writes uint8 (height, width, 3) as PNG."""
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    height, width, _ = pixels.shape
-    rows = b"".join(b"\0" + row.tobytes() for row in pixels)  # each row unfiltered
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    compressed = zlib.compress(rows, 9)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", compressed) + chunk(b"IEND", b""))
-
-
 def main() -> None:
     """Prints the shares, then where the picture is."""
     folder = Path(sys.argv[1])
@@ -86,7 +72,7 @@ def main() -> None:
     print("The paper has the 3x3 texels suffice; what walked is what they missed.")
     gap = np.full((SIDE, GAP, 3), 255, np.uint8)
     panels = [part for name in PICTURED for part in (gap, picture(open_mesh(folder / name / "stage.usda")))][1:]
-    write_png(folder / "id_buffers.png", np.hstack(panels))
+    Image.fromarray(np.hstack(panels)).save(folder / "id_buffers.png", optimize=True)
     print(f"\n{folder}/id_buffers.png: the textures of {', '.join(PICTURED)}")
     if differing:
         sys.exit(f"error: the lookups differ on {', '.join(differing)}")
