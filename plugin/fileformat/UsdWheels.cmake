@@ -3,7 +3,10 @@
 # The wheels pxr-*-dev have pxr/sdf/layer.h where OpenUSD has pxr/usd/sdf/layer.h: a folder of forwarding headers gives those
 # names. usd-core holds TBB 2020, the wheels ask for a newer one whose classes have other sizes: the headers of 2020 go first.
 find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
-set(SKINSLIDE_USD_VERSION 0.26.8)
+# pyproject.toml names this version too; tests/install/test_packaging.py compares.
+set(usd_wheels 26.8)
+set(tbb_requirement tbb-devel==2020.0.133)
+set(SKINSLIDE_USD_VERSION 0.${usd_wheels})
 set(base_libraries arch tf gf js trace work plug vt ts)
 set(usd_libraries ar sdf pcp)
 
@@ -13,11 +16,12 @@ execute_process(
   OUTPUT_VARIABLE found
   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
   RESULT_VARIABLE missing)
-if(missing OR NOT found MATCHES "^26\\.8;")
-  message(FATAL_ERROR "The file format needs USD's headers: ${Python_EXECUTABLE} -m pip install pxr-pcp-dev==26.8, "
+list(POP_FRONT found version)
+if(missing OR NOT version STREQUAL usd_wheels)
+  message(FATAL_ERROR "The file format needs USD's headers: ${Python_EXECUTABLE} -m pip install pxr-pcp-dev==${usd_wheels}, "
                       "or a full OpenUSD with -Dpxr_DIR=..., or leave it out with -DSKINSLIDE_FILE_FORMAT=OFF")
 endif()
-list(GET found 1 wheels)
+set(wheels "${found}")
 
 # ---- Forwarding headers ----
 
@@ -46,7 +50,6 @@ endforeach()
 
 # ---- The headers of TBB 2020: of this Python, else fetched, as they are a wheel that depends on one that does not exist ----
 
-set(tbb_requirement tbb-devel==2020.0.133)
 execute_process(
   COMMAND "${Python_EXECUTABLE}" -c "import sysconfig; print(sysconfig.get_path('data'))"
   OUTPUT_VARIABLE prefix
