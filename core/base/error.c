@@ -37,5 +37,5 @@ const char *skinslide_status_text(skinslide_status status) {
 }
 
 const char *skinslide_version(void) {
-    return SKINSLIDE_VERSION;
+    return SKINSLIDE_VERSION_TEXT;
 }

@@ -2,12 +2,13 @@
 
 import ast
 import importlib.metadata
+import os
 import pkgutil
 import re
-import shutil
 import subprocess
 import sys
 import textwrap
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -108,19 +109,62 @@ def test_an_interruption_while_the_command_is_loaded(tmp_path):
     assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
 
 
-@pytest.mark.parametrize("header", ["skinslide.h", "picture.h"])
-def test_the_headers_are_the_manual(header):
-    installed = PACKAGE / "include" / "skinslide" / header
-    assert installed.read_text() == (ROOT / "core" / "include" / "skinslide" / header).read_text()
+def test_the_headers_are_the_manual():
+    written, installed = ROOT / "core" / "include" / "skinslide", PACKAGE / "include" / "skinslide"
+    headers = {path.name: path.read_text() for path in installed.iterdir()}
+    major, minor, patch = skinslide.__version__.split(".")
+    numbers = [("MAJOR", major), ("MINOR", minor), ("PATCH", patch), ("TEXT ", f'"{skinslide.__version__}"')]
+    defined = [line for line in headers.pop("version.h").splitlines() if line.startswith("#define SKINSLIDE_VERSION_")]
+    assert defined[1:] == [f"#define SKINSLIDE_VERSION_{name} {value}" for name, value in numbers]
+    assert headers == {path.name: path.read_text() for path in written.glob("*.h")}
 
 
-def test_a_project_in_c_or_cpp_builds_against_the_package(tmp_path):
-    assert shutil.which("cmake")
-    configure = ["cmake", "-S", ROOT / "tests" / "consumer", "-B", tmp_path, f"-Dskinslide_DIR={skinslide.cmake_dir()}"]
+def libraries() -> dict[str, Path]:
+    """What an installed skinslide has of machine code, by the names that each may give away."""
+    (core,), (plugin,) = (list((PACKAGE / "lib").glob(name)) for name in ("libskinslide*", "skinslideFileFormat*"))
+    (binding,) = PACKAGE.glob("_core.*")
+    return {"skinslide_": core, "skinslideFormat": plugin, "PyInit__core": binding}
+
+
+def test_libraries_give_their_own_names_away_and_nothing_else():
+    for prefix, library in libraries().items():
+        listed = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True)
+        names = [line.split()[-1] for line in listed.stdout.splitlines()]
+        assert names and [name for name in names if not name.startswith(prefix)] == [], library
+
+
+def test_the_core_is_found_by_a_name_with_its_minor():
+    """So that the copies of two versions in one process are two libraries."""
+    major, minor, _patch = skinslide.__version__.split(".")
+    soname = f"libskinslide.so.{major}.{minor}"
+    core, *others = libraries().values()
+    assert core.name == soname
+
+    def dynamic(library: Path) -> str:
+        return subprocess.run(["readelf", "-d", library], capture_output=True, text=True, check=True).stdout
+
+    assert re.search(rf"SONAME.*\[{re.escape(soname)}\]", dynamic(core))
+    assert all(re.search(rf"NEEDED.*\[{re.escape(soname)}\]", dynamic(other)) for other in others)
+
+
+def test_one_version_of_usd():
+    built_for = re.search(r"set\(usd_wheels ([0-9.]+)\)", (ROOT / "plugin/fileformat/UsdWheels.cmake").read_text())[1]
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    named = [*settings["build-system"]["requires"], *settings["project"]["dependencies"]]
+    assert {f"pxr-pcp-dev=={built_for}", f"usd-core=={built_for}"} <= set(named)
+
+
+def test_a_project_in_c_builds_against_the_package(tmp_path):
+    """Found by CMake, and by pkg-config."""
+    consumer, environment = (
+        ROOT / "tests" / "consumer",
+        os.environ | {"PKG_CONFIG_PATH": str(PACKAGE / "lib/pkgconfig")},
+    )
+    configure = ["cmake", "-S", consumer, "-B", tmp_path, f"-Dskinslide_DIR={skinslide.cmake_dir()}"]
     subprocess.run(configure, capture_output=True, check=True)
-    subprocess.run(["cmake", "--build", tmp_path], capture_output=True, check=True)
-    for program in ("consumer_c", "consumer_cpp"):
-        done = subprocess.run([tmp_path / program], capture_output=True, text=True, check=True)
+    subprocess.run(["cmake", "--build", tmp_path, "--target", "consumer_c"], capture_output=True, check=True)
+    for command in ([tmp_path / "consumer_c"], ["sh", consumer / "pkg-config.sh", "cc", consumer / "main.c"]):
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
         version, middle = done.stdout.split()
         assert version == skinslide.__version__
         # From 1.5, where it was pulled to, it goes most of the way back to 1.

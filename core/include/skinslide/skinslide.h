@@ -22,6 +22,7 @@
 #define SKINSLIDE_H
 
 #ifndef SKINSLIDE_CDEF /* defined only where the declarations are read by a binding generator */
+#include <skinslide/version.h>
 #include <stdint.h>
 #ifdef __cplusplus
 extern "C" {

@@ -96,7 +96,7 @@ static void statuses_have_names(void **state) {
     assert_string_equal(skinslide_status_text(SKINSLIDE_BAD_PATCH), "the patch is not a disk with holes");
     assert_string_equal(skinslide_status_name(SKINSLIDE_STATUS_COUNT), "?");
     assert_string_equal(skinslide_status_text((skinslide_status)-1), "?");
-    assert_string_equal(skinslide_version(), SKINSLIDE_VERSION);
+    assert_string_equal(skinslide_version(), SKINSLIDE_VERSION_TEXT);
 }
 
 /* ---- What it refuses ---- */
