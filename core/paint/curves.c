@@ -1,5 +1,5 @@
 /* Curves drawn near a mesh: which edges lie by them, and whether along or across them. */
-#include "mesh.h"
+#include "paint.h"
 #include "vector.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Makes OpenEXR files in memory by OpenEXR's own C library, which only this file and exrread.c know. */
-#include "base.h"
+#include "paint.h"
 
 #include <openexr.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* The other side of a symmetric mesh: which face and which vertices mirror those of a patch. */
-#include "mesh.h"
+#include "paint.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,32 +1,33 @@
-/* Maps painted in a mesh's texture coordinates: bilinear samples at the corners of faces, as one value a vertex. */
-#include "mesh.h"
+/* Textures painted in a mesh's texture coordinates: bilinear samples at the corners of faces, as one value a vertex. */
 #include "paint.h"
 
 #include <math.h>
 
 /* Faces of a mesh, and where their corners begin. */
 typedef struct corners {
-    const skinslide_mesh *mesh;
-    const float *st;
-    int32_t *start; /* [face_count + 1] */
+    const skinslide_texture_layout *layout;
+    int32_t *start; /* [mesh face_count + 1] */
 } corners;
 
-static skinslide_status check(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count, const float *st,
-                              skinslide_error *error) {
-    skinslide_status status = ss_check_mesh(mesh, error);
+static skinslide_status check(const skinslide_texture_layout *layout, skinslide_error *error) {
+    if (!layout)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no layout");
+    skinslide_status status = ss_check_mesh(layout->mesh, error);
     if (status)
         return status;
-    if (!st || face_count < 0 || (face_count && !faces))
+    if (!layout->st || layout->face_count < 0 || (layout->face_count && !layout->faces))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no texture coordinates, or no faces");
-    for (int32_t i = 0; i < face_count; i++)
-        if (faces[i] < 0 || faces[i] >= mesh->face_count)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", faces[i], mesh->face_count);
+    for (int32_t i = 0; i < layout->face_count; i++)
+        if (layout->faces[i] < 0 || layout->faces[i] >= layout->mesh->face_count)
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", layout->faces[i],
+                           layout->mesh->face_count);
     return SKINSLIDE_OK;
 }
 
-static skinslide_status list_corners(const skinslide_mesh *mesh, const float *st, ss_memory *memory, corners *out,
+static skinslide_status list_corners(const skinslide_texture_layout *layout, ss_memory *memory, corners *out,
                                      skinslide_error *error) {
-    *out = (corners){mesh, st, SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1)};
+    const skinslide_mesh *mesh = layout->mesh;
+    *out = (corners){layout, SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1)};
     if (memory->failed)
         return ss_out_of_memory(error);
     for (int32_t f = 0; f < mesh->face_count; f++)
@@ -47,13 +48,13 @@ static skinslide_status face_tiles(const corners *c, int32_t face, int32_t *tile
     double middle[2] = {0, 0};
     int32_t begin = c->start[face], end = c->start[face + 1];
     for (int32_t i = begin; i < end; i++) {
-        const float *st = c->st + 2 * (int64_t)i;
+        const float *st = c->layout->st + 2 * (int64_t)i;
         if (!isfinite(st[0]) || !isfinite(st[1]))
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
         middle[0] += (double)st[0] / (end - begin), middle[1] += (double)st[1] / (end - begin);
     }
     for (int32_t i = begin; i < end; i++) {
-        const float *st = c->st + 2 * (int64_t)i;
+        const float *st = c->layout->st + 2 * (int64_t)i;
         double column = tile_of(st[0], middle[0]), row = tile_of(st[1], middle[1]);
         if (column < 0 || column >= SS_TILE_COLUMNS || row < 0 || row >= SS_TILE_ROWS)
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g), which is in no UDIM tile", face, st[0],
@@ -63,18 +64,17 @@ static skinslide_status face_tiles(const corners *c, int32_t face, int32_t *tile
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_map_tiles(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count, const float *st,
-                                     int32_t *tiles, skinslide_error *error) {
-    skinslide_status status = check(mesh, faces, face_count, st, error);
+skinslide_status skinslide_texture_tiles(const skinslide_texture_layout *layout, int32_t *tiles, skinslide_error *error) {
+    skinslide_status status = check(layout, error);
     if (status || !tiles)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the tiles");
     ss_memory memory = {0};
     corners c;
-    int32_t *found = SS_NEW(&memory, int32_t, mesh->index_count);
-    status = list_corners(mesh, st, &memory, &c, error);
-    for (int32_t i = 0; !status && i < face_count; i++)
-        status = face_tiles(&c, faces[i], found, error);
-    for (int32_t i = 0; !status && i < mesh->index_count; i++)
+    int32_t *found = SS_NEW(&memory, int32_t, layout->mesh->index_count);
+    status = list_corners(layout, &memory, &c, error);
+    for (int32_t i = 0; !status && i < layout->face_count; i++)
+        status = face_tiles(&c, layout->faces[i], found, error);
+    for (int32_t i = 0; !status && i < layout->mesh->index_count; i++)
         tiles[i] = found[i];
     ss_free(&memory);
     return status;
@@ -118,7 +118,7 @@ static double sample(const skinslide_image *image, double s, double t) {
     return sum;
 }
 
-static const skinslide_map_tile *find_tile(const skinslide_map_tile *tiles, int32_t tile_count, int32_t number) {
+static const skinslide_texture_tile *find_tile(const skinslide_texture_tile *tiles, int32_t tile_count, int32_t number) {
     for (int32_t k = 0; k < tile_count; k++)
         if (tiles[k].number == number || tiles[k].number == 0)
             return &tiles[k];
@@ -126,7 +126,7 @@ static const skinslide_map_tile *find_tile(const skinslide_map_tile *tiles, int3
 }
 
 /* The texture beyond the border of a numbered tile is another tile's, so its image is clamped whatever the file says. */
-static double sample_tile(const skinslide_map_tile *tile, const float st[2]) {
+static double sample_tile(const skinslide_texture_tile *tile, const float st[2]) {
     if (tile->number == 0)
         return sample(tile->image, st[0], st[1]);
     skinslide_image image = *tile->image;
@@ -136,13 +136,13 @@ static double sample_tile(const skinslide_map_tile *tile, const float st[2]) {
 }
 
 /* Adds the samples of a face's corners to their vertices: sum and count. */
-static skinslide_status sample_face(const corners *c, int32_t face, const int32_t *numbers, const skinslide_map_tile *tiles,
+static skinslide_status sample_face(const corners *c, int32_t face, const int32_t *numbers, const skinslide_texture_tile *tiles,
                                     int32_t tile_count, double (*sums)[2], skinslide_error *error) {
     for (int32_t i = c->start[face]; i < c->start[face + 1]; i++) {
-        const float *st = c->st + 2 * (int64_t)i;
+        const float *st = c->layout->st + 2 * (int64_t)i;
         if (!isfinite(st[0]) || !isfinite(st[1]))
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
-        const skinslide_map_tile *tile = find_tile(tiles, tile_count, numbers[i]);
+        const skinslide_texture_tile *tile = find_tile(tiles, tile_count, numbers[i]);
         if (!tile)
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g), but there is no tile %d", face, st[0], st[1],
                            numbers[i]);
@@ -150,13 +150,13 @@ static skinslide_status sample_face(const corners *c, int32_t face, const int32_
         if (!isfinite((float)value))
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "the map is %g at st (%g, %g), on face %d",
                            isnan(value) ? (double)NAN : value, st[0], st[1], face);
-        int32_t vertex = c->mesh->face_indices[i];
+        int32_t vertex = c->layout->mesh->face_indices[i];
         sums[vertex][0] += value, sums[vertex][1] += 1;
     }
     return SKINSLIDE_OK;
 }
 
-static skinslide_status check_tiles(const skinslide_map_tile *tiles, int32_t tile_count, skinslide_error *error) {
+static skinslide_status check_tiles(const skinslide_texture_tile *tiles, int32_t tile_count, skinslide_error *error) {
     if (!tiles || tile_count < 1)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tiles");
     for (int32_t k = 0; k < tile_count; k++) {
@@ -171,10 +171,9 @@ static skinslide_status check_tiles(const skinslide_map_tile *tiles, int32_t til
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_map_sample(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count, const float *st,
-                                      const skinslide_map_tile *tiles, int32_t tile_count, float *values,
-                                      skinslide_error *error) {
-    skinslide_status status = check(mesh, faces, face_count, st, error);
+skinslide_status skinslide_texture_sample(const skinslide_texture_layout *layout, const skinslide_texture_tile *tiles,
+                                          int32_t tile_count, float *values, skinslide_error *error) {
+    skinslide_status status = check(layout, error);
     if (!status)
         status =
             values ? check_tiles(tiles, tile_count, error) : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the values");
@@ -182,14 +181,14 @@ skinslide_status skinslide_map_sample(const skinslide_mesh *mesh, const int32_t 
         return status;
     ss_memory memory = {0};
     corners c;
-    int32_t *numbers = SS_NEW(&memory, int32_t, mesh->index_count);
-    double(*sums)[2] = ss_new(&memory, mesh->vertex_count, sizeof *sums);
-    status = list_corners(mesh, st, &memory, &c, error);
-    for (int32_t i = 0; !status && tiles[0].number && i < face_count; i++)
-        status = face_tiles(&c, faces[i], numbers, error);
-    for (int32_t i = 0; !status && i < face_count; i++)
-        status = sample_face(&c, faces[i], numbers, tiles, tile_count, sums, error);
-    for (int32_t v = 0; !status && v < mesh->vertex_count; v++)
+    int32_t *numbers = SS_NEW(&memory, int32_t, layout->mesh->index_count);
+    double(*sums)[2] = ss_new(&memory, layout->mesh->vertex_count, sizeof *sums);
+    status = list_corners(layout, &memory, &c, error);
+    for (int32_t i = 0; !status && tiles[0].number && i < layout->face_count; i++)
+        status = face_tiles(&c, layout->faces[i], numbers, error);
+    for (int32_t i = 0; !status && i < layout->face_count; i++)
+        status = sample_face(&c, layout->faces[i], numbers, tiles, tile_count, sums, error);
+    for (int32_t v = 0; !status && v < layout->mesh->vertex_count; v++)
         values[v] = sums[v][1] > 0 ? (float)(sums[v][0] / sums[v][1]) : 1;
     ss_free(&memory);
     return status;

@@ -225,7 +225,7 @@ static skinslide_status prepare(map *m, ss_memory *memory, const float *values, 
         return ss_out_of_memory(error);
     for (int32_t f = 0; f < mesh->face_count; f++)
         m->face_start[f + 1] = m->face_start[f] + mesh->face_counts[f];
-    skinslide_status status = skinslide_map_tiles(mesh, layout->faces, layout->face_count, layout->st, m->tiles, error);
+    skinslide_status status = skinslide_texture_tiles(layout, m->tiles, error);
     return status ? status : check_values(m, values, error);
 }
 

@@ -33,6 +33,10 @@ struct Map::Corners {
     skinslide_mesh mesh; // without points
     const std::vector<int32_t> &faces;
     std::vector<float> st;
+
+    skinslide_texture_layout layout() const { // points into this
+        return {&mesh, faces.data(), static_cast<int32_t>(faces.size()), st.data()};
+    }
 };
 
 Map::Map(const Composition &composition, const Prim &mesh, const std::string &patch, const std::string &control)
@@ -82,16 +86,16 @@ std::vector<float> Map::at(double time, const Topology &topology, const std::vec
 
 std::vector<float> Map::sample(const std::string &path, const Corners &corners, Files *files) const {
     std::vector<Image> images;
-    std::vector<skinslide_map_tile> used;
+    std::vector<skinslide_texture_tile> used;
     for (int32_t number : tiles(corners, path)) {
         std::string file = number ? TfStringReplace(path, udim, std::to_string(number)) : path;
         images.push_back(read(file, files));
         used.push_back({images.back().get(), number});
     }
     std::vector<float> values(corners.mesh.vertex_count);
+    skinslide_texture_layout layout = corners.layout();
     skinslide_error error;
-    if (skinslide_map_sample(&corners.mesh, corners.faces.data(), static_cast<int32_t>(corners.faces.size()), corners.st.data(),
-                             used.data(), static_cast<int32_t>(used.size()), values.data(), &error))
+    if (skinslide_texture_sample(&layout, used.data(), static_cast<int32_t>(used.size()), values.data(), &error))
         throw fault("%s: %s: %s", name().c_str(), path.c_str(), error.message);
     return values;
 }
@@ -101,9 +105,9 @@ std::vector<int32_t> Map::tiles(const Corners &corners, const std::string &path)
     if (path.find(udim) == std::string::npos)
         return {0};
     std::vector<int32_t> numbers(corners.mesh.index_count);
+    skinslide_texture_layout layout = corners.layout();
     skinslide_error error;
-    if (skinslide_map_tiles(&corners.mesh, corners.faces.data(), static_cast<int32_t>(corners.faces.size()), corners.st.data(),
-                            numbers.data(), &error))
+    if (skinslide_texture_tiles(&layout, numbers.data(), &error))
         throw fault("%s: %s: %s", name().c_str(), path.c_str(), error.message);
     std::set<int32_t> needed(numbers.begin(), numbers.end());
     needed.erase(0);

@@ -4,7 +4,7 @@
 
 #include "values.h"
 
-#include "skinslide/skinslide.h"
+#include "skinslide/paint.h"
 
 #include <memory>
 #include <set>

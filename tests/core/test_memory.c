@@ -181,10 +181,10 @@ static skinslide_status run_images(void *subject, skinslide_error *error) {
     if (!status)
         status = skinslide_exr_decode(made->data, made->size, "G", &image, error);
     if (!status)
-        status = skinslide_map_tiles(&mesh, faces, 1, st, tiles, error);
-    const skinslide_map_tile tile = {image, 0};
+        status = skinslide_texture_tiles(&layout, tiles, error);
+    const skinslide_texture_tile tile = {image, 0};
     if (!status)
-        status = skinslide_map_sample(&mesh, faces, 1, st, &tile, 1, values, error);
+        status = skinslide_texture_sample(&layout, &tile, 1, values, error);
     if (!status)
         status = skinslide_map_draw(&layout, 1001, values, 4, texels, NULL, error);
     skinslide_image_destroy(image);

@@ -1,4 +1,4 @@
-/* Pictures of skin, drawn offscreen: what a slide did to a texture, before and after; and maps of it in texture coordinates. No
+/* skinslide/picture.h: skin drawn offscreen: what a slide did to a texture, before and after; and maps of it in texture coordinates. No
  * display and no GPU are needed: for pictures EGL with OpenGL ES 3, of which a software rasteriser will do; for maps nothing.
  *
  *     skinslide_tessellation  a mesh made into triangles, along its limit surface where it is subdivided; immutable
@@ -8,7 +8,7 @@
 #ifndef SKINSLIDE_PICTURE_H
 #define SKINSLIDE_PICTURE_H
 
-#include "skinslide.h"
+#include "paint.h"
 
 #ifndef SKINSLIDE_CDEF
 #ifdef __cplusplus
@@ -160,17 +160,9 @@ SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, v
 
 enum { SKINSLIDE_LARGEST_MAP = 16384 }; /* texels along each side */
 
-/* Where faces of a mesh lie in its texture. */
-typedef struct skinslide_texture_layout {
-    const skinslide_mesh *mesh; /* rest_points are not read */
-    const int32_t *faces;       /* [face_count] mesh faces; where they overlap, the later wins */
-    int32_t face_count;
-    const float *st; /* [index_count][2] texture coordinates of the mesh's corners, face by face */
-} skinslide_texture_layout;
-
-/* Draws values of a mesh's vertices over one tile of its texture: linearly over the triangles of each face's fan. A texel is
- * covered where its centre is in a triangle; of one on a triangle's border the triangle has those on its left and lower sides,
- * so that triangles which share sides never both have a texel, nor neither. Then four times each texel that is not covered but
+/* Draws values of a mesh's vertices over one tile of its texture: linearly over the triangles of each face's fan; where faces
+ * overlap, the later in the layout wins. A texel is covered where its centre is in a triangle; of centres on its border a
+ * triangle has those on its left and lower sides, so that triangles which share sides never both have a texel, nor neither. Then four times each texel that is not covered but
  * touches covered ones, at a corner too, takes their mean and counts as covered, so that bilinear samples at the border of a
  * chart find its values. What is left is 0. Faces with corners in several tiles are drawn in each of these. On the processor, in
  * one thread: the same bytes on every machine.

@@ -1,4 +1,5 @@
 /* Edges near curves: by hand on a grid, and every basis against its matrix. */
+#include "skinslide/paint.h"
 #include "support.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 /* OpenEXR files in and out of memory: every kind against the texels it was made of, and every bad one refused. */
 #include "exrfiles.h"
+#include "skinslide/paint.h"
 #include "support.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
  * but for how far it comes in its time. */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include "exrfiles.h"
+#include "skinslide/paint.h"
 #include "support.h"
 
 #include <stdlib.h>

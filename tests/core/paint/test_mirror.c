@@ -1,4 +1,5 @@
 /* The other side of a symmetric mesh: found for every face, told apart where points coincide, refused where it is not there. */
+#include "skinslide/paint.h"
 #include "support.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
-"""OpenEXR images, the maps painted on a mesh, and those drawn of it, on numpy arrays: no USD, no files.
+"""OpenEXR images, the textures painted on a mesh, and the maps drawn of it, on numpy arrays: no USD, no files.
 
-The manuals are `skinslide.h` and `picture.h`.
+The manuals are `paint.h` and `picture.h`.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def encode_exr(channels: Mapping[str, np.ndarray], wrap: str = "clamp") -> bytes
 def map_tiles(corners: Corners) -> np.ndarray:
     """The UDIM tile of each corner of the mesh, int32, 0 at those of other faces."""
     native, tiles = Arguments(), np.zeros(len(corners.face_indices), np.int32)
-    call(lib.skinslide_map_tiles, *_given(native, corners), writable("int32_t[]", tiles))
+    call(lib.skinslide_texture_tiles, _layout(native, corners), writable("int32_t[]", tiles))
     return tiles
 
 
@@ -75,30 +75,31 @@ def sample_map(corners: Corners, images: Mapping[int, Image]) -> np.ndarray:
     images  by the number of their tile; {0: image} covers every texture coordinate by its wraps
     """
     native, values = Arguments(), np.empty(corners.vertex_count, np.float32)
-    tiles = ffi.new("skinslide_map_tile[]", len(images))
+    tiles = ffi.new("skinslide_texture_tile[]", len(images))
     structs = ffi.new("skinslide_image[]", len(images))
     for i, (number, image) in enumerate(images.items()):
         structs[i].pixels = native.pointer(image.pixels, np.float32, (-1, -1), f"tile {number}")
         structs[i].height, structs[i].width = image.pixels.shape
         structs[i].wrap_s, structs[i].wrap_t = (enum_value("wrap", wrap, "") for wrap in (image.wrap_s, image.wrap_t))
         tiles[i].image, tiles[i].number = ffi.addressof(structs, i), number
-    call(lib.skinslide_map_sample, *_given(native, corners), tiles, len(images), writable("float[]", values))
+    call(lib.skinslide_texture_sample, _layout(native, corners), tiles, len(images), writable("float[]", values))
     return values
 
 
 def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_TILE) -> tuple[np.ndarray, int]:
     """Values by vertex (V,) over a tile, float32 (side, side) from the top row on, and how many faces have no texel."""
-    native, layout = Arguments(), ffi.new("skinslide_texture_layout *")
-    layout.mesh, layout.faces, layout.face_count, layout.st = _given(native, corners)
+    native = Arguments()
     given = native.pointer(values, np.float32, (corners.vertex_count,), "values")
     texels, missed = np.empty((side, side), np.float32), ffi.new("int32_t *")
-    call(lib.skinslide_map_draw, layout, tile, given, side, writable("float[]", texels), missed)
+    call(lib.skinslide_map_draw, _layout(native, corners), tile, given, side, writable("float[]", texels), missed)
     return texels, missed[0]
 
 
-def _given(native: Arguments, corners: Corners) -> tuple[Any, ...]:
-    """The mesh, faces, their count, and texture coordinates. Points are not read."""
+def _layout(native: Arguments, corners: Corners) -> Any:
+    """Points are not read."""
+    layout = ffi.new("skinslide_texture_layout *")
     mesh = native.mesh(corners.face_counts, corners.face_indices, np.zeros((corners.vertex_count, 3), np.float32))
-    faces = native.pointer(corners.faces, np.int32, (-1,), "faces")
-    st = native.pointer(corners.st, np.float32, (len(corners.face_indices), 2), "st")
-    return ffi.addressof(mesh), faces, len(corners.faces), st
+    layout.mesh = ffi.addressof(mesh)
+    layout.faces, layout.face_count = native.pointer(corners.faces, np.int32, (-1,), "faces"), len(corners.faces)
+    layout.st = native.pointer(corners.st, np.float32, (len(corners.face_indices), 2), "st")
+    return layout

@@ -1,0 +1,168 @@
+/* skinslide/paint.h: what artists paint patches with. OpenEXR files as bytes, textures, curves, and the other side of a mesh.
+ *
+ * Conventions are those of skinslide.h. */
+#ifndef SKINSLIDE_PAINT_H
+#define SKINSLIDE_PAINT_H
+
+#include "skinslide.h"
+
+#ifndef SKINSLIDE_CDEF
+#ifdef __cplusplus
+extern "C" {
+#endif
+#endif
+
+/* ---- Images: OpenEXR files as bytes -------------------------------------------------------------------------------------- */
+
+/* What a texture holds beyond its border, as the file's attribute wrapmodes says. */
+typedef enum skinslide_wrap {
+    SKINSLIDE_WRAP_CLAMP,    /* the texels of the border; also where the file says nothing, or something else */
+    SKINSLIDE_WRAP_PERIODIC, /* the image again */
+    SKINSLIDE_WRAP_MIRROR,   /* the image turned over, then the image again */
+    SKINSLIDE_WRAP_BLACK     /* 0 */
+} skinslide_wrap;
+
+/* One channel of an image. */
+typedef struct skinslide_image {
+    int32_t width, height; /* of the file's display window */
+    skinslide_wrap wrap_s; /* along width */
+    skinslide_wrap wrap_t; /* along height */
+    const float *pixels;   /* [height][width] from the top row on; 0 where the data window has none; may be not finite */
+    const char *channel;   /* its name in the file, after the part's and a dot where there are several parts */
+} skinslide_image;
+
+/* Reads one channel of an OpenEXR file: scanlines or tiles (the largest level), half or float, of any part that is not deep,
+ * compressed as NONE, RLE, ZIPS, ZIP, PIZ or PXR24.
+ *   bytes    in  [size] the whole file
+ *   channel  in  the name of a channel, of the first part that has it; or PART.CHANNEL; NULL or "": R, else Y, else the first
+ *                in the file's order but A, of the first part
+ *   out      out, the caller's to destroy
+ * Fails with BAD_IMAGE (not OpenEXR, truncated, corrupt, empty, deep, no such channel: names those there are), UNSUPPORTED (a
+ * channel of whole numbers or of fewer texels than the image, another compression, more than 16384 * 16384 texels,
+ * chunks of more than 1 GiB), OUT_OF_MEMORY. Nothing is allocated for texels before the header is known to fit the file. */
+SKINSLIDE_API skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const char *channel,
+                                                    skinslide_image **out, skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_image_destroy(skinslide_image *image);
+
+/* A channel to write. */
+typedef struct skinslide_channel {
+    const char *name;    /* such as "R" */
+    const float *pixels; /* [height][width] from the top row on */
+} skinslide_channel;
+
+typedef struct skinslide_bytes {
+    int64_t size;
+    const uint8_t *data;
+} skinslide_bytes;
+
+/* Makes an OpenEXR file of float channels: scanlines, compressed without loss (ZIP), the same bytes for the same pixels.
+ *   channels   in  [channel_count], each name once
+ *   wrap       in  the file's wrapmodes, in both directions
+ *   out        out, the caller's to destroy
+ * Fails with BAD_ARGUMENT (no channels, a name that cannot be one or comes twice, a size that is not 1 to 16384), BAD_IMAGE,
+ * OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_exr_encode(const skinslide_channel *channels, int32_t channel_count, int32_t width,
+                                                    int32_t height, skinslide_wrap wrap, skinslide_bytes **out,
+                                                    skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_bytes_destroy(skinslide_bytes *bytes);
+
+/* ---- Textures: images painted in a mesh's texture coordinates ------------------------------------------------------------ */
+
+/* Where faces of a mesh lie in its texture. */
+typedef struct skinslide_texture_layout {
+    const skinslide_mesh *mesh; /* rest_points are not read */
+    const int32_t *faces;       /* [face_count] mesh faces */
+    int32_t face_count;
+    const float *st; /* [index_count][2] texture coordinates of the mesh's corners, face by face */
+} skinslide_texture_layout;
+
+/* The image of one tile of a UDIM, or the image that covers every texture coordinate by its wraps. */
+typedef struct skinslide_texture_tile {
+    const skinslide_image *image;
+    int32_t number; /* 1001 + u + 10 v, clamped at its border; 0 for the image that covers all, which is then the only one */
+} skinslide_texture_tile;
+
+/* Which tile of a UDIM each corner of some faces lies in. A corner on the border of two tiles lies in its face's.
+ *   tiles  out [index_count] 1001 + u + 10 v; 0 at the corners of other faces
+ * Fails with BAD_MESH, BAD_ARGUMENT, BAD_CONTROL (st not finite, or in no tile: s outside 0 to 10, t outside 0 to 900; names
+ * the face), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_texture_tiles(const skinslide_texture_layout *layout, int32_t *tiles,
+                                                       skinslide_error *error);
+
+/* Samples a texture, bilinearly between the centres of texels, with (0, 0) at the image's lower left corner. A vertex takes the
+ * mean over its corners in the faces.
+ *   tiles   in  [tile_count]
+ *   values  out [vertex_count]; 1 at vertices of none of the faces
+ * Fails with BAD_MESH, BAD_ARGUMENT, BAD_CONTROL (st not finite, a tile that is missing, a texture that is not finite at a
+ * corner: names the face and its st), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_texture_sample(const skinslide_texture_layout *layout,
+                                                        const skinslide_texture_tile *tiles, int32_t tile_count, float *values,
+                                                        skinslide_error *error);
+
+/* ---- What painting needs of geometry --------------------------------------------------------------------------------------- */
+
+/* Curves as UsdGeomBasisCurves has them; tokens linear for type linear, else the basis. */
+typedef enum skinslide_curve_basis {
+    SKINSLIDE_CURVE_BASIS_LINEAR,
+    SKINSLIDE_CURVE_BASIS_BEZIER,
+    SKINSLIDE_CURVE_BASIS_BSPLINE,
+    SKINSLIDE_CURVE_BASIS_CATMULL_ROM
+} skinslide_curve_basis;
+
+typedef enum skinslide_curve_wrap {
+    SKINSLIDE_CURVE_WRAP_NONPERIODIC,
+    SKINSLIDE_CURVE_WRAP_PERIODIC,
+    SKINSLIDE_CURVE_WRAP_PINNED /* B-splines and Catmull-Rom curves reach their first and last points */
+} skinslide_curve_wrap;
+
+typedef struct skinslide_curves {
+    int32_t curve_count;
+    const int32_t *vertex_counts; /* [curve_count] control points of each */
+    int32_t point_count;          /* the sum of vertex_counts */
+    const float *points;          /* [point_count][3] */
+    const double *to_mesh;        /* [4][4] takes points, as rows, to the mesh's object space; NULL: they are in it */
+    skinslide_curve_basis basis;
+    skinslide_curve_wrap wrap;
+} skinslide_curves;
+
+/* Which edges near a curve count, by their direction and the curve's where it is nearest. Of no length: across. */
+typedef enum skinslide_direction {
+    SKINSLIDE_DIRECTION_ANY,
+    SKINSLIDE_DIRECTION_ALONG, /* 45 degrees or less between them */
+    SKINSLIDE_DIRECTION_ACROSS /* more */
+} skinslide_direction;
+
+/* Finds the edges whose middle is within a distance of a curve. Each cubic segment is taken as 16 straight pieces.
+ *   points    in  [vertex_count][3]
+ *   edges     in  [edge_count][2] vertices
+ *   distance  in  >= 0
+ *   near      out [edge_count] 1 for those found, else 0
+ * Fails with BAD_ARGUMENT (curves whose counts do not fit: names the curve; an edge's vertex out of range; a distance that is
+ * none), BAD_POINTS (not finite), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count, const int32_t *edges,
+                                                    int32_t edge_count, const skinslide_curves *curves, double distance,
+                                                    skinslide_direction direction, uint8_t *near, skinslide_error *error);
+
+/* Finds the faces on the other side of a mesh that is symmetric at rest about the plane where coordinate `axis` (0 x, 1 y, 2 z)
+ * is `plane`, and the vertices that correspond. Vertices correspond where one's mirror image is within tolerance of the other and
+ * both are at the same place in faces that do; so vertices in one place are told apart by their faces.
+ *   tolerance        in  below 0: 1e-4 of the mesh's largest extent at rest
+ *   faces            in  [face_count] mesh faces
+ *   mirror_faces     out [face_count]
+ *   mirror_vertices  out [vertex_count]; -1 for vertices of none of the faces
+ * Fails with BAD_MESH (vertices or a face without a counterpart: names them), BAD_POINTS, BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
+                                                const int32_t *faces, int32_t face_count, int32_t *mirror_faces,
+                                                int32_t *mirror_vertices, skinslide_error *error);
+
+#ifndef SKINSLIDE_CDEF
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+#endif
