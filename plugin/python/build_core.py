@@ -1,5 +1,7 @@
 """Writes the C source of `skinslide._core` from the preprocessed public headers: build_core.py DECLARATIONS OUTPUT."""
 
+from __future__ import annotations
+
 import sys
 from pathlib import Path
 

@@ -3,6 +3,8 @@
 Fields and enums are read from the declarations; only what C cannot see, the lengths of arrays, is checked here.
 """
 
+from __future__ import annotations
+
 import re
 from collections import namedtuple
 from collections.abc import Sequence
@@ -69,7 +71,7 @@ class Lookup:
     resolution: int = 0  # texels along a side; 0: by the patch
 
     @staticmethod
-    def of(lookup: "str | Lookup") -> "Lookup":
+    def of(lookup: str | Lookup) -> Lookup:
         return lookup if isinstance(lookup, Lookup) else Lookup(lookup)
 
     def options(self) -> Any:

@@ -3,6 +3,8 @@
 The manual is `skinslide.h`. Arrays of other types are converted where that loses no more than digits.
 """
 
+from __future__ import annotations
+
 import threading
 from collections.abc import Sequence
 from typing import Any, NamedTuple

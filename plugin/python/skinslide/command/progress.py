@@ -1,5 +1,7 @@
 """Progress on stderr: a bar on a terminal, at most some twenty plain lines elsewhere, or nothing."""
 
+from __future__ import annotations
+
 import math
 import sys
 import time

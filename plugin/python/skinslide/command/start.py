@@ -1,5 +1,7 @@
 """The command `skinslide` from its first moment: Ctrl-C while the tool is being loaded ends it as it does later."""
 
+from __future__ import annotations
+
 import signal
 
 

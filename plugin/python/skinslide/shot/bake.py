@@ -11,6 +11,8 @@ for each mesh:
 put the layer in place                         or author it all into the stage's edit target
 """
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -1,5 +1,7 @@
 """What else a cache holds that follows from its points: normals, velocities, accelerations."""
 
+from __future__ import annotations
+
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping
@@ -63,7 +65,7 @@ class Derived:
             except (slider.SliderError, Fault) as error:
                 self._block(derived, time, str(error))
 
-    def _block(self, derived: "_Normals | _Rates", time: Usd.TimeCode, reason: str) -> None:
+    def _block(self, derived: _Normals | _Rates, time: Usd.TimeCode, reason: str) -> None:
         """Gives an attribute up at all times: where a sample is missing, its neighbours would be taken instead."""
         self._recomputed = [other for other in self._recomputed if other is not derived]
         self.blocked += [derived.attribute, *derived.hidden()]

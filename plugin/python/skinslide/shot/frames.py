@@ -1,5 +1,7 @@
 """Frame specs: `101:109x2` as USD writes them, `101-109x2` as farms do, `1001`, and comma lists of these."""
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Sequence

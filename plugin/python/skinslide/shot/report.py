@@ -1,5 +1,7 @@
 """What a bake did, patch by patch: for people as a table, for programs as a dictionary."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -133,7 +135,7 @@ class MeshReport:
     patches: list[PatchReport]
 
     @classmethod
-    def start(cls, path: str, vertex_count: int, rest_source: str, patches: Sequence[PatchInfo]) -> "MeshReport":
+    def start(cls, path: str, vertex_count: int, rest_source: str, patches: Sequence[PatchInfo]) -> MeshReport:
         return cls(path, vertex_count, rest_source, [PatchReport(info) for info in patches])
 
     def add(self, frame: float | None, results: Sequence[PatchResult]) -> None:

@@ -7,6 +7,8 @@ read, slide                            any error: bring the earlier bake back
 author                                 values of a cache in that layer move to skinSlide:cached:*, for the next time
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 

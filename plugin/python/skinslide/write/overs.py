@@ -1,5 +1,7 @@
 """What a bake writes: a layer of `over`s with nothing but what was slid, or the same in a stage's edit target."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path

@@ -1,5 +1,7 @@
 """The files that are written: where one may be, and putting it in place in one step or not at all."""
 
+from __future__ import annotations
+
 import glob
 import os
 import re

@@ -6,6 +6,8 @@ block what any chunk blocks            as a bake of all the frames would have
 stitch, and put the layer in place
 """
 
+from __future__ import annotations
+
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
