@@ -1,19 +1,85 @@
-"""Writes the C source of `skinslide._core` from the preprocessed public headers: build_core.py DECLARATIONS OUTPUT."""
+"""Writes what Python has of the public headers: build_core.py DECLARATIONS SOURCE RECORDS.
+
+DECLARATIONS are the headers, preprocessed, with their comments; SOURCE is the C source of `skinslide._core`, RECORDS
+the module `skinslide.arrays.records`.
+"""
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
+from textwrap import fill
 
 from cffi import FFI
 
+# Structs whose values the tool gives to its callers, and their names in Python.
+RECORDS = {
+    "skinslide_patch_info": "PatchInfo",
+    "skinslide_patch_result": "PatchResult",
+    "skinslide_lookup_info": "LookupInfo",
+}
+HEAD = '''"""What the core says of patches, frames and devices. Made by build_core.py of the public headers."""
 
-def main(declarations: Path, output: Path) -> None:
+from __future__ import annotations
+
+from typing import NamedTuple
+'''
+
+
+def main(declarations: Path, source: Path, records: Path) -> None:
     """Emits a module that gives every function, struct and enum of the headers; calls release the GIL."""
-    ffi = FFI()
-    ffi.cdef(declarations.read_text())
+    text, ffi = declarations.read_text(), FFI()
+    ffi.cdef(text)
     ffi.set_source("skinslide._core", "#include <skinslide/picture.h>")
-    ffi.emit_c_code(str(output))
+    ffi.emit_c_code(str(source))
+    records.write_text(HEAD + "".join(record(ffi, text, *names) for names in RECORDS.items()))
+
+
+def record(ffi: FFI, text: str, struct: str, name: str) -> str:
+    """A named tuple with the fields of a struct and the words of its comments."""
+    above, body = _comment(rf"/\*((?:(?!\*/).)*)\*/\s*typedef struct {struct} \{{(.*?)\}} {struct};", text)
+    fields = [(field, each.type) for field, each in ffi.typeof(struct).fields]
+    summary, _, more = _plain(above).partition(". ")
+    return "\n".join(
+        [
+            f"\n\nclass {name}(NamedTuple):",
+            f'    """{summary.rstrip(".")}.',
+            *(["", _filled(more, 4, 4)] if more else []),
+            "\n    Attributes:",
+            *(_filled(f"{field}: {_behind(field, body)}", 8, 12) for field, _ in fields),
+            '    """\n',
+            *(f"    {field}: {_python_type(ctype)}" for field, ctype in fields),
+            "",
+        ]
+    )
+
+
+def _behind(field: str, body: str) -> str:
+    return _plain(*_comment(rf"\b{field}(?:\[\w+\])?;\s*/\*(.*?)\*/", body))
+
+
+def _comment(pattern: str, text: str) -> tuple[str, ...]:
+    found = re.search(pattern, text, re.DOTALL)
+    if not found:
+        raise SystemExit(f"the headers have no comment that is like {pattern}")
+    return found.groups()
+
+
+def _plain(comment: str) -> str:
+    """A comment in one line."""
+    return " ".join(line.strip().removeprefix("* ") for line in comment.splitlines()).strip()
+
+
+def _filled(paragraph: str, indent: int, hanging: int) -> str:
+    return fill(paragraph, 120, initial_indent=indent * " ", subsequent_indent=hanging * " ", break_on_hyphens=False)
+
+
+def _python_type(ctype: FFI.CType) -> str:
+    """Of text and tokens, real numbers, whole numbers."""
+    if ctype.kind in ("array", "pointer", "enum"):
+        return "str"
+    return "float" if ctype.cname in ("float", "double") else "int"
 
 
 if __name__ == "__main__":

@@ -221,15 +221,15 @@ SKINSLIDE_API void skinslide_slider_destroy(skinslide_slider *slider);
 
 /* What a patch is. Patches are numbered set-up by set-up, and the pieces of one set-up by their lowest face. */
 typedef struct skinslide_patch_info {
-    const char *name; /* the set-up's; lives as long as the slider */
-    int32_t setup;
-    int32_t piece; /* of this set-up, from 0 */
-    int32_t piece_count;
-    int32_t vertex_count;
-    int32_t edge_count;
-    int32_t face_count;
-    int32_t free_count; /* vertices that may slide */
-    int32_t hole_count;
+    const char *name;          /* the set-up's; lives as long as the slider */
+    int32_t setup;             /* its number, from 0 */
+    int32_t piece;             /* of this set-up, from 0 */
+    int32_t piece_count;       /* of this set-up */
+    int32_t vertex_count;      /* of the patch */
+    int32_t edge_count;        /* of the patch, each once */
+    int32_t face_count;        /* of the patch */
+    int32_t free_count;        /* vertices that may slide */
+    int32_t hole_count;        /* boundary loops but the longest */
     int32_t zero_length_edges; /* at rest: taken as 1e-6 of the mean edge */
     int32_t collapsed_faces; /* of no area in the rest embedding, such as a triangle with two edges on one side of the square */
     int32_t folded_faces;    /* turned over in the rest embedding */
@@ -335,11 +335,12 @@ typedef struct skinslide_patch_result {
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
     double stretch_after;      /* and in the result, overlapping patches included */
-    double density_seconds;
-    double embed_seconds;
-    double relax_seconds; /* of the relaxed rule, in place of embedding and locating */
-    double locate_seconds;
-    double interpolate_seconds;
+
+    double density_seconds;     /* force densities from edge lengths */
+    double embed_seconds;       /* the frame's embedding */
+    double relax_seconds;       /* of the relaxed rule, in place of embedding and locating */
+    double locate_seconds;      /* looking rest vertices up in the embedding */
+    double interpolate_seconds; /* their places on the deformed surface; of LIMIT, the faces fitted to them, too */
 } skinslide_patch_result;
 
 /* Slides the skin of one frame (paper, section 3): density, embed, locate, interpolate for every patch, then the blend.

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 from skinslide import registration
 
 if TYPE_CHECKING:
-    from skinslide.arrays.native import Controls, Lookup, LookupInfo, PatchSetup, Subdivision
+    from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
+    from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
     from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
     from skinslide.author.mirror import mirror
     from skinslide.author.paint import PaintReport, paint
@@ -33,15 +34,20 @@ if TYPE_CHECKING:
         UsageError,
     )
     from skinslide.shot.bake import bake, bake_to_file
-    from skinslide.shot.check import check
+    from skinslide.shot.check import CheckedLookup, CheckedMap, CheckedMesh, CheckedPatch, CheckReport, check
     from skinslide.shot.frames import parse_frames
-    from skinslide.shot.report import BakeReport
+    from skinslide.shot.report import BakeReport, MeshReport, PatchReport
     from skinslide.write.stitch import StitchReport, stitch
 
     __version__: str
 
 __all__ = [
     "BakeReport",
+    "CheckReport",
+    "CheckedLookup",
+    "CheckedMap",
+    "CheckedMesh",
+    "CheckedPatch",
     "Controls",
     "Diagnostics",
     "Frame",
@@ -50,7 +56,11 @@ __all__ = [
     "Lookup",
     "LookupInfo",
     "MapsReport",
+    "MeshReport",
     "PaintReport",
+    "PatchInfo",
+    "PatchReport",
+    "PatchResult",
     "PatchSetup",
     "PreviewReport",
     "Problem",
@@ -78,7 +88,8 @@ __all__ = [
 
 # The modules that have them; a test holds these to what type checkers are told above.
 _HOMES = {
-    "arrays.native": ("Controls", "Lookup", "LookupInfo", "PatchSetup", "Subdivision"),
+    "arrays.native": ("Controls", "Lookup", "PatchSetup", "Subdivision"),
+    "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult"),
     "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
     "author.mirror": ("mirror",),
     "author.paint": ("PaintReport", "paint"),
@@ -95,9 +106,9 @@ _HOMES = {
         "UsageError",
     ),
     "shot.bake": ("bake", "bake_to_file"),
-    "shot.check": ("check",),
+    "shot.check": ("CheckedLookup", "CheckedMap", "CheckedMesh", "CheckedPatch", "CheckReport", "check"),
     "shot.frames": ("parse_frames",),
-    "shot.report": ("BakeReport",),
+    "shot.report": ("BakeReport", "MeshReport", "PatchReport"),
     "write.stitch": ("StitchReport", "stitch"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

@@ -10,7 +10,6 @@ import numpy as np
 from skinslide._core import ffi, lib
 from skinslide.arrays.native import (
     Arguments,
-    LookupInfo,
     Subdivision,
     as_array,
     call,
@@ -19,6 +18,7 @@ from skinslide.arrays.native import (
     read,
     writable,
 )
+from skinslide.arrays.records import LookupInfo
 from skinslide.problems import SliderError
 
 
@@ -109,7 +109,7 @@ class Canvas:
         """What it is drawn with."""
         info = ffi.new("skinslide_lookup_info *")
         call(lib.skinslide_canvas_device, self._handle, info)
-        return read(LookupInfo, info)
+        return read(LookupInfo, info[0])
 
     def clear(self, colour: Sequence[float]) -> None:
         """Fills it with a colour, linear light."""

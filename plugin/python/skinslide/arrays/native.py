@@ -6,15 +6,17 @@ Fields and enums are read from the declarations; only what C cannot see, the len
 from __future__ import annotations
 
 import re
-from collections import namedtuple
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from skinslide._core import ffi, lib
+from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
 from skinslide.problems import SliderError
+
+Record = TypeVar("Record", PatchInfo, PatchResult, LookupInfo)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,16 +90,6 @@ def device_number(device: int | None) -> int:
     if not 0 <= device < 2**31:
         raise SliderError("BAD_ARGUMENT", f"no such device: {device}")
     return device
-
-
-def _tuple_of(struct: str, name: str) -> type:
-    """A named tuple with the fields of a struct of the header."""
-    return namedtuple(name, [field_name for field_name, _ in ffi.typeof(struct).fields])
-
-
-PatchInfo: Any = _tuple_of("skinslide_patch_info", "PatchInfo")
-PatchResult: Any = _tuple_of("skinslide_patch_result", "PatchResult")
-LookupInfo: Any = _tuple_of("skinslide_lookup_info", "LookupInfo")
 
 
 def tokens(setting: str) -> tuple[str, ...]:
@@ -283,9 +275,16 @@ def call(function: Any, *arguments: Any) -> None:
         raise SliderError(text(lib.skinslide_status_name(status)), ffi.string(error.message).decode(errors="replace"))
 
 
-def read(kind: type, struct: Any) -> Any:
-    values = (getattr(struct, name) for name in kind._fields)
-    return kind(*(text(value) if isinstance(value, ffi.CData) else value for value in values))
+def read(kind: type[Record], struct: Any) -> Record:
+    """A record of the fields of a struct, text and tokens as str."""
+    ctypes = {name: field.type for name, field in ffi.typeof(struct).fields}
+    return kind(*(_read(ctypes[name], getattr(struct, name)) for name in kind._fields))
+
+
+def _read(ctype: Any, value: Any) -> Any:
+    if ctype.kind == "enum":
+        return token_of(ctype.cname.removeprefix("enum skinslide_"), value)
+    return text(value) if isinstance(value, ffi.CData) else value
 
 
 def text(characters: Any) -> str:

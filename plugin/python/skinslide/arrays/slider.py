@@ -16,9 +16,6 @@ from skinslide.arrays.native import (
     Arguments,
     Controls,
     Lookup,
-    LookupInfo,
-    PatchInfo,
-    PatchResult,
     PatchSetup,
     Sizes,
     Subdivision,
@@ -30,6 +27,7 @@ from skinslide.arrays.native import (
     tokens,
     writable,
 )
+from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
 from skinslide.problems import SliderError
 
 __all__ = [
@@ -179,7 +177,7 @@ class Slider:
     def _info(self, patch: int) -> PatchInfo:
         info = ffi.new("skinslide_patch_info *")
         call(lib.skinslide_slider_patch_info, self._slider, patch, info)
-        return read(PatchInfo, info)
+        return read(PatchInfo, info[0])
 
     def _patch_array(self, function: Any, patch: int, size: str, dtype: type, width: int | None = None) -> np.ndarray:
         if not 0 <= patch < len(self.patches):
@@ -216,8 +214,7 @@ def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
     """What a lookup comes to on this machine, as `skinslide_lookup_info`; SliderError where it cannot be had."""
     info = ffi.new("skinslide_lookup_info *")
     call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info)
-    chosen = read(LookupInfo, info)
-    return chosen._replace(lookup=tokens("lookup")[chosen.lookup])
+    return read(LookupInfo, info[0])
 
 
 def limit_points(

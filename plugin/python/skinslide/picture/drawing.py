@@ -10,7 +10,7 @@ import numpy as np
 from pxr import Sdf, Usd
 
 from skinslide.arrays.canvas import Canvas
-from skinslide.arrays.native import PatchResult
+from skinslide.arrays.records import PatchResult
 from skinslide.arrays.slider import Diagnostics
 from skinslide.picture import lettering
 from skinslide.picture.canvases import Canvases

@@ -13,7 +13,8 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide.arrays.images import FIRST_TILE, Corners, draw_map, encode_exr, map_tiles
-from skinslide.arrays.native import Controls, PatchResult, PatchSetup
+from skinslide.arrays.native import Controls, PatchSetup
+from skinslide.arrays.records import PatchResult
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems
 from skinslide.shot.options import BakeOptions
 from skinslide.shot.plan import PlannedMesh, frame_of

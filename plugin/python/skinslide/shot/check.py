@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd
 
-from skinslide.arrays.native import Lookup, PatchInfo, PatchSetup
+from skinslide.arrays.native import Lookup, PatchSetup
+from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
 from skinslide.problems import Problem, SliderError, StageProblems, UsageError, errors, frame_text
 from skinslide.shot.derived import Derived

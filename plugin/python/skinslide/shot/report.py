@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from skinslide.arrays.native import PatchInfo, PatchResult
+from skinslide.arrays.records import PatchInfo, PatchResult
 from skinslide.problems import Problem, frame_text
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
