@@ -1,7 +1,7 @@
 # Sets up a Debian 12 machine, as root or with sudo: system packages, the Python environment in build/venv, the
-# human of the examples, skinslide.
-# Sourced by examples/run.sh and tests/run.sh, which set EXTRA_PACKAGES. Does only what is missing, so a second run takes seconds.
-# Leaves: root (the repository), venv, python.
+# human of the examples, skinslide. Does only what is missing or has changed, so a second run takes seconds.
+# Sourced by examples/run.sh and tests/run.sh, which set EXTRA_PACKAGES. Leaves: root (the repository), venv, python.
+set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=$root/build/venv
