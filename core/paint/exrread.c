@@ -1,5 +1,6 @@
 /* Reads OpenEXR files in memory by OpenEXR's own C library, which only this file and exrwrite.c know. Headers are untrusted:
  * what they claim is held against limits and against the size of the file before memory is taken. */
+#include "half.h"
 #include "paint.h"
 
 #include <math.h>
@@ -278,19 +279,10 @@ typedef struct target {
     source *from;
 } target;
 
-/* Sign, 5 bits of exponent, 10 of fraction; exact as a float. */
-static float half_to_float(uint16_t half) {
-    int exponent = half >> 10 & 31, fraction = half & 1023;
-    float size = exponent == 31 ? (fraction ? NAN : INFINITY)
-                 : exponent     ? ldexpf((float)(1024 + fraction), exponent - 25)
-                                : ldexpf((float)fraction, -24);
-    return half & 0x8000 ? -size : size;
-}
-
 static float texel(const uint8_t *bytes, bool is_half) {
     uint32_t low = bytes[0] | (uint32_t)bytes[1] << 8;
     if (is_half)
-        return half_to_float((uint16_t)low);
+        return ss_half_to_float((uint16_t)low);
     uint32_t bits = low | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
     float value;
     memcpy(&value, &bits, sizeof value);

@@ -1,0 +1,491 @@
+/* skinslide/stage.h: what SkinSlideAPI means. Values as a scene holds them become what skinslide.h takes, or one sentence.
+ *
+ * A reader of scenes (of USD, of a host application) fetches values and hands each over as a record: names, numbers and tokens
+ * as they were authored. It checks nothing, expands nothing and has no defaults: all that is here, so that a scene means the
+ * same in every reader. What there is to fetch it asks for, so that a reader need not change when the schema grows.
+ *
+ * How a reader uses it, in order
+ *     1. A prim that mentions the schema: its facts to skinslide_stage_find, which gives the patches it carries, why they cannot
+ *        be slid, and what to warn of.
+ *     2. skinslide_stage_mesh_create, and each input of the group MESH to skinslide_stage_mesh_take.
+ *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, and the child
+ *        prim of the patch's name to skinslide_stage_patch_take_subset.
+ *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
+ *        skinslide_stage_controls_take; then, for maps, the texture coordinates and the files that it asks for.
+ *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the group SUBDIVISION to skinslide_stage_mesh_take.
+ *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes.
+ *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
+ *        that of step 4, is given those that do, and skinslide_stage_controls_get gives what skinslide_slide takes.
+ *     8. What follows from points: skinslide_stage_derived_create, each input of the group DERIVED to
+ *        skinslide_stage_derived_take, then skinslide_stage_derived_value for each of its outputs at each time.
+ * Every sentence names the property by the name in its record, and the element; the reader puts prim, patch and frame in front.
+ * A handle that refused a value may be given the others all the same, so that a reader can say all that is wrong; it then gives
+ * nothing, until a value that it can use takes the place of the refused one.
+ *
+ * Conventions are those of skinslide.h. Records, and what they point to, are read during the call only. A handle may be read by
+ * any number of threads, but changed by one at a time, while no other uses it.
+ */
+#ifndef SKINSLIDE_STAGE_H
+#define SKINSLIDE_STAGE_H
+
+#include "skinslide.h"
+
+#ifndef SKINSLIDE_CDEF
+#include <stddef.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+#endif
+
+/* ---- Records --------------------------------------------------------------------------------------------------------------- */
+
+/* What a record holds. */
+typedef enum skinslide_value_type {
+    SKINSLIDE_VALUE_NONE,    /* nothing: not authored, or blocked at all times */
+    SKINSLIDE_VALUE_BLOCKED, /* authored, but with no value at this time */
+    SKINSLIDE_VALUE_BOOL,    /* uint8_t, 0 or 1 */
+    SKINSLIDE_VALUE_UINT8,
+    SKINSLIDE_VALUE_INT32,
+    SKINSLIDE_VALUE_UINT32,
+    SKINSLIDE_VALUE_INT64,
+    SKINSLIDE_VALUE_UINT64,
+    SKINSLIDE_VALUE_HALF, /* uint16_t, the bits of an IEEE 754 binary16 */
+    SKINSLIDE_VALUE_FLOAT,
+    SKINSLIDE_VALUE_DOUBLE,
+    SKINSLIDE_VALUE_TEXT,  /* a token or a string: data is the text itself, UTF-8 and ended by 0 */
+    SKINSLIDE_VALUE_ASSET, /* a path of a file as it was authored, as TEXT is given */
+    SKINSLIDE_VALUE_OTHER  /* a value of another kind: data is not read, and type_name says what it is */
+} skinslide_value_type;
+
+/* One value of a property at one time. Start from SKINSLIDE_VALUE_DEFAULT: none. */
+typedef struct skinslide_value {
+    size_t size;           /* sizeof(skinslide_value) */
+    const char *name;      /* of the property, for sentences: "primvars:skinSlide:elbow_L:weight" */
+    const char *type_name; /* as the scene declares it: "float[]", "color3f[]"; NULL: after type */
+    skinslide_value_type type;
+    int32_t is_array;
+    int32_t width; /* numbers in an element: 1, 2 of a texCoord2f, 3 of a point3f */
+    int64_t count; /* elements; 1 of what is no array */
+    const void *data;
+    const char *interpolation;             /* as authored; NULL: it is not */
+    const struct skinslide_value *indices; /* of an indexed primvar: its int[]; NULL: it is not indexed */
+} skinslide_value;
+
+#define SKINSLIDE_VALUE_DEFAULT                                                                                                \
+    { sizeof(skinslide_value), 0, 0, SKINSLIDE_VALUE_NONE, 0, 1, 0, 0, 0, 0 }
+
+/* The elements of a record, indices applied; 0 where it has no value. */
+SKINSLIDE_API int64_t skinslide_value_length(const skinslide_value *value);
+
+/* The elements as int32_t, as float, and as positions: an array of whole numbers; of halves, floats or doubles; of three of them
+ * each. A record of no value is an empty array.
+ *   out  out [skinslide_value_length], for positions [..][3]; NULL: the record is only checked
+ * Each fails with BAD_CONTROL ("NAME is not an array of int", "of float", "of points"; a whole number that does not fit; an index
+ * that is out of range: names it), BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_value_integers(const skinslide_value *value, int32_t *out, skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_value_floats(const skinslide_value *value, float *out, skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_value_positions(const skinslide_value *value, float *out, skinslide_error *error);
+
+/* ---- What there is to fetch ------------------------------------------------------------------------------------------------ */
+
+typedef enum skinslide_stage_group {
+    SKINSLIDE_STAGE_MESH,        /* to skinslide_stage_mesh_take */
+    SKINSLIDE_STAGE_SUBDIVISION, /* the same, where a patch needs it */
+    SKINSLIDE_STAGE_PATCH,       /* to skinslide_stage_patch_take */
+    SKINSLIDE_STAGE_CONTROLS,    /* to skinslide_stage_controls_take */
+    SKINSLIDE_STAGE_DERIVED,     /* to skinslide_stage_derived_take */
+    SKINSLIDE_STAGE_LIVE         /* to skinslide_stage_live_take */
+} skinslide_stage_group;
+
+/* When a value is fetched. The first time is that of the first sample; where there are none, the default. */
+typedef enum skinslide_stage_when {
+    SKINSLIDE_STAGE_FIRST,        /* at the first time */
+    SKINSLIDE_STAGE_STILL,        /* the same; where there are several samples, each of them goes to the handle's *_check */
+    SKINSLIDE_STAGE_DEFAULT_TIME, /* the default value, whatever samples there are */
+    SKINSLIDE_STAGE_ANIMATED      /* at the first time, and at every frame where it varies */
+} skinslide_stage_when;
+
+/* A property to fetch. Its name on the prim is prefix and name; of the groups PATCH and CONTROLS, with PATCH: between them. */
+typedef struct skinslide_stage_input {
+    const char *name;          /* "faceVertexCounts", "weight" */
+    const char *type_name;     /* as USD or the schema declares it; of what may have several types, one */
+    const char *fallback;      /* what it is where it is not authored, as text; NULL: nothing */
+    const char *const *tokens; /* that it may be, in the order of the core's enum, then NULL; NULL: it is no choice */
+    skinslide_stage_group group;
+    const char *prefix; /* "", "primvars:", "skinSlide:", "primvars:skinSlide:" */
+    skinslide_stage_when when;
+    int32_t is_primvar;   /* 1: it may have indices, in NAME:indices */
+    int32_t is_inherited; /* 1: where the mesh has none, a constant one of the nearest ancestor that has any counts */
+} skinslide_stage_input;
+
+/* The first input of a group, for NULL; then the one after each; NULL after the last. They live as long as the library, and are
+ * to be handed over in this order. */
+SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_input(skinslide_stage_group group,
+                                                                      const skinslide_stage_input *before);
+
+/* ---- Prims ----------------------------------------------------------------------------------------------------------------- */
+
+/* "SkinSlideAPI": a prim that has it applied, as SkinSlideAPI:PATCH, carries a patch. A static string. */
+SKINSLIDE_API const char *skinslide_stage_schema(void);
+
+/* Whether a name may be a patch's, as far as the schema goes: 0 for "" and for names that it has other uses for. */
+SKINSLIDE_API int32_t skinslide_stage_can_name_patch(const char *name);
+
+/* Facts of a prim. Start from SKINSLIDE_STAGE_PRIM_DEFAULT. */
+typedef struct skinslide_stage_prim {
+    size_t size;                /* sizeof(skinslide_stage_prim) */
+    const char *type_name;      /* "Mesh"; NULL: it has none */
+    int32_t is_mesh;            /* 1: a Mesh, or of a type made from it */
+    int32_t is_defined;         /* 1: it and its ancestors are, by more than overs */
+    const char *instance;       /* the path of the instance that it is inside of, or NULL */
+    const char *instancer;      /* the path of the point instancer that it, or what it is below, is a prototype of; or NULL */
+    const char *slid_by;        /* the file that computes its points as slid already, or NULL */
+    const char *baked_by;       /* the layer of an earlier bake that its points, or their default value, come from; or NULL */
+    int32_t point_samples;      /* how many points has */
+    int32_t has_joint_indices;  /* 1: primvars:skel:jointIndices has a value, be it inherited */
+    int32_t blend_shape_count;  /* targets of skel:blendShapeTargets */
+    int32_t schema_count;       /* of applied schemas */
+    int32_t property_count;     /* of authored properties whose names begin with skinSlide: or primvars:skinSlide: */
+    const char *const *schemas; /* [schema_count] their names, in order */
+    const char *const *properties; /* [property_count] their names */
+} skinslide_stage_prim;
+
+#define SKINSLIDE_STAGE_PRIM_DEFAULT                                                                                           \
+    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+typedef enum skinslide_severity { SKINSLIDE_SEVERITY_WARNING, SKINSLIDE_SEVERITY_ERROR } skinslide_severity;
+
+/* One thing to say about a prim. */
+typedef struct skinslide_stage_problem {
+    skinslide_severity severity;
+    const char *patch; /* NULL: the prim as a whole */
+    const char *message;
+} skinslide_stage_problem;
+
+typedef struct skinslide_stage_finding {
+    int32_t slides; /* 1: it carries patches, and nothing of these facts keeps them from being slid */
+    int32_t patch_count;
+    int32_t problem_count;
+    const char *const *patches;                     /* [patch_count] their names, in the order of the schemas */
+    const skinslide_stage_problem *const *problems; /* [problem_count] */
+} skinslide_stage_finding;
+
+/* Looks at a prim.
+ *   out  out, the caller's to destroy
+ * Fails with BAD_ARGUMENT (NULL, a negative count), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_find(const skinslide_stage_prim *prim, skinslide_stage_finding **out,
+                                                    skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_stage_finding_destroy(skinslide_stage_finding *finding);
+
+/* The sentence for a scene in which no mesh carries a patch: always fails, with BAD_PATCH.
+ *   where  in  "on the stage"; NULL: nowhere in particular */
+SKINSLIDE_API skinslide_status skinslide_stage_nothing(const char *where, skinslide_error *error);
+
+/* ---- Meshes ---------------------------------------------------------------------------------------------------------------- */
+
+/* One mesh of a scene: its faces, its rest points, how it is subdivided. */
+typedef struct skinslide_stage_mesh skinslide_stage_mesh;
+
+/* Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_create(skinslide_stage_mesh **out, skinslide_error *error);
+
+/* NULL does nothing. Its patches must be gone before it. */
+SKINSLIDE_API void skinslide_stage_mesh_destroy(skinslide_stage_mesh *mesh);
+
+/* Takes the value of an input of the group MESH or SUBDIVISION. Where points, face counts or face indices are refused, what
+ * comes after needs them. Rest points are the first candidate that is authored.
+ * Fails with BAD_POINTS (points and rest points), BAD_MESH (the others; each names what it cannot use), BAD_ARGUMENT,
+ * OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
+                                                         const skinslide_value *value, skinslide_error *error);
+
+/* Checks that a later sample of an input that must stay the same does so.
+ *   frame  in  its time, for the sentence
+ * Fails with BAD_MESH ("NAME changes at frame 1002; it must stay the same over time"), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_check(const skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
+                                                          const skinslide_value *value, double frame, skinslide_error *error);
+
+/* The mesh as the slider takes it; its arrays are the handle's, and subdivision is NULL where it was not taken, or is none.
+ * Fails with BAD_ARGUMENT where something is missing, or was refused. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skinslide_mesh *out,
+                                                        skinslide_error *error);
+
+/* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the library. */
+SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
+
+/* Whether the mesh's orientation is leftHanded. */
+SKINSLIDE_API int32_t skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh);
+
+/* The points of a frame.
+ *   points  out [vertex_count][3]; NULL: the record is only checked, as where its data are floats that can be used as they are
+ * Fails with BAD_POINTS (no value, not points, another count than at first), BAD_ARGUMENT. Whether they are finite the slider
+ * asks. */
+SKINSLIDE_API skinslide_status skinslide_stage_points(const skinslide_stage_mesh *mesh, const skinslide_value *value,
+                                                      float *points, skinslide_error *error);
+
+/* Texture coordinates of the mesh's corners.
+ *   value  in  a primvar of pairs of halves, floats or doubles: faceVarying, vertex or varying
+ *   st     out [index_count][2]
+ * Fails with BAD_CONTROL (another interpolation, type or length, an index out of range), BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_stage_coordinates(const skinslide_stage_mesh *mesh, const skinslide_value *value,
+                                                           float *st, skinslide_error *error);
+
+/* ---- Patches --------------------------------------------------------------------------------------------------------------- */
+
+/* What a shot sets from outside, for every patch of a file. Start from SKINSLIDE_STAGE_LIVE_DEFAULT: nothing. */
+typedef struct skinslide_stage_live {
+    size_t size;           /* sizeof(skinslide_stage_live) */
+    double envelope;       /* scales each patch's own */
+    int32_t interpolation; /* a skinslide_interpolation in place of each patch's own, or -1: its own */
+    skinslide_lookup lookup;
+} skinslide_stage_live;
+
+#define SKINSLIDE_STAGE_LIVE_DEFAULT                                                                                           \
+    { sizeof(skinslide_stage_live), 1, -1, SKINSLIDE_LOOKUP_AUTO }
+
+/* Takes the value of an input of the group LIVE; one that has no value leaves *live as it is. A number may come as a number or,
+ * where it is none, as TEXT.
+ * Fails with BAD_CONTROL, BAD_ARGUMENT, and leaves *live alone. */
+SKINSLIDE_API skinslide_status skinslide_stage_live_take(skinslide_stage_live *live, const skinslide_stage_input *input,
+                                                         const skinslide_value *value, skinslide_error *error);
+
+/* One patch: its faces and its settings, which do not change over time. */
+typedef struct skinslide_stage_patch skinslide_stage_patch;
+
+/* Makes a patch with the fallbacks of the schema.
+ *   mesh  in  has its face counts and indices; must outlive the patch
+ *   name  in  copied
+ *   live  in  or NULL: nothing
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_create(const skinslide_stage_mesh *mesh, const char *name,
+                                                            const skinslide_stage_live *live, skinslide_stage_patch **out,
+                                                            skinslide_error *error);
+
+/* NULL does nothing. Its controls must be gone before it. */
+SKINSLIDE_API void skinslide_stage_patch_destroy(skinslide_stage_patch *patch);
+
+/* Takes the value of an input of the group PATCH. The primvar of faces may be any record of that kind, of any name.
+ * Fails with BAD_PATCH (faces), BAD_CONTROL (the others; each names what it cannot use), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const skinslide_stage_input *input,
+                                                          const skinslide_value *value, skinslide_error *error);
+
+/* Checks that a later sample of an input that must stay the same does so; of faces, that it chooses the same.
+ * Fails as skinslide_stage_patch_take, and with BAD_PATCH or BAD_CONTROL where it changes. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_check(const skinslide_stage_patch *patch,
+                                                           const skinslide_stage_input *input, const skinslide_value *value,
+                                                           double frame, skinslide_error *error);
+
+/* The child prim of a patch's name. Start from SKINSLIDE_STAGE_SUBSET_DEFAULT. */
+typedef struct skinslide_stage_subset {
+    size_t size;                         /* sizeof(skinslide_stage_subset) */
+    const char *path;                    /* of the prim, for sentences */
+    const char *type_name;               /* of the prim; NULL: it has none */
+    int32_t is_subset;                   /* 1: it is a GeomSubset */
+    const skinslide_value *element_type; /* its token, at the default time; NULL: none, which is face */
+    const skinslide_value *indices;      /* its int[], at the first time, named PATH.indices; NULL: none */
+} skinslide_stage_subset;
+
+#define SKINSLIDE_STAGE_SUBSET_DEFAULT                                                                                         \
+    { sizeof(skinslide_stage_subset), 0, 0, 0, 0, 0 }
+
+/* Takes the faces of a child prim, or learns from NULL that there is none. Where the primvar chose faces nothing is looked at.
+ * Fails with BAD_PATCH (no such child, no GeomSubset of faces, an empty one, a face out of range), BAD_ARGUMENT,
+ * OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
+                                                                 const skinslide_stage_subset *subset, skinslide_error *error);
+
+/* Checks that a later sample of the child's indices is as that which was taken. Fails with BAD_PATCH, BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_check_subset(const skinslide_stage_patch *patch,
+                                                                  const skinslide_value *indices, double frame,
+                                                                  skinslide_error *error);
+
+/* The faces chosen so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before. */
+SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
+
+/* Whether its interpolation depends on how the mesh is subdivided. */
+SKINSLIDE_API int32_t skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch);
+
+/* ---- Controls -------------------------------------------------------------------------------------------------------------- */
+
+/* What is painted and animated on a patch, at one time: memory that one frame after another uses. */
+typedef struct skinslide_stage_controls skinslide_stage_controls;
+
+/* Makes controls with the fallbacks of the schema.
+ *   patch  in  has its faces and settings; must outlive the controls. Without faces every one counts as the patch's
+ *   base   in  controls of the patch whose values these begin with, and which must outlive them and stay as they are; or NULL.
+ *              Nothing is copied, so a thread's own controls cost what varies
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_controls_create(const skinslide_stage_patch *patch,
+                                                               const skinslide_stage_controls *base,
+                                                               skinslide_stage_controls **out, skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_stage_controls_destroy(skinslide_stage_controls *controls);
+
+/* Takes the value of an input of the group CONTROLS. Paint is expanded into memory that the controls keep; off the patch,
+ * where it is often 0, it does not count.
+ * Fails with BAD_CONTROL (names what it cannot use), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls,
+                                                             const skinslide_stage_input *input, const skinslide_value *value,
+                                                             skinslide_error *error);
+
+/* Maps are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, whose name this
+ * gives, "primvars:st", or NULL where there is no map; and each file that skinslide_stage_controls_need asks for. Where the
+ * primvar or an asset varies, a frame brings every asset and the primvar again. The name lives as long as the patch. */
+SKINSLIDE_API const char *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls);
+
+/* Takes the texture coordinates of all maps. Fails with BAD_CONTROL (none: says which setting names them; as
+ * skinslide_stage_coordinates; coordinates that are in no tile), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_controls_take_coordinates(skinslide_stage_controls *controls,
+                                                                         const skinslide_value *value, skinslide_error *error);
+
+/* A file that a map is made of. */
+typedef struct skinslide_stage_need {
+    const skinslide_stage_input *input; /* the map's */
+    const char *path;                   /* as authored, with the tile's number where it says <UDIM> */
+    int32_t tile;                       /* that number; 0 of a file without tiles */
+    int64_t largest;                    /* bytes of a file; those of larger ones need not be read, which are refused */
+} skinslide_stage_need;
+
+/* The next file that is wanted, until it is given; NULL where there is none. It lives until the next call that changes the
+ * controls. */
+SKINSLIDE_API const skinslide_stage_need *skinslide_stage_controls_need(const skinslide_stage_controls *controls);
+
+/* A file that was asked for. Start from SKINSLIDE_STAGE_FILE_DEFAULT: there is none. */
+typedef struct skinslide_stage_file {
+    size_t size;          /* sizeof(skinslide_stage_file) */
+    const char *path;     /* as it was resolved; NULL: there is no such file */
+    const uint8_t *bytes; /* [byte_count] all of it; NULL: it cannot be read, is too large, or its image is held already */
+    int64_t byte_count;
+    const char *reason; /* why it cannot be read; NULL: nobody knows, or it was read */
+} skinslide_stage_file;
+
+#define SKINSLIDE_STAGE_FILE_DEFAULT                                                                                           \
+    { sizeof(skinslide_stage_file), 0, 0, 0, 0 }
+
+/* Whether the image of a file is held from the time before, for the map that is asked for: its bytes are then not needed. */
+SKINSLIDE_API int32_t skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path);
+
+/* Takes the file that is asked for, and with its last file samples the map. Where that fails, the map's others are asked for no
+ * more.
+ * Fails with BAD_CONTROL (no such file, not readable, too large, coordinates that are not finite, a map that is not finite or
+ * not a force density somewhere), BAD_IMAGE, UNSUPPORTED (as skinslide_exr_decode), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *controls,
+                                                             const skinslide_stage_file *file, skinslide_error *error);
+
+/* A tile of a map that was sampled. */
+typedef struct skinslide_stage_tile {
+    int32_t number; /* 0 of a map without tiles */
+    int32_t width, height;
+} skinslide_stage_tile;
+
+/* A map that was sampled; lives until its controls change. */
+typedef struct skinslide_stage_texture {
+    const char *name;    /* of the attribute */
+    const char *file;    /* resolved, with <UDIM> for the tile's number */
+    const char *channel; /* in the file */
+    const char *st;      /* the primvar that it was sampled at */
+    int32_t tile_count;
+    const skinslide_stage_tile *tiles; /* [tile_count], ascending */
+} skinslide_stage_texture;
+
+/* The map of an input, or NULL where there is none. */
+SKINSLIDE_API const skinslide_stage_texture *skinslide_stage_controls_texture(const skinslide_stage_controls *controls,
+                                                                      const skinslide_stage_input *input);
+
+/* The controls as the slider takes them; the arrays are those of the handle, of its patch or of its base.
+ * Fails with BAD_CONTROL (paint times a map that is no force density: names the point), BAD_ARGUMENT (a value was refused, a
+ * map is not complete), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
+                                                            skinslide_error *error);
+
+/* The set-up as the slider takes it, with these controls; its arrays and its name are those of the handles.
+ * Fails as skinslide_stage_controls_get, and with BAD_ARGUMENT where the patch has no faces, or refused a value. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, skinslide_stage_controls *controls,
+                                                         skinslide_patch_setup *out, skinslide_error *error);
+
+/* ---- Times ----------------------------------------------------------------------------------------------------------------- */
+
+/* Puts times in order; of those that differ by no more than the noise that layer offsets leave, 1e-6, the one given first stays.
+ * Give the samples of points first, then those of each patch's controls that vary in the order of its inputs, with the samples
+ * of indices and of texture coordinates.
+ *   times  in  [count], finite; out  those that stay
+ *   count  in out
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_merge_times(double *times, int64_t *count, skinslide_error *error);
+
+/* "1012" for 1012.0 and "1012.25" for 1012.25, without the noise of layer offsets: how sentences write a frame.
+ *   text  out, of 32 bytes */
+SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
+
+/* ---- What follows from points ---------------------------------------------------------------------------------------------- */
+
+/* Normals, velocities and accelerations that a mesh has beside its points. */
+typedef struct skinslide_stage_derived skinslide_stage_derived;
+
+/*   mesh         in  has its points and faces; must outlive this
+ *   point_times  in  [point_time_count] the samples of points, ascending; copied
+ *   rate         in  time codes per second
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_create(const skinslide_stage_mesh *mesh, const double *point_times,
+                                                              int64_t point_time_count, double rate,
+                                                              skinslide_stage_derived **out, skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_stage_derived_destroy(skinslide_stage_derived *derived);
+
+/* Takes an input of the group DERIVED, in the order of its inputs: each makes outputs or, where it does not count, none.
+ *   value  in  at its first time
+ *   times  in  [time_count] its samples, ascending
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY: what cannot be recomputed becomes an output that is blocked. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_take(skinslide_stage_derived *derived,
+                                                            const skinslide_stage_input *input, const skinslide_value *value,
+                                                            const double *times, int64_t time_count, skinslide_error *error);
+
+/* An attribute to write beside the points. */
+typedef struct skinslide_stage_output {
+    const char *name;      /* "primvars:normals" */
+    const char *type_name; /* "normal3f[]" */
+    int32_t pose_count;    /* poses that a value of it takes: 1, 2 or 3; 0: it is blocked at all times */
+    int32_t count;         /* elements of a value */
+    const char *reason;    /* why it is blocked; NULL of what is blocked without a warning, and of what is not */
+    const char *hidden;    /* what would be read in its place were it blocked alone: block that with it; or NULL */
+} skinslide_stage_output;
+
+/* The output of a number from 0 on; NULL beyond the last. Lives as long as derived. */
+SKINSLIDE_API const skinslide_stage_output *skinslide_stage_derived_output(const skinslide_stage_derived *derived,
+                                                                           int32_t number);
+
+/* The times of the poses that the value of an output at a time takes: the time itself or, of rates, the samples of points next to
+ * it on either side, with it between them for a second difference; at an end it and those nearest to it.
+ *   times  out [pose_count] ascending. Returns how many there are: fewer where there are too few samples. */
+SKINSLIDE_API int32_t skinslide_stage_derived_times(const skinslide_stage_derived *derived,
+                                                    const skinslide_stage_output *output, double time, double times[3]);
+
+/* Points of one time. */
+typedef struct skinslide_stage_pose {
+    double time;
+    const float *cached; /* [vertex_count][3] before sliding */
+    const float *slid;   /* [vertex_count][3] after */
+} skinslide_stage_pose;
+
+/* The value of an output at a time.
+ *   value  in  the cache's, of the input that the output is of
+ *   poses  in  [pose_count] at the times that skinslide_stage_derived_times gives
+ *   out    out [count][3]
+ * Fails with BAD_POINTS (no value, of a wrong type or length, too few samples of points), BAD_ARGUMENT, OUT_OF_MEMORY. It is then
+ * to be blocked at all times: where a sample is missing, its neighbours would be taken instead. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *derived,
+                                                             const skinslide_stage_output *output, const skinslide_value *value,
+                                                             const skinslide_stage_pose *poses, int32_t pose_count, float *out,
+                                                             skinslide_error *error);
+
+#ifndef SKINSLIDE_CDEF
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+#endif

@@ -1,0 +1,423 @@
+/* Controls: what is painted and animated on a patch, at one time. Values off the patch do not count, since paint is often 0
+ * there: they are replaced by ones that the core accepts. */
+#include "stage.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum layout { LAYOUT_NONE, LAYOUT_VERTEX, LAYOUT_FACE, LAYOUT_EDGE } layout;
+
+/* What one input came to. Values are of this or of the base; its own memory is kept from frame to frame. */
+typedef struct control {
+    double number;
+    layout layout; /* of values */
+    const float *values;
+    float *own;
+    const float *product; /* of paint by vertex and its map; NULL: not made yet */
+    float *own_product;
+    const ss_texture *texture;
+    ss_texture *own_texture;
+    bool refused;
+} control;
+
+struct skinslide_stage_controls {
+    ss_memory memory;
+    const skinslide_stage_patch *patch;
+    control controls[SS_CONTROL_ROWS];
+    const float *st; /* [index_count][2] of this or of the base; NULL: none was taken */
+    float *own_st;
+};
+
+static const ss_input *inputs(void) {
+    int32_t count;
+    return ss_inputs(SKINSLIDE_STAGE_CONTROLS, &count);
+}
+
+/* ---- Life ---- */
+
+static void start(skinslide_stage_controls *controls, const skinslide_stage_controls *base) {
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
+        control *own = &controls->controls[row];
+        own->number = inputs()[row].fallback;
+        if (!base)
+            continue;
+        *own = base->controls[row];
+        own->own = own->own_product = NULL;
+        own->own_texture = NULL;
+    }
+    controls->st = base ? base->st : NULL;
+}
+
+skinslide_status skinslide_stage_controls_create(const skinslide_stage_patch *patch, const skinslide_stage_controls *base,
+                                                 skinslide_stage_controls **out, skinslide_error *error) {
+    if (!patch || !out || (base && base->patch != patch))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch, a base of another, or no place for the controls");
+    skinslide_stage_controls *controls = calloc(1, sizeof *controls);
+    if (!controls)
+        return ss_out_of_memory(error);
+    controls->patch = patch;
+    start(controls, base);
+    *out = controls;
+    return SKINSLIDE_OK;
+}
+
+void skinslide_stage_controls_destroy(skinslide_stage_controls *controls) {
+    if (!controls)
+        return;
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++)
+        ss_texture_destroy(controls->controls[row].own_texture);
+    ss_free(&controls->memory);
+    free(controls);
+}
+
+/* ---- Paint ---- */
+
+static skinslide_status check_paint(const ss_input *input, const ss_record *record, layout *found, skinslide_error *error) {
+    const skinslide_value *value = &record->value;
+    const char *interpolation = ss_interpolation(record), *name = value->name;
+    if (ss_has_value(record) && (value->type != SKINSLIDE_VALUE_FLOAT || value->width != 1))
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " is " SS_NAMED "; it must be float[]", SS_NAME(name),
+                       SS_NAME(value->type_name));
+    bool is_constant = strcmp(interpolation, "constant") == 0, by_face = strcmp(interpolation, "uniform") == 0;
+    if (!is_constant && strcmp(interpolation, "vertex") != 0 && !(by_face && input->face_place))
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL,
+                       SS_NAMED " has interpolation " SS_NAMED "; it must be vertex%s or constant", SS_NAME(name),
+                       SS_NAME(interpolation), input->face_place ? " or uniform" : "");
+    *found = is_constant ? LAYOUT_NONE : by_face ? LAYOUT_FACE : LAYOUT_VERTEX;
+    if (!ss_has_value(record))
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " has no value", SS_NAME(name));
+    return ss_check_indices(record, SKINSLIDE_BAD_CONTROL, error);
+}
+
+static skinslide_status check_count(const skinslide_stage_patch *patch, const ss_record *record, layout found,
+                                    skinslide_error *error) {
+    if (found == LAYOUT_VERTEX)
+        return ss_check_length(record, patch->mesh->vertex_count, "points", SKINSLIDE_BAD_CONTROL, error);
+    if (found == LAYOUT_FACE)
+        return ss_check_length(record, patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count, "faces", SKINSLIDE_BAD_CONTROL,
+                               error);
+    if (record->length != 1)
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " has interpolation constant but %lld values; is vertex missing?",
+                       SS_NAME(record->value.name), (long long)record->length);
+    return SKINSLIDE_OK;
+}
+
+/* Memory for the values of an input, whichever its layout; kept from frame to frame. */
+static float *own_values(skinslide_stage_controls *controls, int32_t row) {
+    const skinslide_stage_mesh *mesh = controls->patch->mesh;
+    int32_t faces = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
+    control *own = &controls->controls[row];
+    if (!own->own)
+        own->own = SS_NEW(&controls->memory, float, mesh->vertex_count > faces ? mesh->vertex_count : faces);
+    return own->own;
+}
+
+static skinslide_status bad_number(const ss_input *input, const ss_record *record, int64_t i, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED "[%lld] is %g; it must be %s", SS_NAME(record->value.name),
+                   (long long)i, ss_number(record, i, 0), input->wanted);
+}
+
+/* Expands what is inside the patch. */
+static skinslide_status expand(const ss_input *input, const ss_record *record, const uint8_t *inside, float *values,
+                               skinslide_error *error) {
+    for (int64_t i = 0; i < record->length; i++) {
+        double number = inside[i] ? ss_number(record, i, 0) : (double)input->off_patch;
+        if (inside[i] && !ss_in_range(input->range, number))
+            return bad_number(input, record, i, error);
+        values[i] = (float)number;
+    }
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status expand_constant(const ss_input *input, const ss_record *record, int32_t count, float *values,
+                                        skinslide_error *error) {
+    double number = ss_number(record, 0, 0);
+    if (!ss_in_range(input->range, number))
+        return bad_number(input, record, 0, error);
+    for (int32_t i = 0; i < count; i++)
+        values[i] = (float)number;
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
+                                   skinslide_error *error) {
+    const skinslide_stage_patch *patch = controls->patch;
+    const ss_input *input = &inputs()[row];
+    layout found = LAYOUT_NONE;
+    control *own = &controls->controls[row];
+    own->values = NULL, own->layout = LAYOUT_NONE;
+    if (record->value.type == SKINSLIDE_VALUE_NONE)
+        return SKINSLIDE_OK;
+    skinslide_status status = check_paint(input, record, &found, error);
+    if (!status)
+        status = check_count(patch, record, found, error);
+    float *values = status ? NULL : own_values(controls, row);
+    if (!status && !values)
+        status = ss_out_of_memory(error);
+    if (status)
+        return status;
+    bool is_constant = found == LAYOUT_NONE;
+    status = is_constant
+                 ? expand_constant(input, record, patch->mesh->vertex_count, values, error)
+                 : expand(input, record, found == LAYOUT_FACE ? patch->face_inside : patch->vertex_inside, values, error);
+    if (!status && !(is_constant && input->drops_constant))
+        own->values = values, own->layout = is_constant ? LAYOUT_VERTEX : found;
+    return status;
+}
+
+/* ---- Painted edges ---- */
+
+static skinslide_status take_factors(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
+                                     skinslide_error *error) {
+    const ss_input *input = &inputs()[row];
+    const ss_array *edges = &controls->patch->taken[SS_ROW_EDGES].array;
+    const char *name = record->value.name;
+    char edges_name[256];
+    control *own = &controls->controls[row];
+    own->values = NULL, own->layout = LAYOUT_NONE;
+    ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_EDGES, controls->patch->name, edges_name);
+    skinslide_status status = ss_check_floats(record, SKINSLIDE_BAD_CONTROL, error);
+    if (!status && record->length != edges->count / 2)
+        status = ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " has %lld values, but %s has %d pairs", SS_NAME(name),
+                         (long long)record->length, edges_name, edges->count / 2);
+    for (int32_t k = 0; !status && k < edges->count / 2; k++)
+        if (!ss_in_range(input->range, ss_number(record, k, 0)))
+            status = ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED "[%d], for edge %d-%d, is %g; it must be %s", SS_NAME(name),
+                             k, ((const int32_t *)edges->values)[2 * k], ((const int32_t *)edges->values)[2 * k + 1],
+                             ss_number(record, k, 0), input->wanted);
+    if (status || !edges->count)
+        return status;
+    if (!own->own)
+        own->own = SS_NEW(&controls->memory, float, edges->count / 2);
+    if (!own->own)
+        return ss_out_of_memory(error);
+    ss_copy_floats(record, own->own);
+    own->values = own->own, own->layout = LAYOUT_EDGE;
+    return SKINSLIDE_OK;
+}
+
+/* ---- Any input ---- */
+
+static skinslide_status take_texture(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
+                                     skinslide_error *error) {
+    control *own = &controls->controls[row];
+    if (!own->own_texture)
+        own->own_texture = ss_texture_create(&inputs()[row], controls->patch);
+    own->texture = own->own_texture;
+    return own->own_texture ? ss_texture_take(own->own_texture, record, error) : ss_out_of_memory(error);
+}
+
+static skinslide_status take(skinslide_stage_controls *controls, int32_t row, const ss_record *record, skinslide_error *error) {
+    const ss_input *input = &inputs()[row];
+    controls->controls[input->kind == SS_KIND_TEXTURE ? input->multiplies : row].product = NULL;
+    switch (input->kind) {
+    case SS_KIND_NUMBER:
+        return ss_take_number(input, record, &controls->controls[row].number, error);
+    case SS_KIND_FACTORS:
+        return take_factors(controls, row, record, error);
+    case SS_KIND_TEXTURE:
+        return take_texture(controls, row, record, error);
+    default:
+        return take_paint(controls, row, record, error);
+    }
+}
+
+skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls, const skinslide_stage_input *input,
+                                               const skinslide_value *value, skinslide_error *error) {
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
+    if (!controls || row < 0)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no input of them");
+    ss_record record;
+    skinslide_status status = ss_open(value, &record, error);
+    if (!status)
+        status = take(controls, row, &record, error);
+    controls->controls[row].refused = status != SKINSLIDE_OK;
+    return status;
+}
+
+/* ---- Maps ---- */
+
+const char *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls) {
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++)
+        if (ss_texture_wanted(controls->controls[row].texture))
+            return controls->patch->st;
+    return NULL;
+}
+
+static skinslide_status take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
+                                         skinslide_error *error) {
+    const skinslide_stage_mesh *mesh = controls->patch->mesh;
+    ss_record record;
+    skinslide_status status = ss_open(value, &record, error);
+    if (!status && record.value.type == SKINSLIDE_VALUE_NONE) {
+        char setting[256];
+        ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_ST, controls->patch->name, setting);
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "has a map, but the mesh has no " SS_NAMED "; name one in %s",
+                       SS_NAME(controls->patch->st), setting);
+    }
+    if (!status && !controls->own_st)
+        controls->own_st = SS_NEW(&controls->memory, float, 2 * (int64_t)ss_faces_of(mesh).index_count);
+    if (!status && !controls->own_st)
+        return ss_out_of_memory(error);
+    if (!status)
+        status = skinslide_stage_coordinates(mesh, value, controls->own_st, error);
+    if (!status)
+        controls->st = controls->own_st;
+    return status;
+}
+
+/* Gives a map up. */
+static void refuse(control *own) {
+    ss_texture_drop(own->own_texture);
+    own->refused = true;
+}
+
+skinslide_status skinslide_stage_controls_take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
+                                                           skinslide_error *error) {
+    if (!controls)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls");
+    skinslide_status first = take_coordinates(controls, value, error);
+    bool good = !first;
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
+        control *own = &controls->controls[row];
+        if (!ss_texture_wanted(own->own_texture))
+            continue;
+        skinslide_status status = good ? ss_texture_find_tiles(own->own_texture, controls->st, first ? NULL : error) : first;
+        if (status)
+            refuse(own);
+        first = first ? first : status;
+    }
+    return first;
+}
+
+static control *needing(const skinslide_stage_controls *controls) {
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++)
+        if (ss_texture_need(controls->controls[row].own_texture))
+            return (control *)&controls->controls[row];
+    return NULL;
+}
+
+const skinslide_stage_need *skinslide_stage_controls_need(const skinslide_stage_controls *controls) {
+    const control *own = needing(controls);
+    return own ? ss_texture_need(own->own_texture) : NULL;
+}
+
+int32_t skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path) {
+    const control *own = needing(controls);
+    return own && path && ss_texture_holds(own->own_texture, path);
+}
+
+skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *controls, const skinslide_stage_file *file,
+                                               skinslide_error *error) {
+    control *own = controls ? needing(controls) : NULL;
+    skinslide_stage_file given = SKINSLIDE_STAGE_FILE_DEFAULT;
+    if (!own || (file && file->size < sizeof file->size))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no file is asked for, or it does not begin with its size");
+    if (file)
+        memcpy(&given, file, file->size < sizeof given ? file->size : sizeof given);
+    skinslide_status status = ss_texture_give(own->own_texture, controls->st, &given, error);
+    if (status)
+        refuse(own);
+    return status;
+}
+
+const skinslide_stage_texture *skinslide_stage_controls_texture(const skinslide_stage_controls *controls,
+                                                        const skinslide_stage_input *input) {
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
+    return row < 0 ? NULL : ss_texture_shown(controls->controls[row].texture);
+}
+
+/* ---- What the slider takes ---- */
+
+static skinslide_status check_complete(const skinslide_stage_controls *controls, skinslide_error *error) {
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
+        const control *own = &controls->controls[row];
+        const char *name = inputs()[row].shown.name;
+        if (own->refused)
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "%s was refused", name);
+        if (ss_texture_wanted(own->texture) && !ss_texture_values(own->texture))
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the files of %s were not given", name);
+    }
+    return SKINSLIDE_OK;
+}
+
+/* Paint by vertex times a map, into the paint's product. */
+static skinslide_status multiply(skinslide_stage_controls *controls, int32_t map_row, skinslide_error *error) {
+    int32_t row = inputs()[map_row].multiplies, count = controls->patch->mesh->vertex_count;
+    const ss_input *input = &inputs()[row];
+    const ss_texture *texture = controls->controls[map_row].texture;
+    const float *map = ss_texture_values(texture);
+    control *own = &controls->controls[row];
+    if (own->product)
+        return SKINSLIDE_OK;
+    if (!own->own_product)
+        own->own_product = SS_NEW(&controls->memory, float, count);
+    if (!own->own_product)
+        return ss_out_of_memory(error);
+    for (int32_t v = 0; v < count; v++) {
+        own->own_product[v] = own->values[v] * map[v];
+        if (!ss_in_range(input->range, (double)own->own_product[v])) {
+            char name[256];
+            ss_name_property(SKINSLIDE_STAGE_CONTROLS, row, controls->patch->name, name);
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s times " SS_NAMED ": " SS_FILED " at point %d is %g; it must be %s",
+                           name, SS_NAME(ss_texture_shown(texture)->name), SS_FILE(ss_texture_shown(texture)->file), v,
+                           (double)own->own_product[v], input->wanted);
+        }
+    }
+    own->product = own->own_product;
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status multiply_all(skinslide_stage_controls *controls, skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t row = 0; !status && row < SS_CONTROL_ROWS; row++)
+        if (ss_texture_values(controls->controls[row].texture) &&
+            controls->controls[inputs()[row].multiplies].layout == LAYOUT_VERTEX)
+            status = multiply(controls, row, error);
+    return status;
+}
+
+static void put_array(skinslide_controls *out, size_t place, const float *values) {
+    memcpy((char *)out + place, &values, sizeof values);
+}
+
+static void put(const skinslide_stage_controls *controls, int32_t row, skinslide_controls *out) {
+    const ss_input *input = &inputs()[row];
+    const control *own = &controls->controls[row];
+    if (input->kind == SS_KIND_TEXTURE) {
+        const control *paint = &controls->controls[input->multiplies];
+        const float *map = ss_texture_values(own->texture);
+        if (map)
+            put_array(out, inputs()[input->multiplies].place, paint->layout == LAYOUT_VERTEX ? paint->product : map);
+    } else if (input->kind != SS_KIND_NUMBER && own->values) {
+        put_array(out, own->layout == LAYOUT_FACE ? input->face_place : input->place, own->values);
+    }
+}
+
+static void put_numbers(const skinslide_stage_controls *controls, skinslide_controls *out) {
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
+        double live = row == SS_ROW_ENVELOPE ? controls->patch->live.envelope : 1;
+        float number = (float)(controls->controls[row].number * live);
+        if (inputs()[row].kind == SS_KIND_NUMBER)
+            memcpy((char *)out + inputs()[row].place, &number, sizeof number);
+    }
+}
+
+skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
+                                              skinslide_error *error) {
+    if (!controls || !out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no place for them");
+    skinslide_status status = check_complete(controls, error);
+    if (!status)
+        status = multiply_all(controls, error);
+    if (status)
+        return status;
+    const ss_array *edges = &controls->patch->taken[SS_ROW_EDGES].array;
+    *out = (skinslide_controls)SKINSLIDE_CONTROLS_DEFAULT;
+    put_numbers(controls, out);
+    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) /* paint first, then the maps that multiply it */
+        put(controls, row, out);
+    out->edges = edges->count ? edges->values : NULL;
+    out->edge_count = edges->count / 2;
+    return SKINSLIDE_OK;
+}

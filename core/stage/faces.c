@@ -1,0 +1,243 @@
+/* Which faces of a mesh a patch is made of: those that a primvar chooses, else those of the GeomSubset child of its name. */
+#include "stage.h"
+
+#include "mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int32_t face_count_of(const skinslide_stage_patch *patch) {
+    return patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count;
+}
+
+/* ---- Chosen by a primvar ---- */
+
+static skinslide_status check_primvar(const skinslide_stage_patch *patch, const ss_record *record, bool *by_face,
+                                      skinslide_error *error) {
+    const skinslide_value *value = &record->value;
+    const char *interpolation = ss_interpolation(record);
+    bool good = value->type == SKINSLIDE_VALUE_BLOCKED || value->type == SKINSLIDE_VALUE_BOOL ||
+                value->type == SKINSLIDE_VALUE_INT32 || value->type == SKINSLIDE_VALUE_FLOAT;
+    if (!good || (ss_has_value(record) && (!value->is_array || value->width != 1)))
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " is " SS_NAMED "; it must be bool[], int[] or float[]",
+                       SS_NAME(value->name), SS_NAME(value->type_name));
+    *by_face = strcmp(interpolation, "uniform") == 0;
+    if (!*by_face && strcmp(interpolation, "vertex") != 0)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH,
+                       SS_NAMED " has interpolation " SS_NAMED "; it must be uniform (by face) or vertex", SS_NAME(value->name),
+                       SS_NAME(interpolation));
+    if (!ss_has_value(record))
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " has no value", SS_NAME(value->name));
+    skinslide_status status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
+    if (status)
+        return status;
+    return *by_face ? ss_check_length(record, face_count_of(patch), "faces", SKINSLIDE_BAD_PATCH, error)
+                    : ss_check_length(record, patch->mesh->vertex_count, "points", SKINSLIDE_BAD_PATCH, error);
+}
+
+static bool is_chosen(const skinslide_stage_mesh *mesh, const ss_record *record, bool by_face, int32_t face) {
+    if (by_face)
+        return ss_number(record, face, 0) > 0;
+    const int32_t *indices = mesh->taken[SS_ROW_FACE_INDICES].array.values;
+    for (int32_t c = mesh->face_start[face]; c < mesh->face_start[face + 1]; c++)
+        if (!(ss_number(record, indices[c], 0) > 0))
+            return false;
+    return mesh->face_start[face] < mesh->face_start[face + 1];
+}
+
+/* The chosen faces into memory, ascending. */
+static skinslide_status choose(const skinslide_stage_patch *patch, const ss_record *record, ss_memory *memory, ss_array *faces,
+                               skinslide_error *error) {
+    bool by_face = false;
+    skinslide_status status = check_primvar(patch, record, &by_face, error);
+    for (int64_t i = 0; !status && i < record->length; i++)
+        if (!isfinite(ss_number(record, i, 0)))
+            status = ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED "[%lld] is %g", SS_NAME(record->value.name), (long long)i,
+                             ss_number(record, i, 0));
+    if (status)
+        return status;
+    int32_t *chosen = SS_NEW(memory, int32_t, face_count_of(patch)), count = 0;
+    if (!chosen)
+        return ss_out_of_memory(error);
+    for (int32_t face = 0; face < face_count_of(patch); face++)
+        if (is_chosen(patch->mesh, record, by_face, face))
+            chosen[count++] = face;
+    *faces = (ss_array){chosen, count};
+    if (!count)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is above 0 %s", SS_NAME(record->value.name),
+                       by_face ? "on no face" : "on all points of no face");
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_record *record, skinslide_error *error) {
+    ss_array faces = {0};
+    patch->faces_by_primvar = record->value.type != SKINSLIDE_VALUE_NONE;
+    if (!patch->faces_by_primvar)
+        return SKINSLIDE_OK;
+    skinslide_status status = choose(patch, record, &patch->memory, &faces, error);
+    if (!status) {
+        patch->faces = faces;
+        ss_mark_inside(patch);
+    }
+    return status;
+}
+
+/* Values may vary where the faces do not, as those of a mesh that some tool resampled. */
+skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
+                                        skinslide_error *error) {
+    ss_memory scratch = {0};
+    ss_array faces = {0};
+    skinslide_status status = choose(patch, record, &scratch, &faces, error);
+    bool same = faces.count == patch->faces.count &&
+                (!faces.count || memcmp(faces.values, patch->faces.values, (size_t)faces.count * sizeof(int32_t)) == 0);
+    if (!status && !same) {
+        char text[32];
+        skinslide_stage_frame_text(frame, text);
+        status = ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " chooses other faces at frame %s; patches are fixed",
+                         SS_NAME(record->value.name), text);
+    }
+    ss_free(&scratch);
+    return status;
+}
+
+/* ---- Of a GeomSubset ---- */
+
+static skinslide_status check_subset(const skinslide_stage_subset *subset, skinslide_error *error) {
+    const char *type = subset->type_name && *subset->type_name ? subset->type_name : "prim without a type";
+    if (!subset->is_subset)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is a " SS_NAMED ", not a GeomSubset",
+                       SS_NAME(subset->path), SS_NAME(type));
+    ss_record element;
+    skinslide_status status = ss_open(subset->element_type, &element, error);
+    if (status || !ss_has_value(&element))
+        return status;
+    bool is_text = element.value.type == SKINSLIDE_VALUE_TEXT && !element.value.is_array;
+    const char *said = is_text ? element.value.data : element.value.type_name;
+    if (!is_text || strcmp(said, "face") != 0)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "the GeomSubset " SS_NAMED " has elementType " SS_NAMED "; it must be face",
+                       SS_NAME(subset->path), SS_NAME(said));
+    return SKINSLIDE_OK;
+}
+
+/* Sorts faces, each once. */
+static void sort_faces(ss_array *faces) {
+    int32_t *values = faces->values, count = 0;
+    qsort(values, (size_t)faces->count, sizeof *values, ss_ascending);
+    for (int32_t i = 0; i < faces->count; i++)
+        if (!count || values[i] != values[count - 1])
+            values[count++] = values[i];
+    faces->count = count;
+}
+
+static skinslide_status copy_indices(const ss_record *indices, ss_memory *memory, ss_array *out, skinslide_error *error) {
+    skinslide_status status = ss_check_integers(indices, SKINSLIDE_BAD_PATCH, error);
+    if (status)
+        return status;
+    int32_t *copy = indices->length > INT32_MAX ? NULL : SS_NEW(memory, int32_t, indices->length);
+    if (!copy)
+        return ss_out_of_memory(error);
+    ss_copy_integers(indices, copy);
+    *out = (ss_array){copy, (int32_t)indices->length};
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status check_faces(const ss_array *faces, int32_t face_count, const char *path, skinslide_error *error) {
+    const int32_t *values = faces->values;
+    if (!faces->count)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: the GeomSubset " SS_NAMED " is empty", SS_NAME(path));
+    for (int32_t i = 0; i < faces->count; i++)
+        if (values[i] < 0 || values[i] >= face_count)
+            return ss_fail(error, SKINSLIDE_BAD_PATCH, "the GeomSubset " SS_NAMED " has face %d, but the mesh has %d faces",
+                           SS_NAME(path), values[i], face_count);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status take_indices(skinslide_stage_patch *patch, const char *path, const ss_record *indices,
+                                     skinslide_error *error) {
+    ss_array authored = {0}, faces = {0};
+    skinslide_status status = copy_indices(indices, &patch->memory, &authored, error);
+    if (!status)
+        status = copy_indices(indices, &patch->memory, &faces, error);
+    if (status)
+        return status;
+    sort_faces(&faces);
+    status = check_faces(&faces, face_count_of(patch), path, error);
+    if (!status) {
+        patch->subset = authored;
+        patch->faces = faces;
+        ss_mark_inside(patch);
+    }
+    return status;
+}
+
+static skinslide_status none_there(const skinslide_stage_patch *patch, skinslide_error *error) {
+    char primvar[256];
+    ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_FACES, patch->name, primvar);
+    return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: there is neither %s nor a GeomSubset " SS_NAMED " under the mesh",
+                   primvar, SS_NAME(patch->name));
+}
+
+static skinslide_status take_subset(skinslide_stage_patch *patch, const skinslide_stage_subset *subset,
+                                    skinslide_error *error) {
+    if (!subset)
+        return none_there(patch, error);
+    skinslide_stage_subset own = SKINSLIDE_STAGE_SUBSET_DEFAULT;
+    if (subset->size < sizeof subset->size)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a subset begins with its size");
+    memcpy(&own, subset, subset->size < sizeof own ? subset->size : sizeof own);
+    if (!own.path)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a subset has no path");
+    ss_record indices;
+    skinslide_status status = check_subset(&own, error);
+    if (!status)
+        status = ss_open(own.indices, &indices, error);
+    return status ? status : take_indices(patch, own.path, &indices, error);
+}
+
+skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch, const skinslide_stage_subset *subset,
+                                                   skinslide_error *error) {
+    if (!patch)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch");
+    if (patch->faces_by_primvar)
+        return SKINSLIDE_OK;
+    skinslide_status status = take_subset(patch, subset, error);
+    patch->taken[SS_ROW_FACES].refused = status != SKINSLIDE_OK;
+    return status;
+}
+
+skinslide_status skinslide_stage_patch_check_subset(const skinslide_stage_patch *patch, const skinslide_value *indices,
+                                                    double frame, skinslide_error *error) {
+    static const ss_input integers = {.kind = SS_KIND_INTEGERS};
+    if (!patch)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch");
+    ss_record record;
+    skinslide_status status = ss_open(indices, &record, error);
+    const ss_taken taken = {.array = patch->subset};
+    if (status || patch->faces_by_primvar || patch->taken[SS_ROW_FACES].refused)
+        return status;
+    return ss_check_plain(&integers, &record, &taken, frame, SKINSLIDE_BAD_PATCH, error);
+}
+
+/* ---- What is inside ---- */
+
+static void mark_face(skinslide_stage_patch *patch, int32_t face) {
+    const int32_t *indices = patch->mesh->taken[SS_ROW_FACE_INDICES].array.values;
+    patch->face_inside[face] = 1;
+    for (int32_t c = patch->mesh->face_start[face]; c < patch->mesh->face_start[face + 1]; c++)
+        patch->vertex_inside[indices[c]] = 1;
+}
+
+void ss_mark_inside(skinslide_stage_patch *patch) {
+    memset(patch->face_inside, 0, (size_t)face_count_of(patch));
+    memset(patch->vertex_inside, 0, (size_t)patch->mesh->vertex_count);
+    for (int32_t i = 0; i < patch->faces.count; i++)
+        mark_face(patch, ((const int32_t *)patch->faces.values)[i]);
+    for (int32_t face = 0; !patch->faces.count && face < face_count_of(patch); face++)
+        mark_face(patch, face);
+}
+
+const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count) {
+    *face_count = patch->faces.count;
+    return patch->faces.count ? patch->faces.values : NULL;
+}

@@ -1,0 +1,263 @@
+/* Which patches a prim carries, why they cannot be slid, and what of its names is not as it was meant. */
+#include "stage.h"
+
+#include "schema.inc"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char schema_prefix[] = SS_SCHEMA ":";
+static const char *const spaces[] = {SS_NAMESPACE, "primvars:" SS_NAMESPACE};
+enum { SPACES = 2 };
+
+typedef struct search {
+    skinslide_stage_finding finding; /* the first member: what is given out */
+    ss_memory memory;
+    skinslide_stage_prim prim;
+    const char **patches;
+    const skinslide_stage_problem **problems;
+    int32_t room; /* for problems, before there must be more */
+} search;
+
+/* ---- Saying ---- */
+
+static bool make_room(search *own) {
+    int32_t count = own->finding.problem_count, room = own->room ? 2 * own->room : 8;
+    if (count < own->room)
+        return true;
+    const skinslide_stage_problem **problems = SS_NEW(&own->memory, const skinslide_stage_problem *, room);
+    if (!problems)
+        return false;
+    if (count)
+        memcpy(problems, own->problems, (size_t)count * sizeof *problems);
+    own->problems = problems, own->room = room;
+    return true;
+}
+
+__attribute__((format(printf, 4, 5))) static void say(search *own, skinslide_severity severity, const char *patch,
+                                                      const char *format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    int length = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    char *message = SS_NEW(&own->memory, char, (int64_t)length + 1);
+    skinslide_stage_problem *problem = SS_NEW(&own->memory, skinslide_stage_problem, 1);
+    if (message && problem && make_room(own)) {
+        vsnprintf(message, (size_t)length + 1, format, again);
+        *problem = (skinslide_stage_problem){severity, patch, message};
+        own->problems[own->finding.problem_count++] = problem;
+    }
+    va_end(again);
+}
+
+/* ---- Names ---- */
+
+/* "elbow" of "SkinSlideAPI:elbow", "" of the schema alone, NULL of another. */
+static const char *patch_of_schema(const char *schema) {
+    if (strcmp(schema, SS_SCHEMA) == 0)
+        return "";
+    return strncmp(schema, schema_prefix, sizeof schema_prefix - 1) == 0 ? schema + sizeof schema_prefix - 1 : NULL;
+}
+
+static void list_patches(search *own) {
+    bool nameless = false;
+    for (int32_t i = 0; i < own->prim.schema_count; i++) {
+        const char *patch = patch_of_schema(own->prim.schemas[i]);
+        if (patch && *patch)
+            own->patches[own->finding.patch_count++] = ss_copy_text(&own->memory, patch);
+        nameless = nameless || (patch && !*patch);
+    }
+    if (nameless)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "%s is applied without a patch's name; apply %s:NAME", SS_SCHEMA, SS_SCHEMA);
+}
+
+/* A property in a namespace of patches, "skinSlide:left:elbow:envelope": of left:elbow, its envelope. */
+typedef struct place {
+    int32_t space;
+    const char *patch;
+    size_t patch_length; /* 0: of no patch */
+    const char *name;
+    size_t name_length;
+} place;
+
+static place place_of(const char *property) {
+    for (int32_t space = 0; space < SPACES; space++) {
+        static const char indices[] = ":indices";
+        size_t skipped = strlen(spaces[space]), length = strlen(property);
+        if (strncmp(property, spaces[space], skipped) != 0)
+            continue;
+        if (length > sizeof indices - 1 && strcmp(property + length - (sizeof indices - 1), indices) == 0)
+            length -= sizeof indices - 1;
+        if (length < skipped)
+            break;
+        const char *patch = property + skipped, *name = property + length;
+        while (name > patch && name[-1] != ':')
+            name--;
+        size_t patch_length = name > patch ? (size_t)(name - patch) - 1 : 0;
+        return (place){space, patch, patch_length, name, (size_t)(property + length - name)};
+    }
+    return (place){0};
+}
+
+static bool is_of(const place *at, const char *patch) {
+    return strlen(patch) == at->patch_length && strncmp(at->patch, patch, at->patch_length) == 0;
+}
+
+static bool is_applied(const search *own, const place *at) {
+    for (int32_t i = 0; i < own->finding.patch_count; i++)
+        if (is_of(at, own->patches[i]))
+            return true;
+    return false;
+}
+
+static bool is_setting(const place *at) {
+    for (int32_t group = SKINSLIDE_STAGE_PATCH; group <= SKINSLIDE_STAGE_CONTROLS; group++) {
+        int32_t count;
+        const ss_input *inputs = ss_inputs((skinslide_stage_group)group, &count);
+        for (int32_t i = 0; i < count; i++)
+            if (strcmp(inputs[i].shown.prefix, spaces[at->space]) == 0 && strlen(inputs[i].shown.name) == at->name_length &&
+                strncmp(inputs[i].shown.name, at->name, at->name_length) == 0)
+                return true;
+    }
+    return false;
+}
+
+/* ---- Properties of no patch, and of no setting ---- */
+
+static int by_text(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The names of patches that have properties but are not applied, each once, in order. */
+static void say_unapplied(search *own) {
+    const char **names = SS_NEW(&own->memory, const char *, own->prim.property_count);
+    int32_t count = 0;
+    for (int32_t i = 0; names && i < own->prim.property_count; i++) {
+        place at = place_of(own->prim.properties[i]);
+        if (!at.patch_length || is_applied(own, &at) || ss_is_reserved(at.patch, strcspn(at.patch, ":")))
+            continue;
+        char *name = SS_NEW(&own->memory, char, (int64_t)at.patch_length + 1);
+        if (!name)
+            return;
+        memcpy(name, at.patch, at.patch_length);
+        names[count++] = name;
+    }
+    if (count)
+        qsort(names, (size_t)count, sizeof *names, by_text);
+    for (int32_t i = 0; i < count; i++)
+        if (!i || strcmp(names[i], names[i - 1]) != 0)
+            say(own, SKINSLIDE_SEVERITY_WARNING, names[i],
+                "has properties, but %s:%s is not applied to the prim, so it does not slide", SS_SCHEMA, names[i]);
+}
+
+/* Whether a property lies in the namespace of a patch, be it deeper than its settings are. */
+static bool lies_in(const place *at, const char *patch) {
+    size_t length = strlen(patch);
+    return at->patch_length >= length && strncmp(at->patch, patch, length) == 0 && at->patch[length] == ':';
+}
+
+static void say_unknown(search *own, const char *patch, int32_t space) {
+    for (int32_t i = 0; i < own->prim.property_count; i++) {
+        place at = place_of(own->prim.properties[i]);
+        bool of_another = is_applied(own, &at) && !is_of(&at, patch);
+        if (!at.patch_length || at.space != space || !lies_in(&at, patch) || of_another ||
+            (is_of(&at, patch) && is_setting(&at)))
+            continue;
+        say(own, SKINSLIDE_SEVERITY_WARNING, patch, "%s is no setting of a patch, and counts for nothing",
+            own->prim.properties[i]);
+    }
+}
+
+/* ---- Why not ---- */
+
+static void say_why_not(search *own) {
+    const skinslide_stage_prim *prim = &own->prim;
+    const char *type = prim->type_name && *prim->type_name ? prim->type_name : "prim without a type";
+    int32_t before = own->finding.problem_count;
+    if (prim->instance)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+            "is inside an instance, whose points are shared; author instanceable = false on %s", prim->instance);
+    else if (prim->instancer)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+            "is a prototype of the point instancer %s, whose instances share its points; slide a mesh outside it, or put the "
+            "baked mesh in its place",
+            prim->instancer);
+    else if (!prim->is_defined)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+            "is not defined, there are only overs; is the path right, and does the cache below it open?");
+    else if (!prim->is_mesh)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "is a %s; %s applies to Mesh only", type, SS_SCHEMA);
+    else if (prim->slid_by)
+        say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "is slid already, by %s; bake that file, or put the cache in its place",
+            prim->slid_by);
+    else if (prim->baked_by)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+            "points are slid already, by the bake in %s; slide the cache instead: open the stage without that layer, or remove "
+            "the baked attributes from it",
+            prim->baked_by);
+    else if (!prim->point_samples && (prim->has_joint_indices || prim->blend_shape_count))
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+            "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)");
+    own->finding.slides = own->finding.problem_count == before;
+}
+
+/* ---- The finding ---- */
+
+static skinslide_status prepare(search *own, const skinslide_stage_prim *prim, skinslide_error *error) {
+    own->prim = (skinslide_stage_prim)SKINSLIDE_STAGE_PRIM_DEFAULT;
+    memcpy(&own->prim, prim, prim->size < sizeof own->prim ? prim->size : sizeof own->prim);
+    if (own->prim.schema_count < 0 || own->prim.property_count < 0 || (own->prim.schema_count && !own->prim.schemas) ||
+        (own->prim.property_count && !own->prim.properties))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no names of schemas or properties, or a negative count of them");
+    own->patches = SS_NEW(&own->memory, const char *, own->prim.schema_count);
+    return own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+}
+
+static void look(search *own) {
+    list_patches(own);
+    if (own->memory.failed)
+        return;
+    if (own->prim.is_mesh)
+        say_unapplied(own);
+    for (int32_t i = 0; own->prim.is_mesh && i < own->finding.patch_count; i++)
+        for (int32_t space = 0; space < SPACES; space++)
+            say_unknown(own, own->patches[i], space);
+    if (own->finding.patch_count)
+        say_why_not(own);
+    own->finding.patches = own->patches;
+    own->finding.problems = own->problems;
+}
+
+skinslide_status skinslide_stage_find(const skinslide_stage_prim *prim, skinslide_stage_finding **out, skinslide_error *error) {
+    if (!prim || prim->size < sizeof prim->size || !out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no prim that begins with its size, or no place for the finding");
+    search *own = calloc(1, sizeof *own);
+    if (!own)
+        return ss_out_of_memory(error);
+    skinslide_status status = prepare(own, prim, error);
+    if (!status)
+        look(own);
+    if (!status && own->memory.failed)
+        status = ss_out_of_memory(error);
+    if (status)
+        skinslide_stage_finding_destroy(&own->finding);
+    else
+        *out = &own->finding;
+    return status;
+}
+
+void skinslide_stage_finding_destroy(skinslide_stage_finding *finding) {
+    if (!finding)
+        return;
+    search *own = (search *)finding;
+    ss_free(&own->memory);
+    free(own);
+}
+
+skinslide_status skinslide_stage_nothing(const char *where, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_PATCH, "nothing to slide: no mesh%s%.300s has %s applied", where ? " " : "",
+                   where ? where : "", SS_SCHEMA);
+}

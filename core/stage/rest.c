@@ -1,0 +1,71 @@
+/* Rest points: the pose in which nothing slides. Of several candidates the first that is authored counts, good or bad. */
+#include "stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh) {
+    return mesh->rest ? mesh->rest_source : "";
+}
+
+static skinslide_status none_found(skinslide_error *error) {
+    int32_t count;
+    const ss_input *inputs = ss_inputs(SKINSLIDE_STAGE_MESH, &count);
+    const skinslide_stage_input *own = &inputs[SS_ROW_REST_POINTS].shown, *primvar = &inputs[SS_ROW_REST].shown;
+    return ss_fail(error, SKINSLIDE_BAD_POINTS,
+                   "has no rest points: points has samples but no default value, so author the rest pose as %s%s or %s%s "
+                   "(point3f[], vertex)",
+                   own->prefix, own->name, primvar->prefix, primvar->name);
+}
+
+/* By vertex, as varying values of a mesh are too. */
+static skinslide_status check_interpolation(const ss_record *record, const char *source, skinslide_error *error) {
+    const char *interpolation = ss_interpolation(record);
+    if (ss_is_by_vertex(interpolation))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED " has interpolation " SS_NAMED "; it must be vertex",
+                   SS_NAME(source), SS_NAME(interpolation));
+}
+
+static skinslide_status check_finite(const float *rest, int64_t count, const char *source, skinslide_error *error) {
+    for (int64_t i = 0; i < count; i++, rest += 3)
+        if (!isfinite(rest[0]) || !isfinite(rest[1]) || !isfinite(rest[2]))
+            return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED "[%lld] is (%g, %g, %g)", SS_NAME(source),
+                           (long long)i, (double)rest[0], (double)rest[1], (double)rest[2]);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status copy_rest(skinslide_stage_mesh *mesh, const ss_record *record, const char *source,
+                                  skinslide_error *error) {
+    if (record->length != mesh->vertex_count)
+        return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED " has %lld values, but points has %d",
+                       SS_NAME(source), (long long)record->length, mesh->vertex_count);
+    float *rest = SS_NEW(&mesh->memory, float, 3 * record->length);
+    mesh->rest_source = ss_copy_text(&mesh->memory, source);
+    if (mesh->memory.failed)
+        return ss_out_of_memory(error);
+    ss_copy_floats(record, rest);
+    skinslide_status status = check_finite(rest, record->length, source, error);
+    if (!status)
+        mesh->rest = rest;
+    return status;
+}
+
+skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error) {
+    char source[256];
+    bool is_last = row == SS_ROW_DEFAULT_POINTS, is_primvar = row > SS_ROW_REST_POINTS && !is_last;
+    if (mesh->rest_row >= 0 && mesh->rest_row < row)
+        return SKINSLIDE_OK;
+    if (record->value.type == SKINSLIDE_VALUE_NONE)
+        return is_last ? none_found(error) : SKINSLIDE_OK;
+    snprintf(source, sizeof source, SS_NAMED "%s", SS_NAME(record->value.name), is_last ? " (default)" : "");
+    mesh->rest_row = row;
+    mesh->rest = NULL;
+    skinslide_status status = is_primvar ? check_interpolation(record, source, error) : SKINSLIDE_OK;
+    if (!status && !ss_has_value(record))
+        status = none_found(error);
+    if (!status)
+        status = ss_check_positions(record, SKINSLIDE_BAD_POINTS, error);
+    return status ? status : copy_rest(mesh, record, source, error);
+}

@@ -1,0 +1,274 @@
+/* What the files of this room know of each other: records, the table of all that is read, and the handles.
+ *
+ *     finding                                          a prim
+ *     inputs ─► values ─► topology, rest, scheme       a mesh
+ *                         settings (faces)             a patch
+ *                         controls (textures)          a frame
+ *                         derived (times)              what follows from points */
+#ifndef SS_STAGE_H
+#define SS_STAGE_H
+
+#include "base.h"
+#include "skinslide/stage.h"
+
+/* ---- values.c: records ---- */
+
+/* A record that is whole: with its names, and of no value where there is none. */
+typedef struct ss_record {
+    skinslide_value value;
+    skinslide_value indices; /* of type NONE where it is not indexed */
+    int64_t length;          /* elements, indices applied */
+} ss_record;
+
+/* NULL opens as no value. Fails with BAD_ARGUMENT where the record itself is none. */
+skinslide_status ss_open(const skinslide_value *given, ss_record *record, skinslide_error *error);
+bool ss_has_value(const ss_record *record);
+/* Whether it is one number, and no array. */
+bool ss_is_number(const ss_record *record);
+/* As authored, else constant, which is USD's. */
+const char *ss_interpolation(const ss_record *record);
+/* vertex, or varying, which on a mesh is the same. */
+bool ss_is_by_vertex(const char *interpolation);
+/* Names the first index that is out of range. */
+skinslide_status ss_check_indices(const ss_record *record, skinslide_status status, skinslide_error *error);
+/* Number k of an element, indices applied, as a double. */
+double ss_number(const ss_record *record, int64_t element, int32_t k);
+
+/* Checks what the record is an array of. status is what a fault is called. Fails with it. */
+skinslide_status ss_check_integers(const ss_record *record, skinslide_status status, skinslide_error *error);
+skinslide_status ss_check_floats(const ss_record *record, skinslide_status status, skinslide_error *error);
+skinslide_status ss_check_positions(const ss_record *record, skinslide_status status, skinslide_error *error);
+skinslide_status ss_check_length(const ss_record *record, int64_t count, const char *of, skinslide_status status,
+                                 skinslide_error *error);
+/* Copies a record that was checked: [length], and [length][width]. */
+void ss_copy_integers(const ss_record *record, int32_t *out);
+void ss_copy_floats(const ss_record *record, float *out);
+
+/* A value that is none of these, in a sentence: 'x' of text, a number, the name of another type. */
+const char *ss_shown(const ss_record *record, char text[256]);
+
+/* Names and paths of any length in a sentence of a limited one: the head of a name, the tail of a path.
+ *     ss_fail(error, status, SS_NAMED " has no value", SS_NAME(name)) */
+#define SS_NAMED      "%.*s%s"
+#define SS_NAME(name) ss_name_length(name), (name), ss_name_more(name)
+#define SS_FILED      "%s%s"
+#define SS_FILE(path) ss_file_less(path), ss_file_tail(path)
+int ss_name_length(const char *name);
+const char *ss_name_more(const char *name);
+const char *ss_file_less(const char *path);
+const char *ss_file_tail(const char *path);
+
+/* A copy of text in memory; NULL where that failed. */
+char *ss_copy_text(ss_memory *memory, const char *text);
+
+/* ---- inputs.c: the table ---- */
+
+typedef enum ss_kind {
+    SS_KIND_POINTS,
+    SS_KIND_FACE_COUNTS,
+    SS_KIND_FACE_INDICES,
+    SS_KIND_ORIENTATION,
+    SS_KIND_REST,
+    SS_KIND_CHOICE, /* one of its tokens */
+    SS_KIND_WORD,   /* any token */
+    SS_KIND_INTEGERS,
+    SS_KIND_FLOATS,
+    SS_KIND_FACES,
+    SS_KIND_CORNERS,
+    SS_KIND_EDGES,
+    SS_KIND_NUMBER,  /* one for the patch */
+    SS_KIND_PAINT,   /* by point, by face or constant */
+    SS_KIND_FACTORS, /* by painted edge */
+    SS_KIND_TEXTURE, /* multiplies paint by point */
+    SS_KIND_NORMALS,
+    SS_KIND_RATE
+} ss_kind;
+
+/* What a number must be. */
+typedef enum ss_range { SS_RANGE_FINITE, SS_RANGE_NOT_NEGATIVE, SS_RANGE_DENSITY } ss_range;
+
+typedef struct ss_input {
+    skinslide_stage_input shown;
+    ss_kind kind;
+    ss_range range;
+    const char *wanted;  /* the range in words */
+    double fallback;     /* of a number */
+    size_t place;        /* of numbers, in skinslide_controls: the number, or the array by point */
+    size_t face_place;   /* the array by face; 0: not by face */
+    bool drops_constant; /* a constant makes no difference */
+    float off_patch;     /* what paint is taken for off the patch */
+    int32_t multiplies;  /* of a texture: the paint, among the inputs of its group */
+    int32_t channel;     /* of a texture: its channel, among the inputs of the patch */
+    int32_t pose_count;  /* of what is derived */
+} ss_input;
+
+/* Places in the tables of the groups. */
+enum {
+    SS_ROW_POINTS,
+    SS_ROW_FACE_COUNTS,
+    SS_ROW_FACE_INDICES,
+    SS_ROW_ORIENTATION,
+    SS_ROW_REST_POINTS,
+    SS_ROW_REST,
+    SS_ROW_PREF,
+    SS_ROW_CAPITAL_PREF,
+    SS_ROW_PRIVATE_PREF,
+    SS_ROW_DEFAULT_POINTS,
+    SS_MESH_ROWS
+};
+enum {
+    SS_ROW_SCHEME,
+    SS_ROW_BOUNDARY_RULE,
+    SS_ROW_TRIANGLE_RULE,
+    SS_ROW_CREASE_LENGTHS,
+    SS_ROW_CREASE_INDICES,
+    SS_ROW_CREASE_SHARPNESSES,
+    SS_ROW_CORNER_INDICES,
+    SS_ROW_CORNER_SHARPNESSES,
+    SS_ROW_HOLE_INDICES,
+    SS_SUBDIVISION_ROWS
+};
+enum {
+    SS_ROW_FACES,
+    SS_ROW_BOUNDARY,
+    SS_ROW_HOLES,
+    SS_ROW_RULE,
+    SS_ROW_INTERPOLATION,
+    SS_ROW_CORNERS,
+    SS_ROW_EDGES,
+    SS_ROW_WEIGHT_CHANNEL,
+    SS_ROW_DENSITY_CHANNEL,
+    SS_ROW_ST,
+    SS_PATCH_ROWS
+};
+enum {
+    SS_ROW_ENVELOPE,
+    SS_ROW_WEIGHT,
+    SS_ROW_WEIGHT_MAP,
+    SS_ROW_MAX_DISTANCE,
+    SS_ROW_DENSITY,
+    SS_ROW_DENSITY_MAP,
+    SS_ROW_EDGE_DENSITIES,
+    SS_CONTROL_ROWS
+};
+enum { SS_ROW_NORMALS_PRIMVAR, SS_ROW_NORMALS, SS_ROW_VELOCITIES, SS_ROW_ACCELERATIONS, SS_DERIVED_ROWS };
+enum { SS_ROW_LIVE_ENVELOPE, SS_ROW_LIVE_INTERPOLATION, SS_ROW_LIVE_LOOKUP, SS_LIVE_ROWS };
+
+/* The table of a group and its length. */
+const ss_input *ss_inputs(skinslide_stage_group group, int32_t *count);
+/* The place of an input in the table of a group; -1 where it is not of that. */
+int32_t ss_row_of(skinslide_stage_group group, const skinslide_stage_input *input);
+/* Names that stand where a patch's would. */
+bool ss_is_reserved(const char *name, size_t length);
+/* The property of a patch, in a sentence. */
+void ss_name_property(skinslide_stage_group group, int32_t row, const char *patch, char text[256]);
+/* What a number must be for a range. */
+bool ss_in_range(ss_range range, double number);
+
+/* ---- What was taken ---- */
+
+/* An array of int32_t or of float: both have four bytes. */
+typedef struct ss_array {
+    void *values;
+    int32_t count;
+} ss_array;
+
+/* What an input of fixed meaning came to. */
+typedef struct ss_taken {
+    ss_array array;
+    const char *word;
+    int32_t choice;
+    bool refused;
+} ss_taken;
+
+/* settings.c: takes a record of the kinds CHOICE, WORD, INTEGERS and FLOATS; the fallback where it has no value. */
+skinslide_status ss_take_plain(const ss_input *input, const ss_record *record, skinslide_status status, ss_memory *memory,
+                               ss_taken *taken, skinslide_error *error);
+/* Takes one number, the fallback where there is none. */
+skinslide_status ss_take_number(const ss_input *input, const ss_record *record, double *number, skinslide_error *error);
+/* Takes the fallbacks of a table. */
+skinslide_status ss_take_fallbacks(const ss_input *inputs, int32_t count, ss_memory *memory, ss_taken *taken,
+                                   skinslide_error *error);
+/* Whether a record comes to what was taken; names the frame where it does not. */
+skinslide_status ss_check_plain(const ss_input *input, const ss_record *record, const ss_taken *taken, double frame,
+                                skinslide_status status, skinslide_error *error);
+/* Fails where one of some was refused. */
+skinslide_status ss_check_refused(const ss_input *inputs, const ss_taken *taken, int32_t count, skinslide_error *error);
+
+/* ---- Handles ---- */
+
+struct skinslide_stage_mesh {
+    ss_memory memory;
+    ss_taken taken[SS_MESH_ROWS]; /* arrays of face counts and indices */
+    ss_taken subdivision[SS_SUBDIVISION_ROWS];
+    skinslide_subdivision subdivided; /* points into subdivision; for skinslide_stage_mesh_get */
+    int32_t vertex_count;             /* -1: no points yet */
+    bool has_faces;                   /* counts and indices fit each other and the points */
+    int32_t *face_start;              /* [face_count + 1] */
+    float *rest;                      /* NULL: none yet */
+    const char *rest_source;
+    int32_t rest_row; /* of the candidate that counts, good or bad; -1: none yet */
+    bool left_handed;
+};
+
+/* The mesh as the core's own functions take it, without rest points. */
+skinslide_mesh ss_faces_of(const skinslide_stage_mesh *mesh);
+
+/* rest.c, scheme.c: what skinslide_stage_mesh_take and *_check do for their inputs. */
+skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error);
+skinslide_status ss_take_subdivision(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error);
+skinslide_status ss_check_subdivision_still(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record,
+                                            double frame, skinslide_error *error);
+
+struct skinslide_stage_patch {
+    ss_memory memory;
+    const skinslide_stage_mesh *mesh;
+    const char *name;
+    skinslide_stage_live live;
+    ss_taken taken[SS_PATCH_ROWS];
+    const char *st; /* "primvars:st" */
+    bool faces_by_primvar;
+    ss_array faces;         /* ascending; none: every face counts */
+    ss_array subset;        /* as authored */
+    uint8_t *face_inside;   /* [face_count] */
+    uint8_t *vertex_inside; /* [vertex_count] */
+};
+
+/* faces.c */
+skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_record *record, skinslide_error *error);
+skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
+                                        skinslide_error *error);
+/* Marks the faces and vertices of the patch as inside. */
+void ss_mark_inside(skinslide_stage_patch *patch);
+
+/* ---- textures.c: one map ---- */
+
+typedef struct ss_texture ss_texture;
+
+/* NULL where memory is short. */
+ss_texture *ss_texture_create(const ss_input *input, const skinslide_stage_patch *patch);
+void ss_texture_destroy(ss_texture *texture);
+/* Takes the asset of a time. Nothing is known of its files then, but images of the time before are still held. */
+skinslide_status ss_texture_take(ss_texture *texture, const ss_record *record, skinslide_error *error);
+/* Whether there is a map. */
+bool ss_texture_wanted(const ss_texture *texture);
+/* Finds the tiles that the patch needs. st is that of the mesh's corners. What fails here and below drops the map. */
+skinslide_status ss_texture_find_tiles(ss_texture *texture, const float *st, skinslide_error *error);
+/* The next file, or NULL. */
+const skinslide_stage_need *ss_texture_need(const ss_texture *texture);
+bool ss_texture_holds(const ss_texture *texture, const char *path);
+/* Takes that file; with the last one samples the map, and checks it as the paint that it multiplies. */
+skinslide_status ss_texture_give(ss_texture *texture, const float *st, const skinslide_stage_file *file,
+                                 skinslide_error *error);
+/* Makes it no map. */
+void ss_texture_drop(ss_texture *texture);
+/* By vertex, 1 off the patch; NULL where there is no map, or none yet. */
+const float *ss_texture_values(const ss_texture *texture);
+const skinslide_stage_texture *ss_texture_shown(const ss_texture *texture);
+
+/* ---- times.c ---- */
+
+/* Up to `count` of the times next to a time, itself among them where the difference needs it: ascending. */
+int32_t ss_samples_around(const double *times, int64_t time_count, double time, int32_t count, double around[3]);
+
+#endif
