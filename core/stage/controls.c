@@ -322,7 +322,7 @@ skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *control
 }
 
 const skinslide_stage_texture *skinslide_stage_controls_texture(const skinslide_stage_controls *controls,
-                                                        const skinslide_stage_input *input) {
+                                                                const skinslide_stage_input *input) {
     int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
     return row < 0 ? NULL : ss_texture_shown(controls->controls[row].texture);
 }

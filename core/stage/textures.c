@@ -287,11 +287,11 @@ static skinslide_status describe(ss_texture *texture, skinslide_error *error) {
     skinslide_stage_tile *tiles = SS_NEW(&texture->memory, skinslide_stage_tile, texture->held.count);
     const char *channel = texture->held.count ? texture->held.images[0].image->channel : "";
     texture->map = (skinslide_stage_texture){.name = texture->name,
-                                         .file = shown_path(texture),
-                                         .channel = ss_copy_text(&texture->memory, channel),
-                                         .st = texture->patch->st,
-                                         .tile_count = texture->held.count,
-                                         .tiles = tiles};
+                                             .file = shown_path(texture),
+                                             .channel = ss_copy_text(&texture->memory, channel),
+                                             .st = texture->patch->st,
+                                             .tile_count = texture->held.count,
+                                             .tiles = tiles};
     if (texture->memory.failed)
         return ss_out_of_memory(error);
     for (int32_t i = 0; i < texture->held.count; i++) {
@@ -316,7 +316,7 @@ static skinslide_status sample(ss_texture *texture, const float *st, skinslide_e
         texture->values[v] = 1;
     if (!status && texture->held.count)
         status = skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, face_count, st}, tiles, texture->held.count,
- texture->values, &inner);
+                                          texture->values, &inner);
     ss_free(&scratch);
     return status ? of_map(texture, texture->map.file, status, &inner, error) : SKINSLIDE_OK;
 }

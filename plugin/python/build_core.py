@@ -31,7 +31,7 @@ def main(declarations: Path, source: Path, records: Path) -> None:
     """Emits a module that gives every function, struct and enum of the headers; calls release the GIL."""
     text, ffi = declarations.read_text(), FFI()
     ffi.cdef(text)
-    ffi.set_source("skinslide._core", "#include <skinslide/picture.h>")
+    ffi.set_source("skinslide._core", "#include <skinslide/picture.h>\n#include <skinslide/stage.h>")
     ffi.emit_c_code(str(source))
     records.write_text(HEAD + "".join(record(ffi, text, *names) for names in RECORDS.items()))
 

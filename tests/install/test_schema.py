@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from pxr import Plug, Usd, UsdGeom
+from pxr import Plug, Sdf, Usd, UsdGeom
+from skinslide._core import ffi, lib
 
 import stages
 from repository import ROOT
@@ -39,6 +40,52 @@ def test_committed_files_are_what_the_generator_makes(tmp_path):
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     for name in GENERATED:
         assert (tmp_path / name).read_text() == (SCHEMA / name).read_text(), f"run usdGenSchema in schema/: {name}"
+
+
+def test_the_tables_of_the_core_are_what_the_schema_says(tmp_path):
+    subprocess.run([sys.executable, SCHEMA / "tables.py", tmp_path / "schema.inc"], check=True)
+    made, committed = tmp_path / "schema.inc", ROOT / "core" / "stage" / "schema.inc"
+    assert made.read_text() == committed.read_text(), "run python tables.py in schema/"
+
+
+def read_by_the_core() -> dict[str, tuple[str, bool]]:
+    """The type of each property that the core reads in the schema's namespace, and whether it may vary, by name."""
+    found = {}
+    for group in (
+        lib.SKINSLIDE_STAGE_MESH,
+        lib.SKINSLIDE_STAGE_PATCH,
+        lib.SKINSLIDE_STAGE_CONTROLS,
+        lib.SKINSLIDE_STAGE_LIVE,
+    ):
+        each = lib.skinslide_stage_next_input(group, ffi.NULL)
+        while each:
+            prefix, name, type_name = (ffi.string(text).decode() for text in (each.prefix, each.name, each.type_name))
+            if prefix.startswith("skinSlide:"):
+                of_patch = group in (lib.SKINSLIDE_STAGE_PATCH, lib.SKINSLIDE_STAGE_CONTROLS)
+                varies = each.when == lib.SKINSLIDE_STAGE_ANIMATED
+                found[f"{prefix}{'__INSTANCE_NAME__:' if of_patch else ''}{name}"] = type_name, varies
+            each = lib.skinslide_stage_next_input(group, each)
+    return found
+
+
+def test_the_core_reads_what_the_schema_declares_and_nothing_else():
+    layer = Sdf.Layer.FindOrOpen(str(SCHEMA / "generatedSchema.usda"))
+    declared = [attribute for schema in layer.rootPrims for attribute in schema.attributes]
+    assert read_by_the_core() == {
+        each.name: (str(each.typeName), each.variability == Sdf.VariabilityVarying) for each in declared
+    }
+
+
+@pytest.mark.parametrize("schema", ["SkinSlideMeshAPI", "SkinSlideLiveAPI"])
+def test_what_need_not_be_applied_may_be(schema):
+    stage = stages.new_stage()
+    mesh = UsdGeom.Mesh.Define(stage, "/World/mesh").GetPrim()
+    assert mesh.CanApplyAPI(schema) and mesh.ApplyAPI(schema)
+    definition = Usd.SchemaRegistry().FindAppliedAPIPrimDefinition(schema)
+    assert definition.GetPropertyNames()
+    for name in definition.GetPropertyNames():
+        assert definition.GetPropertyDocumentation(name)
+        assert not mesh.GetAttribute(name).HasAuthoredValue()
 
 
 def test_installed_files_are_the_committed_ones():

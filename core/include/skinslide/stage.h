@@ -11,7 +11,7 @@
  *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, and the child
  *        prim of the patch's name to skinslide_stage_patch_take_subset.
  *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
- *        skinslide_stage_controls_take; then, for maps, the texture coordinates and the files that it asks for.
+ *        skinslide_stage_controls_take; then, for textures, the texture coordinates and the files that it asks for.
  *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the group SUBDIVISION to skinslide_stage_mesh_take.
  *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes.
  *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
@@ -331,19 +331,19 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_take(skinslide_stage_con
                                                              const skinslide_stage_input *input, const skinslide_value *value,
                                                              skinslide_error *error);
 
-/* Maps are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, whose name this
- * gives, "primvars:st", or NULL where there is no map; and each file that skinslide_stage_controls_need asks for. Where the
+/* Textures are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, whose name this
+ * gives, "primvars:st", or NULL where there is no texture; and each file that skinslide_stage_controls_need asks for. Where the
  * primvar or an asset varies, a frame brings every asset and the primvar again. The name lives as long as the patch. */
 SKINSLIDE_API const char *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls);
 
-/* Takes the texture coordinates of all maps. Fails with BAD_CONTROL (none: says which setting names them; as
+/* Takes the texture coordinates of all textures. Fails with BAD_CONTROL (none: says which setting names them; as
  * skinslide_stage_coordinates; coordinates that are in no tile), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_take_coordinates(skinslide_stage_controls *controls,
                                                                          const skinslide_value *value, skinslide_error *error);
 
-/* A file that a map is made of. */
+/* A file that a texture is made of. */
 typedef struct skinslide_stage_need {
-    const skinslide_stage_input *input; /* the map's */
+    const skinslide_stage_input *input; /* the texture's */
     const char *path;                   /* as authored, with the tile's number where it says <UDIM> */
     int32_t tile;                       /* that number; 0 of a file without tiles */
     int64_t largest;                    /* bytes of a file; those of larger ones need not be read, which are refused */
@@ -365,23 +365,23 @@ typedef struct skinslide_stage_file {
 #define SKINSLIDE_STAGE_FILE_DEFAULT                                                                                           \
     { sizeof(skinslide_stage_file), 0, 0, 0, 0 }
 
-/* Whether the image of a file is held from the time before, for the map that is asked for: its bytes are then not needed. */
+/* Whether the image of a file is held from the time before, for the texture that is asked for: its bytes are then not needed. */
 SKINSLIDE_API int32_t skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path);
 
-/* Takes the file that is asked for, and with its last file samples the map. Where that fails, the map's others are asked for no
+/* Takes the file that is asked for, and with its last file samples the texture. Where that fails, its others are asked for no
  * more.
- * Fails with BAD_CONTROL (no such file, not readable, too large, coordinates that are not finite, a map that is not finite or
+ * Fails with BAD_CONTROL (no such file, not readable, too large, coordinates that are not finite, a texture that is not finite or
  * not a force density somewhere), BAD_IMAGE, UNSUPPORTED (as skinslide_exr_decode), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *controls,
                                                              const skinslide_stage_file *file, skinslide_error *error);
 
-/* A tile of a map that was sampled. */
+/* A tile of a texture that was sampled. */
 typedef struct skinslide_stage_tile {
-    int32_t number; /* 0 of a map without tiles */
+    int32_t number; /* 0 of a texture without tiles */
     int32_t width, height;
 } skinslide_stage_tile;
 
-/* A map that was sampled; lives until its controls change. */
+/* A texture that was sampled; lives until its controls change. */
 typedef struct skinslide_stage_texture {
     const char *name;    /* of the attribute */
     const char *file;    /* resolved, with <UDIM> for the tile's number */
@@ -391,13 +391,13 @@ typedef struct skinslide_stage_texture {
     const skinslide_stage_tile *tiles; /* [tile_count], ascending */
 } skinslide_stage_texture;
 
-/* The map of an input, or NULL where there is none. */
+/* The texture of an input, or NULL where there is none. */
 SKINSLIDE_API const skinslide_stage_texture *skinslide_stage_controls_texture(const skinslide_stage_controls *controls,
-                                                                      const skinslide_stage_input *input);
+                                                                              const skinslide_stage_input *input);
 
 /* The controls as the slider takes them; the arrays are those of the handle, of its patch or of its base.
- * Fails with BAD_CONTROL (paint times a map that is no force density: names the point), BAD_ARGUMENT (a value was refused, a
- * map is not complete), OUT_OF_MEMORY. */
+ * Fails with BAD_CONTROL (paint times a texture that is no force density: names the point), BAD_ARGUMENT (a value was refused, a
+ * texture is not complete), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
                                                             skinslide_error *error);
 

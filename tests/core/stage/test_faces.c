@@ -66,7 +66,8 @@ static void by_vertex(void **state) {
 static void indexed(void **state) {
     (void)state;
     scene s = set_up();
-    const skinslide_value indices = INTS(PRIMVAR ":indices", 1, 0, 0, 0, 1, 1), bad = INTS(PRIMVAR ":indices", 1, 0, 0, 0, 1, 2);
+    const skinslide_value indices = INTS(PRIMVAR ":indices", 1, 0, 0, 0, 1, 1),
+                          bad = INTS(PRIMVAR ":indices", 1, 0, 0, 0, 1, 2);
     skinslide_value value = painted_as(array_of(PRIMVAR, SKINSLIDE_VALUE_BOOL, 1, 2, (uint8_t[]){0, 1}), "uniform");
     assert_ok(patch_takes(s.patch, "patch", indexed_by(value, &indices), &error), &error);
     expect_faces(&s, 3, (int32_t[]){0, 4, 5});
@@ -189,10 +190,14 @@ static void bad_subsets_are_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(by_face_of_every_type),    cmocka_unit_test(by_vertex),
-        cmocka_unit_test(indexed),                  cmocka_unit_test(bad_primvars_are_named),
-        cmocka_unit_test(faces_must_stay_the_same), cmocka_unit_test(faces_of_a_subset),
-        cmocka_unit_test(a_primvar_wins_over_a_subset), cmocka_unit_test(bad_subsets_are_named),
+        cmocka_unit_test(by_face_of_every_type),
+        cmocka_unit_test(by_vertex),
+        cmocka_unit_test(indexed),
+        cmocka_unit_test(bad_primvars_are_named),
+        cmocka_unit_test(faces_must_stay_the_same),
+        cmocka_unit_test(faces_of_a_subset),
+        cmocka_unit_test(a_primvar_wins_over_a_subset),
+        cmocka_unit_test(bad_subsets_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,16 +113,15 @@ static void none_at_all_says_what_to_author(void **state) {
     skinslide_mesh out;
     assert_fails(take_default(mesh, nothing_of("points")), &error, SKINSLIDE_BAD_POINTS, text);
     assert_int_equal(skinslide_stage_mesh_get(mesh, &out, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_fails(mesh_takes(mesh, "restPoints", blocked_of("skinSlide:restPoints"), &error), &error, SKINSLIDE_BAD_POINTS, text);
+    assert_fails(mesh_takes(mesh, "restPoints", blocked_of("skinSlide:restPoints"), &error), &error, SKINSLIDE_BAD_POINTS,
+                 text);
     skinslide_stage_mesh_destroy(mesh);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_candidate_counts),
-        cmocka_unit_test(a_bad_candidate_is_not_passed_over),
-        cmocka_unit_test(bad_rest_points_are_named),
-        cmocka_unit_test(the_default_of_points_is_named),
+        cmocka_unit_test(each_candidate_counts),           cmocka_unit_test(a_bad_candidate_is_not_passed_over),
+        cmocka_unit_test(bad_rest_points_are_named),       cmocka_unit_test(the_default_of_points_is_named),
         cmocka_unit_test(none_at_all_says_what_to_author),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

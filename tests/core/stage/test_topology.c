@@ -53,7 +53,8 @@ static void bad_faces_are_named(void **state) {
     (void)state;
     skinslide_stage_mesh *mesh = empty_mesh();
     takes(mesh, "points", POINTS("points", 4));
-    expect(mesh, "faceVertexCounts", FLOATS("faceVertexCounts", 1), SKINSLIDE_BAD_MESH, "faceVertexCounts is not an array of int");
+    expect(mesh, "faceVertexCounts", FLOATS("faceVertexCounts", 1), SKINSLIDE_BAD_MESH,
+           "faceVertexCounts is not an array of int");
     expect(mesh, "faceVertexCounts", nothing_of("faceVertexCounts"), SKINSLIDE_BAD_MESH, "faceVertexCounts has no value");
     expect(mesh, "faceVertexCounts", INTS("faceVertexCounts", 3, -4), SKINSLIDE_BAD_MESH, "face 1 has -4 vertices");
     takes(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 9)); /* nothing to hold them against */
@@ -190,8 +191,8 @@ static void bad_subdivision_is_named(void **state) {
     test_mesh grid = quad_grid(2, 2);
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
     skinslide_mesh out;
-    assert_fails(surface_takes(mesh, "subdivisionScheme", text_of("subdivisionScheme", "butterfly")), &error, SKINSLIDE_BAD_MESH,
-                 "subdivisionScheme is 'butterfly'; it must be one of none, catmullClark, loop, bilinear");
+    assert_fails(surface_takes(mesh, "subdivisionScheme", text_of("subdivisionScheme", "butterfly")), &error,
+                 SKINSLIDE_BAD_MESH, "subdivisionScheme is 'butterfly'; it must be one of none, catmullClark, loop, bilinear");
     assert_fails(skinslide_stage_mesh_get(mesh, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT, "subdivisionScheme was refused");
     assert_ok(surface_takes(mesh, "subdivisionScheme", text_of("subdivisionScheme", "loop")), &error);
     assert_fails(surface_takes(mesh, "creaseLengths", FLOATS("creaseLengths", 2)), &error, SKINSLIDE_BAD_MESH,
@@ -263,7 +264,8 @@ static void bad_coordinates_are_named(void **state) {
                        "primvars:st has interpolation constant; a map needs faceVarying, vertex or varying");
     expect_coordinates(mesh, painted_as(value, "vertex"), "primvars:st has 5 values, but the mesh has 4 points");
     expect_coordinates(mesh, painted_as(value, "faceVarying"), "primvars:st has 5 values, but the mesh has 4 face corners");
-    expect_coordinates(mesh, painted_as(blocked_of("primvars:st"), "vertex"), "primvars:st has 0 values, but the mesh has 4 points");
+    expect_coordinates(mesh, painted_as(blocked_of("primvars:st"), "vertex"),
+                       "primvars:st has 0 values, but the mesh has 4 points");
     expect_coordinates(mesh, painted_as(indexed_by(value, &indices), "vertex"),
                        "primvars:st:indices[3] is 9, but primvars:st has 5 values");
     value.width = 1, value.type_name = "float[]";

@@ -166,16 +166,11 @@ static void long_names_are_cut(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole_numbers_of_every_type),
-        cmocka_unit_test(halves_floats_and_doubles),
-        cmocka_unit_test(indices_are_applied),
-        cmocka_unit_test(bad_indices_are_named),
-        cmocka_unit_test(whole_numbers_that_do_not_fit),
-        cmocka_unit_test(no_value_is_an_empty_array),
-        cmocka_unit_test(other_types_are_named),
-        cmocka_unit_test(records_of_other_versions),
-        cmocka_unit_test(records_that_are_none),
-        cmocka_unit_test(long_names_are_cut),
+        cmocka_unit_test(whole_numbers_of_every_type),   cmocka_unit_test(halves_floats_and_doubles),
+        cmocka_unit_test(indices_are_applied),           cmocka_unit_test(bad_indices_are_named),
+        cmocka_unit_test(whole_numbers_that_do_not_fit), cmocka_unit_test(no_value_is_an_empty_array),
+        cmocka_unit_test(other_types_are_named),         cmocka_unit_test(records_of_other_versions),
+        cmocka_unit_test(records_that_are_none),         cmocka_unit_test(long_names_are_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

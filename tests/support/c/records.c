@@ -83,7 +83,8 @@ skinslide_stage_mesh *scene_mesh(const test_mesh *mesh) {
                          array_of("faceVertexCounts", SKINSLIDE_VALUE_INT32, 1, mesh->face_count, mesh->face_counts), &error),
               &error);
     assert_ok(mesh_takes(made, "faceVertexIndices",
-                         array_of("faceVertexIndices", SKINSLIDE_VALUE_INT32, 1, mesh->index_count, mesh->face_indices), &error),
+                         array_of("faceVertexIndices", SKINSLIDE_VALUE_INT32, 1, mesh->index_count, mesh->face_indices),
+                         &error),
               &error);
     points.name = "skinSlide:restPoints";
     assert_ok(mesh_takes(made, "restPoints", points, &error), &error);
