@@ -36,7 +36,9 @@ typedef struct ss_idbuffer ss_idbuffer;
 skinslide_status ss_idbuffer_create(const ss_device_request *request, const ss_id_patch *patches, int32_t patch_count,
                                     int32_t resolution, ss_idbuffer **out, skinslide_error *error);
 void ss_idbuffer_destroy(ss_idbuffer *buffer);
-const skinslide_lookup_info *ss_idbuffer_info(const ss_idbuffer *buffer);
+const skinslide_device_info *ss_idbuffer_device(const ss_idbuffer *buffer);
+/* How it failed last; "" where it did not. */
+const char *ss_idbuffer_reason(const ss_idbuffer *buffer);
 int32_t ss_idbuffer_side(const ss_idbuffer *buffer, int32_t patch);
 /* Starts drawing the faces of uv and gathering the candidates of the queries [query_count][2], and does not wait. A failure
  * shows in the next call. */

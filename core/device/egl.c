@@ -245,7 +245,7 @@ static void find_reset_status(ss_egl_api *api) {
 /* What the context is; false where it is no OpenGL ES 3 or cannot be made current. */
 static bool describe(ss_egl *egl, const choice *made, account *tried) {
     ss_egl_before before;
-    skinslide_lookup_info *info = &egl->info;
+    skinslide_device_info *info = &egl->info;
     if (!ss_egl_enter(egl, &before))
         return report_code(tried, "eglMakeCurrent", before.failure);
     const char *renderer = (const char *)egl->api.glGetString(GL_RENDERER);
@@ -256,7 +256,6 @@ static bool describe(ss_egl *egl, const choice *made, account *tried) {
     find_reset_status(&egl->api);
     ss_egl_leave(egl, &before);
     name_choice(made, info->device_name, sizeof info->device_name);
-    info->lookup = SKINSLIDE_LOOKUP_EGL;
     info->device = made->device;
     info->software = made->software || is_software(info->renderer);
     if (strncmp(info->driver, "OpenGL ES 3", 11) == 0)

@@ -113,7 +113,7 @@ typedef struct ss_egl {
     EGLDisplay display;
     EGLContext context;
     EGLSurface surface; /* EGL_NO_SURFACE, or a pixel where contexts need a surface */
-    skinslide_lookup_info info;
+    skinslide_device_info info;
 } ss_egl;
 
 /* What was current on the thread before. */

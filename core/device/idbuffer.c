@@ -38,7 +38,8 @@ struct ss_idbuffer {
     ss_egl *egl; /* NULL once lost, until it is made again */
     bool gone;   /* it is not made again */
     int losses;  /* since it last answered */
-    skinslide_lookup_info info;
+    skinslide_device_info info;
+    char reason[480];  /* how it failed last */
     drawing *drawings; /* [drawing_count] */
     int32_t drawing_count, largest_side;
     int32_t least_side; /* of the texture, whatever is drawn */
@@ -206,7 +207,7 @@ static skinslide_status make_objects(ss_idbuffer *buffer, skinslide_error *error
 /* ---- Losing a context and making it again ---- */
 
 static void lose(ss_idbuffer *buffer, const char *call, const char *failure) {
-    snprintf(buffer->info.reason, sizeof buffer->info.reason, "%s: %s", call, failure);
+    snprintf(buffer->reason, sizeof buffer->reason, "%s: %s", call, failure);
     ss_egl_close(buffer->egl);
     buffer->egl = NULL;
     buffer->gone = ++buffer->losses >= MOST_LOSSES;
@@ -231,13 +232,6 @@ static void leave(ss_idbuffer *buffer, const ss_egl_before *before, const char *
         lose(buffer, what, good ? "its answers cannot be mapped" : failure);
 }
 
-/* The device's description, and still how the one before it failed. */
-static void take_info(ss_idbuffer *buffer) {
-    skinslide_lookup_info info = buffer->egl->info;
-    memcpy(info.reason, buffer->info.reason, sizeof info.reason);
-    buffer->info = info;
-}
-
 /* Every side within the device's limit: a fixed one must be, a suitable one gives way. */
 static skinslide_status settle_sides(ss_idbuffer *buffer, skinslide_error *error) {
     int32_t most = buffer->info.largest_resolution;
@@ -258,7 +252,7 @@ static skinslide_status open_context(ss_idbuffer *buffer, skinslide_error *error
     skinslide_status status = ss_egl_open(&buffer->request, &buffer->egl, error);
     if (status)
         return status;
-    take_info(buffer);
+    buffer->info = buffer->egl->info;
     status = settle_sides(buffer, error);
     if (!status)
         status = ss_gl_enter(buffer->egl, &before, error);
@@ -279,7 +273,7 @@ static bool enter_anew(ss_idbuffer *buffer, ss_egl_before *before) {
     if (enter(buffer, before))
         return true;
     if (!buffer->gone && open_context(buffer, &error)) {
-        snprintf(buffer->info.reason, sizeof buffer->info.reason, "%s", error.message);
+        snprintf(buffer->reason, sizeof buffer->reason, "%s", error.message);
         buffer->gone = true;
     }
     return enter(buffer, before);
@@ -332,8 +326,12 @@ void ss_idbuffer_destroy(ss_idbuffer *buffer) {
     free(buffer);
 }
 
-const skinslide_lookup_info *ss_idbuffer_info(const ss_idbuffer *buffer) {
+const skinslide_device_info *ss_idbuffer_device(const ss_idbuffer *buffer) {
     return &buffer->info;
+}
+
+const char *ss_idbuffer_reason(const ss_idbuffer *buffer) {
+    return buffer->reason;
 }
 
 int32_t ss_idbuffer_side(const ss_idbuffer *buffer, int32_t patch) {
@@ -440,7 +438,7 @@ skinslide_status ss_idbuffer_read(ss_idbuffer *buffer, int32_t patch, const doub
         leave(buffer, &before, "reading the ID buffer", true);
     }
     if (!status && !buffer->egl)
-        status = ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s", buffer->info.reason);
+        status = ss_fail(error, SKINSLIDE_DEVICE_FAILED, "%s", buffer->reason);
     if (!status)
         memcpy(texels, read, (size_t)drawn->side * (size_t)drawn->side * sizeof *texels);
     ss_free(&scratch);

@@ -126,7 +126,7 @@ void skinslide_canvas_destroy(skinslide_canvas *canvas) {
     free(canvas);
 }
 
-skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_lookup_info *info, skinslide_error *error) {
+skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_device_info *info, skinslide_error *error) {
     if (!canvas || !info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no place for the answer");
     *info = canvas->egl->info;

@@ -1,6 +1,7 @@
 /* Which lookup a workspace has: what its options come to on this machine. */
 #include "slider.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static skinslide_status check_options(const skinslide_workspace_options *options, skinslide_error *error) {
@@ -13,6 +14,8 @@ static skinslide_status check_options(const skinslide_workspace_options *options
     return SKINSLIDE_OK;
 }
 
+static const skinslide_device_info no_device = {.device = SKINSLIDE_ANY_DEVICE};
+
 /* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with
  * EGL for its absence, and so a resolution that its device does not have; a lack of memory is no choice. */
 static skinslide_status open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
@@ -23,14 +26,14 @@ static skinslide_status open_lookup(const skinslide_workspace_options *options, 
     skinslide_status status = check_options(own, error);
     if (status)
         return status;
-    *info = (skinslide_lookup_info){.lookup = SKINSLIDE_LOOKUP_EXACT, .device = SKINSLIDE_ANY_DEVICE};
+    *info = (skinslide_lookup_info){.lookup = SKINSLIDE_LOOKUP_EXACT};
     if (own->lookup == SKINSLIDE_LOOKUP_EXACT)
         return SKINSLIDE_OK;
     ss_device_request request = {load, own->device, own->lookup == SKINSLIDE_LOOKUP_AUTO};
     skinslide_error why = {0};
     status = ss_idbuffer_create(&request, patches, patch_count, own->resolution, out, &why);
     if (!status)
-        *info = *ss_idbuffer_info(*out);
+        info->lookup = SKINSLIDE_LOOKUP_EGL;
     bool absent = status == SKINSLIDE_NO_DEVICE || status == SKINSLIDE_DEVICE_FAILED || status == SKINSLIDE_BAD_ARGUMENT;
     if (own->lookup == SKINSLIDE_LOOKUP_AUTO && absent) {
         memcpy(info->reason, why.message, sizeof info->reason);
@@ -43,23 +46,30 @@ static skinslide_status open_lookup(const skinslide_workspace_options *options, 
 }
 
 skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
-                                         skinslide_error *error) {
+                                         skinslide_device_info *device, skinslide_error *error) {
     ss_idbuffer *buffer = NULL;
     skinslide_lookup_info chosen;
     if (!info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the answer");
     skinslide_status status = open_lookup(options, ss_egl_load, NULL, 0, &buffer, &chosen, error);
-    ss_idbuffer_destroy(buffer);
     if (!status)
         *info = chosen;
+    if (!status && device)
+        *device = buffer ? *ss_idbuffer_device(buffer) : no_device;
+    ss_idbuffer_destroy(buffer);
     return status;
 }
 
 skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace, skinslide_lookup_info *info,
-                                            skinslide_error *error) {
+                                            skinslide_device_info *device, skinslide_error *error) {
     if (!workspace || !info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, or no place for the answer");
-    *info = workspace->idbuffer ? *ss_idbuffer_info(workspace->idbuffer) : workspace->lookup;
+    const ss_idbuffer *buffer = workspace->idbuffer;
+    *info = workspace->lookup;
+    if (buffer)
+        snprintf(info->reason, sizeof info->reason, "%s", ss_idbuffer_reason(buffer));
+    if (device)
+        *device = buffer ? *ss_idbuffer_device(buffer) : no_device;
     return SKINSLIDE_OK;
 }
 

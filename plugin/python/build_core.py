@@ -13,11 +13,12 @@ from textwrap import fill
 
 from cffi import FFI
 
-# Structs whose values the tool gives to its callers, and their names in Python.
+# What the tool gives to its callers, and the structs that it has the fields of.
 RECORDS = {
-    "skinslide_patch_info": "PatchInfo",
-    "skinslide_patch_result": "PatchResult",
-    "skinslide_lookup_info": "LookupInfo",
+    "PatchInfo": ["skinslide_patch_info"],
+    "PatchResult": ["skinslide_patch_result"],
+    "DeviceInfo": ["skinslide_device_info"],
+    "LookupInfo": ["skinslide_lookup_info", "skinslide_device_info"],
 }
 HEAD = '''"""What the core says of patches, frames and devices. Made by build_core.py of the public headers."""
 
@@ -36,10 +37,13 @@ def main(declarations: Path, source: Path, records: Path) -> None:
     records.write_text(HEAD + "".join(record(ffi, text, *names) for names in RECORDS.items()))
 
 
-def record(ffi: FFI, text: str, struct: str, name: str) -> str:
-    """A named tuple with the fields of a struct and the words of its comments."""
-    above, body = _comment(rf"/\*((?:(?!\*/).)*)\*/\s*typedef struct {struct} \{{(.*?)\}} {struct};", text)
-    fields = [(field, each.type) for field, each in ffi.typeof(struct).fields]
+def record(ffi: FFI, text: str, name: str, structs: list[str]) -> str:
+    """A named tuple with the fields of structs and the words of their comments; the first says what it is."""
+    comments = [
+        _comment(rf"/\*((?:(?!\*/).)*)\*/\s*typedef struct {struct} \{{(.*?)\}} {struct};", text) for struct in structs
+    ]
+    above, body = comments[0][0], "".join(body for _, body in comments)
+    fields = [(field, each.type) for struct in structs for field, each in ffi.typeof(struct).fields]
     summary, _, more = _plain(above).partition(". ")
     return "\n".join(
         [

@@ -111,9 +111,10 @@ static void print_sheet(int32_t columns, double amount) {
 int main(void) {
     const skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 0};
     skinslide_lookup_info info;
+    skinslide_device_info device;
     skinslide_error error;
-    stop_unless(!skinslide_choose_lookup(&options, &info, &error), error.message);
-    printf("%s: %s, %s\ntexels 0: lookup exact\n\n", info.device_name, info.renderer, info.driver);
+    stop_unless(!skinslide_choose_lookup(&options, &info, &device, &error), error.message);
+    printf("%s: %s, %s\ntexels 0: lookup exact\n\n", device.device_name, device.renderer, device.driver);
     printf("| vertices | amount | texels | own texel | 3x3 | walked | searched | locate ms | frame ms |\n");
     printf("|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < 4; i++)

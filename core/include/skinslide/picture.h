@@ -132,7 +132,7 @@ SKINSLIDE_API skinslide_status skinslide_canvas_create(const skinslide_canvas_op
 SKINSLIDE_API void skinslide_canvas_destroy(skinslide_canvas *canvas);
 
 /* What it is drawn with. Fails with BAD_ARGUMENT. */
-SKINSLIDE_API skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_lookup_info *info,
+SKINSLIDE_API skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_device_info *info,
                                                        skinslide_error *error);
 
 /* Fills a canvas with a colour, linear light, and with nothing in front of it. Fails with BAD_ARGUMENT, DEVICE_FAILED. */

@@ -279,22 +279,29 @@ typedef struct skinslide_workspace_options {
 
 /* What options come to on this machine. */
 typedef struct skinslide_lookup_info {
-    skinslide_lookup lookup;    /* EGL or EXACT; for EXACT what follows is empty but for the reason */
-    int32_t device;             /* its number, or SKINSLIDE_ANY_DEVICE where the display has none */
+    skinslide_lookup lookup; /* EGL or EXACT */
+    char reason[480];        /* why AUTO came to EXACT, or how the device failed last; one line, or empty */
+} skinslide_lookup_info;
+
+/* A device that draws. */
+typedef struct skinslide_device_info {
+    int32_t device;             /* its number, or SKINSLIDE_ANY_DEVICE where the display has none, or there is no device */
     int32_t software;           /* 1: a software rasteriser */
-    int32_t largest_resolution; /* texels along a side, the device's limit */
+    int32_t largest_resolution; /* texels along a side, the device's limit; 0: there is no device */
     char device_name[96];       /* "EGL device 0 (/dev/dri/card0)" */
     char renderer[128];         /* as the driver names the device */
     char driver[128];           /* its version */
-    char reason[480];           /* why AUTO came to EXACT, or how the device failed last; one line, or empty */
-} skinslide_lookup_info;
+} skinslide_device_info;
 
-/* Says what options, or the default for NULL, come to; makes a context and drops it where that must be tried, with
- * the largest texture that a workspace with these options could ask for.
+/* Says what options come to; makes a context and drops it where that must be tried, with the largest texture that a workspace
+ * with these options could ask for.
+ *   options  in, or NULL: the default
+ *   info     out
+ *   device   out, or NULL: that of lookup EGL; none for EXACT
  * Fails with BAD_ARGUMENT (no such lookup, device or resolution), DEVICE_FAILED, NO_DEVICE (lookup EGL: names all that was tried, with EGL's
  * errors), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
-                                                       skinslide_error *error);
+                                                       skinslide_device_info *device, skinslide_error *error);
 
 typedef struct skinslide_workspace skinslide_workspace;
 
@@ -310,9 +317,12 @@ SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_destroy(skinslide_workspace *workspace);
 
-/* What a workspace's options came to. Fails with BAD_ARGUMENT. */
+/* What a workspace's options came to.
+ *   info    out
+ *   device  out, or NULL: that of lookup EGL; none for EXACT
+ * Fails with BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace, skinslide_lookup_info *info,
-                                                          skinslide_error *error);
+                                                          skinslide_device_info *device, skinslide_error *error);
 
 /* What happened to one patch in one frame. Everything but the seconds is the same in every run with the same lookup; how
  * vertices were found depends on the lookup, its resolution and its device. */

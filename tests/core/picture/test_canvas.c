@@ -344,7 +344,7 @@ static void refused(skinslide_canvas *canvas, const scene *s, skinslide_status s
 static void bad_canvases_are_named(void **state) {
     (void)state;
     skinslide_canvas *canvas = NULL;
-    skinslide_lookup_info info;
+    skinslide_device_info info;
     skinslide_error error;
     skinslide_canvas_options options = sized(4, 4, (skinslide_pixels)2);
     const float grey[3] = {0.5f, 0.5f, 0.5f}, nan[3] = {0, NAN, 0}, endless[3] = {0, 0, INFINITY};

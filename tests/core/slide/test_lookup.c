@@ -127,12 +127,13 @@ static void faces_below_a_texel(void **state) {
 
 /* ---- Which lookup ---- */
 
-static skinslide_lookup_info choose(scene *s, skinslide_lookup lookup, fault planned, ss_egl_loader load) {
+static skinslide_lookup_info choose(scene *s, skinslide_lookup lookup, fault planned, ss_egl_loader load,
+                                    skinslide_device_info *device) {
     plan_fault(planned);
     skinslide_workspace *workspace = workspace_at(s->exact.slider, lookup, 0, load);
     skinslide_lookup_info info;
     skinslide_error error;
-    assert_ok(skinslide_workspace_lookup(workspace, &info, &error), &error);
+    assert_ok(skinslide_workspace_lookup(workspace, &info, device, &error), &error);
     skinslide_patch_result result = expect_same(s, workspace);
     assert_true((info.lookup == SKINSLIDE_LOOKUP_EGL) == (result.found_in_centre > 0));
     skinslide_workspace_destroy(workspace);
@@ -147,22 +148,24 @@ static void auto_is_egl_on_hardware_only(void **state) {
     fault software = {.devices = 1, .shown = "EGL_MESA_device_software"};
     fault incomplete = hardware;
     incomplete.call = "glCheckFramebufferStatus", incomplete.times = -1, incomplete.code = GL_FRAMEBUFFER_UNSUPPORTED;
-    skinslide_lookup_info info = choose(&s, automatic, hardware, load_with_faults);
+    skinslide_device_info device;
+    skinslide_lookup_info info = choose(&s, automatic, hardware, load_with_faults, &device);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EGL);
-    assert_string_equal(info.renderer, "A GPU");
+    assert_string_equal(device.renderer, "A GPU");
     assert_string_equal(info.reason, "");
-    info = choose(&s, automatic, software, load_with_faults);
+    info = choose(&s, automatic, software, load_with_faults, &device);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EXACT);
     assert_string_equal(info.reason, "no hardware EGL device with OpenGL ES 3: EGL has only software rasterisers");
-    info = choose(&s, automatic, incomplete, load_with_faults);
+    info = choose(&s, automatic, incomplete, load_with_faults, &device);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EXACT);
     assert_non_null(strstr(info.reason, "not complete"));
-    info = choose(&s, automatic, (fault)NO_FAULT, load_nothing);
+    info = choose(&s, automatic, (fault)NO_FAULT, load_nothing, &device);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EXACT);
     assert_non_null(strstr(info.reason, "libEGL"));
-    info = choose(&s, SKINSLIDE_LOOKUP_EGL, software, load_with_faults);
+    assert_true(device.device == SKINSLIDE_ANY_DEVICE && device.largest_resolution == 0 && device.renderer[0] == 0);
+    info = choose(&s, SKINSLIDE_LOOKUP_EGL, software, load_with_faults, &device);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EGL);
-    assert_int_equal(info.software, 1);
+    assert_int_equal(device.software, 1);
     free_scene(&s);
 }
 
@@ -176,7 +179,7 @@ static void a_resolution_above_the_limit(void **state) {
     skinslide_error error;
     plan_fault((fault){.devices = 1, .shown = "EGL_EXT_device_drm", .renderer = "A GPU", .largest = 512});
     assert_ok(ss_workspace_create(s.exact.slider, &options, load_with_faults, &workspace, &error), &error);
-    assert_ok(skinslide_workspace_lookup(workspace, &info, &error), &error);
+    assert_ok(skinslide_workspace_lookup(workspace, &info, NULL, &error), &error);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EXACT);
     assert_string_equal(info.reason, "resolution 600 is above the device's limit of 512");
     skinslide_workspace_destroy(workspace);
@@ -205,17 +208,18 @@ static void egl_asked_for_and_not_to_be_had(void **state) {
 static void options_that_cannot_be(void **state) {
     (void)state;
     skinslide_lookup_info info;
+    skinslide_device_info device;
     skinslide_error error;
     skinslide_workspace_options options[3] = {
         {(skinslide_lookup)3, -1, 0}, {SKINSLIDE_LOOKUP_AUTO, -2, 0}, {SKINSLIDE_LOOKUP_EXACT, -1, -1}};
     const char *texts[] = {"no such lookup: 3", "no such device: -2", "no such resolution: -1"};
     for (int i = 0; i < 3; i++)
-        assert_fails(skinslide_choose_lookup(&options[i], &info, &error), &error, SKINSLIDE_BAD_ARGUMENT, texts[i]);
-    assert_int_equal(skinslide_choose_lookup(NULL, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_workspace_lookup(NULL, &info, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_ok(skinslide_choose_lookup(NULL, &info, &error), &error);
+        assert_fails(skinslide_choose_lookup(&options[i], &info, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, texts[i]);
+    assert_int_equal(skinslide_choose_lookup(NULL, NULL, &device, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_workspace_lookup(NULL, &info, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_ok(skinslide_choose_lookup(NULL, &info, &device, &error), &error);
     print_message("auto: %s: %s\n", info.lookup == SKINSLIDE_LOOKUP_EGL ? "egl" : "exact",
-                  info.lookup == SKINSLIDE_LOOKUP_EGL ? info.renderer : info.reason);
+                  info.lookup == SKINSLIDE_LOOKUP_EGL ? device.renderer : info.reason);
 }
 
 /* ---- In the middle of a shot ---- */
@@ -223,7 +227,7 @@ static void options_that_cannot_be(void **state) {
 static skinslide_lookup_info lookup_of(const skinslide_workspace *workspace) {
     skinslide_lookup_info info;
     skinslide_error error;
-    assert_ok(skinslide_workspace_lookup(workspace, &info, &error), &error);
+    assert_ok(skinslide_workspace_lookup(workspace, &info, NULL, &error), &error);
     return info;
 }
 

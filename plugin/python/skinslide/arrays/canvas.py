@@ -18,7 +18,7 @@ from skinslide.arrays.native import (
     read,
     writable,
 )
-from skinslide.arrays.records import LookupInfo
+from skinslide.arrays.records import DeviceInfo
 from skinslide.problems import SliderError
 
 
@@ -105,11 +105,11 @@ class Canvas:
         self._dtype: Any = np.uint8 if pixels == "bytes" else np.float32
 
     @property
-    def device(self) -> LookupInfo:
+    def device(self) -> DeviceInfo:
         """What it is drawn with."""
-        info = ffi.new("skinslide_lookup_info *")
+        info = ffi.new("skinslide_device_info *")
         call(lib.skinslide_canvas_device, self._handle, info)
-        return read(LookupInfo, info[0])
+        return read(DeviceInfo, info[0])
 
     def clear(self, colour: Sequence[float]) -> None:
         """Fills it with a colour, linear light."""

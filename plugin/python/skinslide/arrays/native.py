@@ -13,10 +13,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
+from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult
 from skinslide.problems import SliderError
 
-Record = TypeVar("Record", PatchInfo, PatchResult, LookupInfo)
+Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo)
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,10 +275,11 @@ def call(function: Any, *arguments: Any) -> None:
         raise SliderError(text(lib.skinslide_status_name(status)), ffi.string(error.message).decode(errors="replace"))
 
 
-def read(kind: type[Record], struct: Any) -> Record:
-    """A record of the fields of a struct, text and tokens as str."""
-    ctypes = {name: field.type for name, field in ffi.typeof(struct).fields}
-    return kind(*(_read(ctypes[name], getattr(struct, name)) for name in kind._fields))
+def read(kind: type[Record], *structs: Any) -> Record:
+    """A record of the fields of structs, text and tokens as str."""
+    fields = ((struct, *each) for struct in structs for each in ffi.typeof(struct).fields)
+    values = {name: _read(field.type, getattr(struct, name)) for struct, name, field in fields}
+    return kind(*(values[name] for name in kind._fields))
 
 
 def _read(ctype: Any, value: Any) -> Any:

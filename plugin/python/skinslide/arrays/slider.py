@@ -211,10 +211,10 @@ class Slider:
 
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
-    """What a lookup comes to on this machine, as `skinslide_lookup_info`; SliderError where it cannot be had."""
-    info = ffi.new("skinslide_lookup_info *")
-    call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info)
-    return read(LookupInfo, info[0])
+    """What a lookup comes to on this machine, and its device; SliderError where it cannot be had."""
+    info, device = ffi.new("skinslide_lookup_info *"), ffi.new("skinslide_device_info *")
+    call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info, device)
+    return read(LookupInfo, info[0], device[0])
 
 
 def limit_points(
