@@ -42,7 +42,7 @@ def draw(path: Path, rules: Sequence[str], views: Sequence[str]) -> np.ndarray:
     slider, size = mesh.slider(), (COLUMN * (1 + len(rules)), HEIGHT)
     times = [Usd.TimeCode(time) for time in mesh.sample_times()]
     worst = max(times, key=lambda time: slider.slide(mesh.points_at(time)).patches[0].stretch_before)
-    options = PictureOptions.checked(views=views, follow=True, size=size, most_stretch=MOST_STRETCH)
+    options = PictureOptions(views=views, follow=True, size=size, most_stretch=MOST_STRETCH)
     series = Series.of(Skin.of(mesh, slider.faces(0), None), slider, 0, options, columns=1 + len(rules))
     canvas, shown = Canvas(*size), columns(mesh, worst, rules)
     rows = [series.draw(canvas, view, series.moment(worst), shown, MOST_STRETCH) for view in views]

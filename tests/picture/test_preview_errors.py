@@ -184,7 +184,7 @@ def test_an_interrupted_command_says_what_it_left(words, said, shot, tmp_path, c
         raise KeyboardInterrupt
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("skinslide.picture.drawing.work_ahead", interrupt)
+    monkeypatch.setattr("skinslide.shot.loop.work_ahead", interrupt)
     assert main(["preview", str(shot), "--size", "64x32", *words]) == 130
     assert capfd.readouterr().err == f"error: interrupted{said}\n"
     assert not list(tmp_path.glob("**/.*")) and not (tmp_path / "page.html").exists()

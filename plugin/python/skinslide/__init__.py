@@ -1,8 +1,9 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
 `bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `preview` draws it
-before and after, `maps` in texture coordinates; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on
-a mesh's other side. `Slider` is the same on numpy arrays, and needs no USD.
+before and after, `maps` in texture coordinates, as a bake also does for `Pictures` and `Maps`; `setup` writes a patch,
+`paint` its edges, `mirror` its counterpart on a mesh's other side. `Slider` is the same on numpy arrays, and needs no
+USD.
 
 Importing skinslide loads nothing but this: each name brings what it needs when it is first asked for.
 """
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from skinslide.author.mirror import mirror
     from skinslide.author.paint import PaintReport, paint
     from skinslide.author.setup import setup
-    from skinslide.picture.maps import MapsReport, maps
-    from skinslide.picture.preview import PreviewReport, preview
+    from skinslide.picture.maps import Maps, MapsReport, maps
+    from skinslide.picture.preview import Pictures, PreviewReport, preview
     from skinslide.problems import (
         FrameProblem,
         FrameSpecError,
@@ -55,6 +56,7 @@ __all__ = [
     "FrameSpecError",
     "Lookup",
     "LookupInfo",
+    "Maps",
     "MapsReport",
     "MeshReport",
     "PaintReport",
@@ -62,6 +64,7 @@ __all__ = [
     "PatchReport",
     "PatchResult",
     "PatchSetup",
+    "Pictures",
     "PreviewReport",
     "Problem",
     "Slider",
@@ -94,8 +97,8 @@ _HOMES = {
     "author.mirror": ("mirror",),
     "author.paint": ("PaintReport", "paint"),
     "author.setup": ("setup",),
-    "picture.maps": ("MapsReport", "maps"),
-    "picture.preview": ("PreviewReport", "preview"),
+    "picture.maps": ("Maps", "MapsReport", "maps"),
+    "picture.preview": ("Pictures", "PreviewReport", "preview"),
     "problems": (
         "FrameProblem",
         "FrameSpecError",

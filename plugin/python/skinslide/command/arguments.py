@@ -5,20 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from typing import TYPE_CHECKING, NoReturn
+from dataclasses import Field, fields
+from typing import Any, NoReturn
 
 from skinslide.command.outcome import EXIT_CODES, tell
 from skinslide.problems import UsageError
-from skinslide.shot.options import FORMATS, VIEWS
-
-if TYPE_CHECKING:
-    from skinslide.arrays.native import Lookup
+from skinslide.shot.checks import Options, count_text, described, positive_text
+from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
 
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
 
 
-def parse(words: list[str]) -> argparse.Namespace:
-    """The arguments of a command; raises UsageError, and SystemExit after --help and --version."""
+def parse(words: list[str]) -> dict[str, Any]:
+    """The command, and those of its arguments that are given, by the keywords of the function that it calls.
+
+    Raises UsageError, and SystemExit after --help and --version.
+    """
     for word in words:
         try:
             word.encode()
@@ -31,24 +33,26 @@ def parse(words: list[str]) -> argparse.Namespace:
             joined[-1] += f"={word}"
         else:
             joined.append(word)
-    return _parser().parse_args(joined)
+    return vars(_parser().parse_args(joined))
 
 
-def lookup_of(arguments: argparse.Namespace) -> Lookup:
-    """How a command is to look up; the environment may name a device."""
-    from skinslide.arrays.native import Lookup
-
-    device, named = arguments.egl_device, os.environ.get(_DEVICE_VARIABLE)
-    if device is None and named:
-        try:
-            device = _count(named)
-        except argparse.ArgumentTypeError as bad:
-            raise UsageError(f"{_DEVICE_VARIABLE}: {bad}") from bad
-    return Lookup(arguments.lookup, device, arguments.egl_resolution)
+def device_of_environment() -> int | None:
+    """The one of EGL's devices that the environment names; raises UsageError where that is no number."""
+    named = os.environ.get(_DEVICE_VARIABLE)
+    try:
+        return count_text(named) if named else None
+    except argparse.ArgumentTypeError as bad:
+        raise UsageError(f"{_DEVICE_VARIABLE}: {bad}") from bad
 
 
 class _Parser(argparse.ArgumentParser):
-    """Raises UsageError where argparse would exit, so that --json has a document then too."""
+    """Raises UsageError where argparse would exit, so that --json has a document then too.
+
+    What is not given has no value: it is left to the functions, which have the same defaults.
+    """
+
+    def __init__(self, **words: Any):
+        super().__init__(**words, epilog=EXIT_CODES, argument_default=argparse.SUPPRESS)
 
     def error(self, message: str) -> NoReturn:
         tell(self.format_usage().rstrip())
@@ -69,7 +73,6 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="skinslide",
         description="Lets the skin of a cached character slide over its deformed shape instead of sticking to it.",
-        epilog=EXIT_CODES,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -86,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_command(commands, name: str, summary: str) -> argparse.ArgumentParser:
     description = summary[0].upper() + summary[1:] + "."
-    return commands.add_parser(name, help=summary, description=description, epilog=EXIT_CODES)
+    return commands.add_parser(name, help=summary, description=description)
 
 
 def _add_stage(command: argparse.ArgumentParser) -> None:
@@ -94,62 +97,55 @@ def _add_stage(command: argparse.ArgumentParser) -> None:
     command.add_argument("stage", metavar="STAGE", help=stage_help)
 
 
-def _add_prims(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--prim",
-        action="append",
-        metavar="PATH",
-        help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch). What "
-        "USD cannot compose elsewhere, such as a missing payload, is then a warning and no error",
-    )
+def _add_options(command: argparse._ActionsContainer, table: type[Options], *names: str) -> None:
+    """Options of a table: those named, or all."""
+    for each in fields(table):
+        if names and each.name not in names:
+            continue
+        _add_option(command, each, each.name, each.metadata["flag"])
+        if each.name == "lookup":
+            _add_device(command)
 
 
-def _add_lookup(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--lookup",
-        default="auto",
-        choices=("auto", "egl", "exact"),
-        help="how rest vertices are looked up in a frame; the result is the same: egl renders a colour a face, exact "
-        "walks, auto is egl where EGL has a hardware device and exact elsewhere (default: auto)",
-    )
+def _add_option(command: argparse._ActionsContainer, each: Field, keyword: str, flag: str) -> None:
+    words, default = dict(each.metadata["words"]), each.default
+    if keyword == "jobs":
+        default = words["default"] = _processors()
+    command.add_argument(flag, dest=keyword, **{**words, "help": described(each, default)})
+
+
+def _add_device(command: argparse._ActionsContainer) -> None:
     command.add_argument(
         "--egl-device",
-        type=_count,
+        type=count_text,
         metavar="N",
         help=f"the one of EGL's devices to use (default: {_DEVICE_VARIABLE} in the environment, else the first that "
         "works, hardware before software)",
     )
     command.add_argument(
         "--egl-resolution",
-        type=_positive,
-        default=0,
+        type=positive_text,
         metavar="N",
         help="texels along a side of the texture of faces (default: by the patch, 256 to 4096)",
     )
 
 
-def _add_frames(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--frames",
-        metavar="SPEC",
-        help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
-        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
-    )
-
-
-def _add_jobs(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--jobs",
-        type=_positive,
-        default=_processors(),
-        metavar="N",
-        help="frames in hand at once; the result is the same (default: the processors, here %(default)s)",
-    )
-
-
 def _add_printing(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    _add_json(command)
+
+
+def _add_json(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+
+
+def _add_page(command: argparse._ActionsContainer) -> None:
+    command.add_argument(
+        "--html",
+        metavar="FILE",
+        help="a page of all pictures, to be scrubbed through, with curves of stretch, slides, folds and time and the "
+        "settings used: one file, which loads no other",
+    )
 
 
 def _add_bake(command: argparse.ArgumentParser) -> None:
@@ -163,32 +159,22 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
         "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was; one killed outright "
         "leaves a partial file beside it, which the next bake of OUT removes when it is a day old",
     )
-    _add_prims(command)
-    _add_frames(command)
-    _add_lookup(command)
-    _add_jobs(command)
-    limits = {"folded": "faces turned over in its embedding", "clamped": "vertices looked up outside every face"}
-    for option, what in limits.items():
-        command.add_argument(
-            f"--max-{option}",
-            type=_count,
-            metavar="N",
-            help=f"fail, and write nothing, where a patch has more than N {what} at a frame",
-        )
-    command.add_argument(
-        "--diagnostics",
-        action="store_true",
-        help="write two primvars by vertex beside the points: primvars:skinSlide:stretch, the RMS of log(length / rest "
-        "length) over the edges of patches at the vertex, slid; and primvars:skinSlide:slide, how far it slid",
-    )
+    _add_options(command, SlideOptions)
+    _add_options(command, LayerOptions)
     _add_printing(command)
+    pictures = command.add_argument_group("pictures of the same frames, as preview draws them")
+    pictures.add_argument("--pictures", metavar="DIR", help="a folder for them, as of preview -o")
+    _add_page(pictures)
+    _add_options(pictures, PictureOptions)
+    maps = command.add_argument_group("maps of the same frames, as maps draws them, with --patch and --st")
+    maps.add_argument("--maps", metavar="DIR", help="a folder for them, as of maps -o")
+    _add_option(maps, MapOptions.__dataclass_fields__["size"], "map_size", "--map-size")
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    _add_prims(command)
-    _add_lookup(command)
-    command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+    _add_options(command, SlideOptions, "prims", "lookup")
+    _add_json(command)
 
 
 def _add_preview(command: argparse.ArgumentParser) -> None:
@@ -202,52 +188,9 @@ def _add_preview(command: argparse.ArgumentParser) -> None:
         "and contact_sheet.png (with --frames contact_sheet.FIRST-LAST.png), made where it is missing; each file is "
         "replaced in one step. This, --html, or both",
     )
-    command.add_argument(
-        "--html",
-        metavar="FILE",
-        help="a page of all pictures, to be scrubbed through, with curves of stretch, slides, folds and time and the "
-        "settings used: one file, which loads no other",
-    )
-    _add_prims(command)
-    command.add_argument(
-        "--patch", action="append", metavar="NAME", help="only this patch; may be given again (default: all)"
-    )
-    _add_frames(command)
-    command.add_argument(
-        "--view",
-        action="append",
-        choices=VIEWS,
-        help="chequer: on the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
-        "false colours; may be given again (default: both)",
-    )
-    command.add_argument(
-        "--camera",
-        metavar="PATH",
-        help="a Camera of the stage (default: one that stands still and has the patch in sight all through the shot)",
-    )
-    command.add_argument("--follow", action="store_true", help="frame the patch anew in each frame")
-    command.add_argument("--size", type=_size, default=(1920, 1080), metavar="WxH", help="pixels (default: 1920x1080)")
-    command.add_argument("--format", default="png", choices=FORMATS, help="of the pictures; exr is linear light")
-    command.add_argument(
-        "--st",
-        metavar="NAME",
-        help="the primvar that the chequer follows (default: st, and on a mesh without it places at rest)",
-    )
-    command.add_argument(
-        "--squares",
-        type=float,
-        metavar="N",
-        help="of the chequer, for each unit of it (default: 16 across the patch)",
-    )
-    command.add_argument(
-        "--most-stretch",
-        type=float,
-        default=0.5,
-        metavar="X",
-        help="what the end of the scale of colours stands for (default: 0.5)",
-    )
-    _add_lookup(command)
-    _add_jobs(command)
+    _add_page(command)
+    _add_options(command, SlideOptions)
+    _add_options(command, PictureOptions)
     _add_printing(command)
 
 
@@ -264,26 +207,8 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
         "rest length) over the edges at a point), slide (distance, in the mesh's units) and forceDensity (as painted). "
         "One channel, Y. A map is replaced in one step, so one that fails or is killed leaves it as it was",
     )
-    _add_prims(command)
-    command.add_argument(
-        "--patch",
-        action="append",
-        metavar="NAME",
-        help="draw the faces of patch NAME only, though all slide; may be given again (default: every patch)",
-    )
-    _add_frames(command)
-    command.add_argument(
-        "--size", type=_positive, default=1024, metavar="N", help="texels along each side, 1 to 16384 (default: 1024)"
-    )
-    command.add_argument(
-        "--st",
-        default="st",
-        metavar="NAME",
-        help="the primvar with texture coordinates, in which the maps are drawn and carried on for 4 texels beyond; "
-        "where faces overlap in it, as with mirrored halves, the later in the mesh is seen (default: st)",
-    )
-    _add_lookup(command)
-    _add_jobs(command)
+    _add_options(command, SlideOptions)
+    _add_options(command, MapOptions)
     _add_printing(command)
 
 
@@ -323,13 +248,16 @@ def _add_paint(command: argparse.ArgumentParser) -> None:
     edges.add_argument("--subset", metavar="NAME", help="the edges of the GeomSubset NAME, of elementType edge")
     edges.add_argument("--primvar", metavar="NAME", help="edges with at least --threshold at both ends")
     edges.add_argument("--curve", metavar="PATH", help="edges near a BasisCurves prim drawn on the mesh at rest")
-    command.add_argument("--threshold", type=float, default=0.5, metavar="X", help="for --primvar (default: 0.5)")
+    command.add_argument("--threshold", type=float, metavar="X", help="for --primvar (default: 0.5)")
     command.add_argument(
-        "--within", type=float, metavar="D", help="for --curve: edges whose middle is no farther, in the mesh's units"
+        "--within",
+        dest="distance",
+        type=float,
+        metavar="D",
+        help="for --curve: edges whose middle is no farther, in the mesh's units",
     )
     command.add_argument(
         "--direction",
-        default="any",
         choices=("any", "along", "across"),
         help="for --curve: edges at 45 degrees or less to it (along), at more (across), or any (default)",
     )
@@ -341,11 +269,10 @@ def _add_mirror(command: argparse.ArgumentParser) -> None:
     command.add_argument("--to", metavar="NAME", help="the new patch's name (default: elbow_R for elbow_L)")
     command.add_argument(
         "--axis",
-        default="x",
         choices=("x", "y", "z"),
         help="the mesh is symmetric about a plane across it (default: x)",
     )
-    command.add_argument("--plane", type=float, default=0.0, metavar="X", help="where the plane is (default: 0)")
+    command.add_argument("--plane", type=float, metavar="X", help="where the plane is (default: 0)")
     command.add_argument(
         "--tolerance",
         type=float,
@@ -365,24 +292,5 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _size(text: str) -> tuple[int, int]:
-    found = re.fullmatch(r"(\d{1,9})[xX](\d{1,9})", text, re.ASCII)
-    if not found:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1920x1080")
-    return int(found[1]), int(found[2])
-
-
 def _processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _count(text: str) -> int:
-    if not (text.isascii() and text.isdigit()):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 0 or more")
-    return int(text)
-
-
-def _positive(text: str) -> int:
-    if _count(text) < 1:
-        raise argparse.ArgumentTypeError("must be at least 1")
-    return int(text)

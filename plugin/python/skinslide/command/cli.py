@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import fields
 from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from skinslide.command.arguments import lookup_of, parse
+from skinslide.command.arguments import device_of_environment, parse
 from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say
 from skinslide.problems import UsageError
-from skinslide.shot.options import VIEWS
+from skinslide.shot.options import PictureOptions
+
+if TYPE_CHECKING:
+    from skinslide.shot.products import Product
 
 Result = tuple[str, int]  # what to print on stdout, and the exit code
 
@@ -22,210 +26,164 @@ def main(argv: Sequence[str] | None = None) -> int:
     prepare_streams()
     words = list(sys.argv[1:] if argv is None else argv)
     try:
-        arguments = parse(words)
+        given = parse(words)
     except UsageError as bad:
         return failed(bad, json="--json" in words)
     except SystemExit as done:  # after --help and --version
         return done.code if isinstance(done.code, int) else DONE
-    before = _state(arguments)
+    run, home, name = _COMMANDS[given.pop("command")]
+    before = _state(given)
     try:
-        import_module(f"skinslide.{_MODULES[arguments.command]}")  # uninterrupted, as USD must be while it loads
+        function = getattr(import_module(f"skinslide.{home}"), name)  # uninterrupted, as USD must be while it loads
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # blocked by start.py
-        return say(*_RUN[arguments.command](arguments))
+        return say(*run(function, **given))
     except expected() as error:
-        return failed(error, getattr(arguments, "json", False), _outcome(arguments, before))
+        return failed(error, given.get("json", False), _outcome(given, before))
 
 
-def _file(arguments: argparse.Namespace) -> str | None:
-    """The one file that a command writes, beside those in its folder; None where it writes none."""
-    return getattr(arguments, "output", None) or getattr(arguments, "html", None)
+# ---- What a command left behind ----
 
 
-def _state(arguments: argparse.Namespace) -> tuple | None:
-    """Tells whether there is another file at the output than before."""
-    file = _file(arguments)
-    try:
-        found = os.stat(file) if file else None
-    except (OSError, ValueError):  # there is nothing yet
-        found = None
-    if found is None:
-        return None
-    return found.st_dev, found.st_ino, found.st_mtime_ns, found.st_size
+def _state(given: dict[str, Any]) -> dict[str, tuple]:
+    """Tells whether a file is another than before: those that a command writes outside its folders."""
+    found = {}
+    for file in filter(None, (given.get("output"), given.get("html"))):
+        try:
+            status = os.stat(file)
+        except (OSError, ValueError):  # there is nothing yet
+            continue
+        found[file] = (status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size)
+    return found
 
 
-def _outcome(arguments: argparse.Namespace, before: tuple | None) -> str:
+def _outcome(given: dict[str, Any], before: dict[str, tuple]) -> str:
     """What became of the files, for where that is in question."""
-    file = _file(arguments)
-    if file and _state(arguments) != before:
-        return f" after {file} was written"
-    if getattr(arguments, "folder", None):
-        return f"; every file in {arguments.folder} is whole"
-    return "; nothing was written" if file else ""
+    written = [file for file, state in _state(given).items() if before.get(file) != state]
+    folders = [given[name] for name in ("folder", "pictures", "maps") if given.get(name)]
+    if written:
+        return f" after {_listed(written)} {'were' if len(written) > 1 else 'was'} written"
+    if folders:
+        return f"; every file in {_listed(folders)} is whole"
+    return "; nothing was written" if given.get("output") or given.get("html") else ""
 
 
-def _bake(arguments: argparse.Namespace) -> Result:
+def _listed(names: Sequence[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]] if names[1:] else names)
+
+
+# ---- The commands: what each gives its function ----
+
+
+def _bake(
+    bake_to_file: Callable,
+    stage: str,
+    output: str,
+    *,
+    pictures: str | None = None,
+    html: str | None = None,
+    maps: str | None = None,
+    json: bool = False,
+    quiet: bool = False,
+    **options: Any,
+) -> Result:
+    also = _also(pictures, html, maps, options)
+    report = _followed(bake_to_file, quiet, stage, output, also=also, **options)
+    if json:
+        return as_json({"stage": stage, "output": output, **report.as_dict()}), DONE
+    return "" if quiet else "\n".join([report.text(), *_written(pictures, html), _layer_written(output)]), DONE
+
+
+def _also(pictures: str | None, html: str | None, maps: str | None, options: dict[str, Any]) -> list[Product]:
+    """Pictures and maps, with their options, which are taken out. UsageError for options of what is not asked for."""
+    from skinslide.picture.maps import Maps
+    from skinslide.picture.preview import Pictures
+
+    drawn = {each.name: options.pop(each.name) for each in fields(PictureOptions) if each.name in options}
+    mapped = {name: drawn[name] for name in ("patches", "st") if name in drawn}
+    size = {"size": options.pop("map_size")} if "map_size" in options else {}
+    products: list[Product] = []
+    if pictures is not None or html is not None:
+        products.append(Pictures(pictures, html, **drawn))
+    elif drawn != mapped or (mapped and maps is None):
+        raise UsageError("there are options of pictures, but no folder (--pictures) and no page (--html) for them")
+    if maps is not None:
+        products.append(Maps(maps, **mapped, **size))
+    elif size:
+        raise UsageError("there is a size of maps, but no folder (--maps) for them")
+    return products
+
+
+def _check(check: Callable, stage: str, *, json: bool = False, **options: Any) -> Result:
+    report = check(stage, **_with_lookup(options))
+    return as_json(report.as_dict()) if json else report.text(), PROBLEMS if report.failed else DONE
+
+
+def _preview(
+    preview: Callable,
+    stage: str,
+    *,
+    folder: str | None = None,
+    html: str | None = None,
+    json: bool = False,
+    quiet: bool = False,
+    **options: Any,
+) -> Result:
+    report = _followed(preview, quiet, stage, folder, html=html, **options)
+    if json:
+        return as_json({"stage": stage, **report.as_dict()}), DONE
+    return "" if quiet else "\n".join([report.text(), *_written(folder, html)]), DONE
+
+
+def _maps(
+    maps: Callable, stage: str, folder: str, *, json: bool = False, quiet: bool = False, **options: Any
+) -> Result:
+    report = _followed(maps, quiet, stage, folder, **options)
+    if json:
+        return as_json({"stage": stage, "folder": folder, **report.as_dict()}), DONE
+    return "" if quiet else report.text(), DONE
+
+
+def _author(function: Callable, stage: str, output: str, *, prim: str, patch: str, **options: Any) -> Result:
+    return "\n".join([function(stage, output, prim, patch, **options).text(), *_written(output)]), DONE
+
+
+def _stitch(stitch: Callable, chunks: list[str], output: str) -> Result:
+    return f"{stitch(chunks, output).text()}\n{_layer_written(output)}", DONE
+
+
+def _followed(function: Callable, quiet: bool, *arguments: Any, **options: Any) -> Any:
+    """Calls a function that slides, with its progress told."""
     from skinslide.command.progress import reporter
-    from skinslide.shot.bake import bake_to_file
 
-    with reporter(quiet=arguments.quiet) as progress:
-        report = bake_to_file(
-            arguments.stage,
-            arguments.output,
-            prims=arguments.prim,
-            frames=arguments.frames,
-            lookup=lookup_of(arguments),
-            jobs=arguments.jobs,
-            progress=progress,
-            max_folded=arguments.max_folded,
-            max_clamped=arguments.max_clamped,
-            diagnostics=arguments.diagnostics,
-        )
-    if arguments.json:
-        return as_json({"stage": arguments.stage, "output": arguments.output, **report.as_dict()}), DONE
-    return "" if arguments.quiet else _written(report.text(), arguments), DONE
+    with reporter(quiet=quiet) as progress:
+        return function(*arguments, progress=progress, **_with_lookup(options))
 
 
-def _check(arguments: argparse.Namespace) -> Result:
-    from skinslide.shot.check import check
+def _with_lookup(options: dict[str, Any]) -> dict[str, Any]:
+    """Options with one lookup in the place of its parts; the environment may name a device."""
+    from skinslide.arrays.native import Lookup
 
-    report = check(arguments.stage, arguments.prim, lookup=lookup_of(arguments))
-    return as_json(report.as_dict()) if arguments.json else report.text(), PROBLEMS if report.failed else DONE
-
-
-def _preview(arguments: argparse.Namespace) -> Result:
-    from skinslide.command.progress import reporter
-    from skinslide.picture.preview import preview
-
-    with reporter(quiet=arguments.quiet) as progress:
-        report = preview(
-            arguments.stage,
-            arguments.folder,
-            html=arguments.html,
-            prims=arguments.prim,
-            patches=arguments.patch,
-            frames=arguments.frames,
-            views=arguments.view or VIEWS,
-            camera=arguments.camera,
-            follow=arguments.follow,
-            size=arguments.size,
-            form=arguments.format,
-            st=arguments.st,
-            squares=arguments.squares,
-            most_stretch=arguments.most_stretch,
-            lookup=lookup_of(arguments),
-            jobs=arguments.jobs,
-            progress=progress,
-        )
-    if arguments.json:
-        return as_json({"stage": arguments.stage, **report.as_dict()}), DONE
-    written = "\n".join(f"{place}: written" for place in (arguments.folder, arguments.html) if place)
-    return "" if arguments.quiet else f"{report.text()}\n{written}", DONE
+    method, resolution = options.pop("lookup", "auto"), options.pop("egl_resolution", 0)
+    device = options.pop("egl_device", None)
+    return {**options, "lookup": Lookup(method, device_of_environment() if device is None else device, resolution)}
 
 
-def _maps(arguments: argparse.Namespace) -> Result:
-    from skinslide.command.progress import reporter
-    from skinslide.picture.maps import maps
-
-    with reporter(quiet=arguments.quiet) as progress:
-        report = maps(
-            arguments.stage,
-            arguments.folder,
-            prims=arguments.prim,
-            patches=arguments.patch,
-            frames=arguments.frames,
-            size=arguments.size,
-            st=arguments.st,
-            lookup=lookup_of(arguments),
-            jobs=arguments.jobs,
-            progress=progress,
-        )
-    if arguments.json:
-        return as_json({"stage": arguments.stage, "folder": arguments.folder, **report.as_dict()}), DONE
-    return "" if arguments.quiet else report.text(), DONE
+def _written(*places: str | None) -> list[str]:
+    return [f"{place}: written" for place in places if place]
 
 
-def _setup(arguments: argparse.Namespace) -> Result:
-    from skinslide.author.setup import setup
-
-    report = setup(
-        arguments.stage,
-        arguments.output,
-        arguments.prim,
-        arguments.patch,
-        faces=arguments.faces,
-        subset=arguments.subset,
-        primvar=arguments.primvar,
-        force=arguments.force,
-    )
-    return f"{report.text()}\n{arguments.output}: written", DONE
+def _layer_written(output: str) -> str:
+    return f"{output}: written; sublayer it above the cache"
 
 
-def _paint(arguments: argparse.Namespace) -> Result:
-    from skinslide.author.paint import paint
-
-    report = paint(
-        arguments.stage,
-        arguments.output,
-        arguments.prim,
-        arguments.patch,
-        arguments.value,
-        subset=arguments.subset,
-        primvar=arguments.primvar,
-        threshold=arguments.threshold,
-        curve=arguments.curve,
-        distance=arguments.within,
-        direction=arguments.direction,
-        clear=arguments.clear,
-        force=arguments.force,
-    )
-    return f"{report.text()}\n{arguments.output}: written", DONE
-
-
-def _mirror(arguments: argparse.Namespace) -> Result:
-    from skinslide.author.mirror import mirror
-
-    report = mirror(
-        arguments.stage,
-        arguments.output,
-        arguments.prim,
-        arguments.patch,
-        to=arguments.to,
-        axis=arguments.axis,
-        plane=arguments.plane,
-        tolerance=arguments.tolerance,
-        force=arguments.force,
-    )
-    return f"{report.text()}\n{arguments.output}: written", DONE
-
-
-def _stitch(arguments: argparse.Namespace) -> Result:
-    from skinslide.write.stitch import stitch
-
-    return _written(stitch(arguments.chunks, arguments.output).text(), arguments), DONE
-
-
-def _written(report: str, arguments: argparse.Namespace) -> str:
-    return f"{report}\n{arguments.output}: written; sublayer it above the cache"
-
-
-# Where the functions are that the commands call.
-_MODULES = {
-    "bake": "shot.bake",
-    "check": "shot.check",
-    "preview": "picture.preview",
-    "maps": "picture.maps",
-    "setup": "author.setup",
-    "paint": "author.paint",
-    "mirror": "author.mirror",
-    "stitch": "write.stitch",
-}
-_RUN: dict[str, Callable[[argparse.Namespace], Result]] = {
-    "bake": _bake,
-    "check": _check,
-    "preview": _preview,
-    "maps": _maps,
-    "setup": _setup,
-    "paint": _paint,
-    "mirror": _mirror,
-    "stitch": _stitch,
+# Each with the function that it calls: the module and the name.
+_COMMANDS: dict[str, tuple[Callable[..., Result], str, str]] = {
+    "bake": (_bake, "shot.bake", "bake_to_file"),
+    "check": (_check, "shot.check", "check"),
+    "preview": (_preview, "picture.preview", "preview"),
+    "maps": (_maps, "picture.maps", "maps"),
+    "setup": (_author, "author.setup", "setup"),
+    "paint": (_author, "author.paint", "paint"),
+    "mirror": (_author, "author.mirror", "mirror"),
+    "stitch": (_stitch, "write.stitch", "stitch"),
 }

@@ -1,10 +1,8 @@
-"""The maps of one mesh: each frame slid, measured, drawn in texture coordinates, and written."""
+"""The maps of one mesh: each frame measured, drawn in texture coordinates, and written."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 from threading import Semaphore
 from typing import NamedTuple
@@ -13,13 +11,11 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide.arrays.images import FIRST_TILE, Corners, draw_map, encode_exr, map_tiles
-from skinslide.arrays.native import Controls, PatchSetup
-from skinslide.arrays.records import PatchResult
+from skinslide.arrays.native import PatchSetup
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems
-from skinslide.shot.options import BakeOptions
+from skinslide.shot.options import MapOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
-from skinslide.shot.report import MeshReport
-from skinslide.shot.workers import work_ahead
+from skinslide.shot.products import MeshMaking, SlidFrame, SlidFrames
 from skinslide.stage.coordinates import read_coordinates
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.values import FIRST, Reading, primvar_sources
@@ -33,19 +29,6 @@ KINDS = {
     "forceDensity": "force_density",
 }
 _CHANNEL = "Y"
-
-
-@dataclass(frozen=True)
-class MapOptions:
-    """What maps are asked for."""
-
-    bake: BakeOptions
-    patches: list[str] | None  # names; None: all
-    size: int
-    st: str
-
-    def draws(self, patch: PatchSetup) -> bool:
-        return self.patches is None or patch.name in self.patches
 
 
 class MapName(NamedTuple):
@@ -77,37 +60,33 @@ class _Map(NamedTuple):
     highest: float
 
 
-class _Frame(NamedTuple):
-    """What is read of the stage for a time."""
-
-    points: np.ndarray
-    controls: list[Controls] | None
-    corners: Corners
-    names: list[MapName]
-
-
 class _Drawn(NamedTuple):
-    patches: tuple[PatchResult, ...]
     maps: list[_Map]
     missed_faces: int  # of one kind
 
 
-class MeshMaps:
-    """One mesh."""
+class Atlas(NamedTuple):
+    """What the maps of all meshes are drawn with."""
 
-    def __init__(self, planned: PlannedMesh, options: MapOptions, place: OutputFolder):
+    options: MapOptions
+    folder: OutputFolder
+    room: Semaphore  # for as many frames to be drawn at once
+    written: list[WrittenMap]
+
+
+class MeshMaps(MeshMaking):
+    """The maps of one mesh."""
+
+    def __init__(self, planned: PlannedMesh, atlas: Atlas):
         """Raises StageProblems where the texture coordinates cannot be used at the first time."""
-        self._mesh, self._slider, self._times = planned
-        self._options, self._place = options, place
-        self._chosen = [options.draws(patch) for patch in self._mesh.patches]
+        mesh, self._times, self._atlas, self._options = planned.mesh, planned.times, atlas, atlas.options
+        wanted = self._options.patches
+        self._mesh, self._chosen = mesh, [wanted is None or patch.name in wanted for patch in mesh.patches]
         self._faces = np.unique(np.concatenate([patch.faces for patch in self._drawn_patches()])).astype(np.int32)
-        self._vertices = self._mesh.topology.vertices_of(self._faces)
+        self._vertices = mesh.topology.vertices_of(self._faces)
         self._missed: list[tuple[int, float | None]] = []
-        mesh = self._mesh
-        self.report = MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, self._slider.patches)
-        self.frame_count = len(self._times)
         try:
-            self._st = _read_st(mesh, options.st)
+            self._st = _read_st(mesh, self._options.st)
             self._first = self._corners_at(FIRST)
         except Fault as fault:
             raise StageProblems([mesh.problem(str(fault), FIRST)]) from fault
@@ -117,65 +96,49 @@ class MeshMaps:
     def check_files(self) -> None:
         """Raises UsageError for a file that cannot be written."""
         _, tiles = self._first
-        self._place.check_all(self._path(name) for time in self._times for name in _map_names(tiles, time))
+        self._atlas.folder.check_all(self._path(name) for time in self._times for name in _map_names(tiles, time))
 
-    def run(self, room: Semaphore, pool: ThreadPoolExecutor) -> Iterator[list[WrittenMap]]:
-        """Writes the maps of each time in order; yields them. room: for as many to be drawn at once."""
+    def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], _Drawn]:
+        changes = self._st.varies and not time.IsDefault()
+        corners, tiles = self._corners_at(time) if changes else self._first
+        return lambda frame: self._draw(frame, corners, _map_names(tiles, time))
 
-        def read(time: Usd.TimeCode) -> Callable[[], _Drawn]:
-            frame = self._read(time)
-            return lambda: self._draw(frame, room)
+    def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: _Drawn) -> None:
+        """Writes the maps."""
+        outputs = [self._path(drawn.name) for drawn in made.maps]
+        for output in outputs:  # none, where one cannot be
+            self._atlas.folder.check(output)
+        for output, drawn in zip(outputs, made.maps, strict=True):
+            self._atlas.folder.write(output, drawn.data)
+            written = WrittenMap(str(output), self._mesh.path, *drawn.name, drawn.lowest, drawn.highest)
+            self._atlas.written.append(written)
+        self._missed.append((made.missed_faces, frame_of(time) if self._st.varies else None))
 
-        for time, drawn in work_ahead(self._mesh, self._times, read, pool, self._options.bake.jobs):
-            written = self._write(drawn)
-            self.report.add(frame_of(time), drawn.patches)
-            self._missed.append((drawn.missed_faces, frame_of(time) if self._st.varies else None))
-            yield written
-
-    def problems(self) -> list[Problem]:
+    def end(self) -> list[Problem]:
         """What is missing in the maps."""
         most, frame = max(self._missed, key=lambda each: each[0])
         message = f"{most} faces are so small or thin that no texel's centre is in them; a larger size draws more"
         return [Problem("warning", self._mesh.path, None, frame, message)] if most else []
 
     def _drawn_patches(self) -> list[PatchSetup]:
-        return [patch for patch in self._mesh.patches if self._options.draws(patch)]
+        return [patch for patch, chosen in zip(self._mesh.patches, self._chosen, strict=True) if chosen]
 
-    def _read(self, time: Usd.TimeCode) -> _Frame:
-        points, controls = self._mesh.points_at(time), self._mesh.controls_at(time)
-        changes = self._st.varies and not time.IsDefault()
-        corners, tiles = self._corners_at(time) if changes else self._first
-        return _Frame(points, controls, corners, _map_names(tiles, time))
-
-    def _draw(self, frame: _Frame, room: Semaphore) -> _Drawn:
-        slid = self._slider.slide(frame.points, frame.controls)
-        measured = self._slider.diagnose(frame.points, slid.points, frame.controls, chosen=self._chosen)
+    def _draw(self, frame: SlidFrame, corners: Corners, names: list[MapName]) -> _Drawn:
+        measured = frame.measured(self._chosen)
         made, missed = [], 0
-        with room:
-            for name in frame.names:
+        with self._atlas.room:
+            for name in names:
                 values = getattr(measured, KINDS[name.kind])
-                texels, without = draw_map(frame.corners, values, self._options.size, name.tile or FIRST_TILE)
+                texels, without = draw_map(corners, values, self._options.size, name.tile or FIRST_TILE)
                 inside = values[self._vertices]
                 data = encode_exr({_CHANNEL: texels}, wrap="clamp")
                 made.append(_Map(name, data, float(inside.min()), float(inside.max())))
-                missed += without if name.kind == frame.names[0].kind else 0
-        return _Drawn(slid.patches, made, missed)
-
-    def _write(self, drawn: _Drawn) -> list[WrittenMap]:
-        path = self._mesh.prim.GetPath()
-        outputs = [self._path(made.name) for made in drawn.maps]
-        for output in outputs:  # none, where one cannot be
-            self._place.check(output)
-        for output, made in zip(outputs, drawn.maps, strict=True):
-            self._place.write(output, made.data)
-        return [
-            WrittenMap(str(output), str(path), *made.name, made.lowest, made.highest)
-            for output, made in zip(outputs, drawn.maps, strict=True)
-        ]
+                missed += without if name.kind == names[0].kind else 0
+        return _Drawn(made, missed)
 
     def _path(self, name: MapName) -> Path:
         words = [name.kind, *([] if name.tile is None else [str(name.tile)])]
-        return self._place.path(self._mesh.prim.GetPath(), words, name.frame, "exr")
+        return self._atlas.folder.path(self._mesh.prim.GetPath(), words, name.frame, "exr")
 
     def _corners_at(self, time: Usd.TimeCode) -> tuple[Corners, list[int]]:
         """The texture coordinates of the faces drawn, and the tiles of a UDIM that they reach. Raises FrameProblem."""

@@ -1,12 +1,9 @@
-"""Draws what sliding does to a shot: before and after, side by side.
+"""Pictures of what sliding does to a shot: before and after, side by side; a contact sheet of some, and a page of all.
 
-meshes, problems = read the stage              any error: stop here, nothing is written
 for each piece of a patch: a series            its triangles, its camera, its chequer
-for each mesh, for each time in order, several at once:
-    points, controls, cameras at that time     read on this thread
-    slide; for each series and view: draw, write titles, encode        on a thread of the pool, on a canvas of its own
-    put the pictures in place                  on this thread
-a contact sheet of some frames of each series, and a page of all
+for each time: cameras                         read on the loop's thread
+    for each series and view: draw, write titles, encode        on a thread of the pool, on a canvas of its own
+    put the pictures in place                  on the loop's thread
 """
 
 from __future__ import annotations
@@ -15,10 +12,11 @@ import itertools
 import math
 import os
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from pxr import Sdf, Usd
 
@@ -26,17 +24,19 @@ from skinslide.arrays.canvas import Canvas
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import choose_lookup, version
 from skinslide.picture.canvases import Canvases
-from skinslide.picture.drawing import MeshPictures, Picture, Wanted
+from skinslide.picture.drawing import DrawnPictures, Easel, MeshPictures
 from skinslide.picture.lettering import contact_sheets
 from skinslide.picture.page import page
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
-from skinslide.shot.options import VIEWS, BakeOptions, Frames, PictureOptions
-from skinslide.shot.plan import Plan
-from skinslide.shot.report import BakeReport
-from skinslide.shot.workers import Progress, pool_of
-from skinslide.stage.opening import open_stage
+from skinslide.shot.checks import documented
+from skinslide.shot.loop import slide
+from skinslide.shot.options import Frames, Names, PictureOptions, SlideOptions
+from skinslide.shot.plan import PlannedMesh
+from skinslide.shot.products import Making, MeshMaking, Shot
+from skinslide.shot.report import BakeReport, MeshReport
+from skinslide.shot.workers import Progress
 from skinslide.write.folder import OutputFolder, check_frames, frame_label
-from skinslide.write.place import check_not_input, check_output, replacing, signals_as_exceptions, writing
+from skinslide.write.place import check_not_input, check_output, replacing, writing
 
 _MOST_PIXELS = 1 << 27  # on canvases at once: each takes some forty bytes
 
@@ -46,116 +46,71 @@ def preview(
     folder: str | os.PathLike | None = None,
     *,
     html: str | os.PathLike | None = None,
-    prims: Sequence[str] | str | None = None,
-    patches: Sequence[str] | str | None = None,
+    prims: Names = None,
     frames: Frames = None,
-    views: Sequence[str] | str = VIEWS,
-    camera: str | None = None,
-    follow: bool = False,
-    size: tuple[int, int] = (1920, 1080),
-    form: str = "png",
-    st: str | None = None,
-    squares: float | None = None,
-    most_stretch: float = 0.5,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
     progress: Progress | None = None,
+    **pictures: Any,
 ) -> PreviewReport:
-    """Draws pictures of every patch into a folder, which is made where there is none, and a contact sheet.
+    """Draws pictures of every patch into a folder, and a page of them.
 
-    html          a page of all of them, with curves of what happened at each frame: one file, which loads no other
-    prims, frames, lookup, jobs, progress   as for `bake`
-    patches       names of patches; None: all
-    views         chequer: on the texture coordinates; stretch: in false colours
-    camera        the path of a UsdGeomCamera; None: one that has the patch in sight all through the shot
-    follow        frames the patch anew in each frame
-    size          width and height of a picture, pixels
-    form          png or exr
-    st            the primvar for the chequer; None: st, and where a mesh has none, squares in space at rest
-    squares       of the chequer, for each unit of st or of length; None: 16 across a patch
-    most_stretch  what the highest colour stands for
+    prims, frames, lookup, jobs, progress   as for `bake_to_file`
+    pictures      as for `Pictures`
     Raises UsageError, StageProblems, FrameProblem, StageError. Each picture is written whole or not at all.
     """
-    pictures = PictureOptions.checked(
-        patches=patches,
-        views=views,
-        camera=camera,
-        follow=follow,
-        size=size,
-        form=form,
-        st=st,
-        squares=squares,
-        most_stretch=most_stretch,
-    )
-    options = BakeOptions.checked(prims, frames, lookup, jobs)
-    if folder is None and html is None:
-        raise UsageError("no folder for pictures (-o) and no page (--html) is asked for")
-    opened = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
-    place = _Place.of(folder, html, opened, None if opened is stage else stage)
-    canvases = _canvases(pictures, options.lookup.device)
-    shot = _Shot.of(Plan.read(opened, options), pictures, place)
-    with signals_as_exceptions():
-        return shot.draw(opened, canvases, progress)
+    wanted = Pictures(folder, html, **pictures)
+    report = slide(Shot.of(stage), SlideOptions(prims, frames, lookup, jobs), [wanted], progress)
+    return PreviewReport(report.warnings, report.meshes, report.made)
+
+
+@documented
+@dataclass(frozen=True)
+class Pictures(PictureOptions):
+    """Pictures of every patch, to be drawn into `folder`, which is made where there is none, with a contact sheet.
+
+    `html` is a page of all of them, with curves of what happened at each frame: one file, which loads no other.
+    """
+
+    folder: str | os.PathLike | None = None
+    html: str | os.PathLike | None = None
+
+    def begin(self, shot: Shot, options: SlideOptions) -> Making:
+        """Raises UsageError and StageProblems for what cannot be written or drawn."""
+        if self.folder is None and self.html is None:
+            raise UsageError("no folder for pictures (-o) and no page (--html) is asked for")
+        folder = None if self.folder is None else OutputFolder(self.folder, shot.stage, shot.path)
+        if self.html is not None:
+            page_file = Path(self.html)
+            check_output(page_file, (".html", ".htm"), made=folder and folder.folder)
+            check_not_input(page_file, shot.stage, *shot.paths)
+            _check_clock(shot.stage)
+        return _Previewing(self, shot.stage, options, folder)
 
 
 @dataclass
 class PreviewReport(BakeReport):
     """What was slid for the pictures, and the files."""
 
-    device: str = ""
-    files: list[str] = field(default_factory=list)
-    pictures: int = 0
-    seconds: float = 0.0
-
-    def as_dict(self) -> dict[str, Any]:
-        """What `--json` prints, as of a bake, and each file."""
-        names = ("device", "files", "pictures", "seconds")
-        return {**super().as_dict(), **{name: getattr(self, name) for name in names}}
-
-    def text(self) -> str:
-        rate = f"{self.pictures} pictures, {self.pictures / max(self.seconds, 1e-9):.1f} a second"
-        return f"{super().text()}\n{rate}, drawn with {self.device}"
-
-
-def _sheet_name(number: int, asked: Sequence[float] | None) -> str:
-    """With the frames that were asked for, so that tasks of a farm do not take each other's."""
-    ends = [frame_label(frame) for frame in dict.fromkeys((asked[0], asked[-1]))] if asked else []
-    words = ["contact_sheet", *(["-".join(ends)] if ends else []), *([str(number + 1)] if number else [])]
-    return ".".join([*words, "png"])
-
-
-def _canvases(options: PictureOptions, device: int | None) -> Canvases:
-    width, height = options.width, options.height
-    pixels = "floats" if options.form == "exr" else "bytes"
-    return Canvases(lambda: Canvas(width, height, pixels, device), _MOST_PIXELS // (width * height))
-
-
-class _Place(NamedTuple):
-    """Where pictures go."""
-
-    folder: OutputFolder | None
-    page: Path | None
-
-    @classmethod
-    def of(
-        cls,
-        folder: str | os.PathLike | None,
-        html: str | os.PathLike | None,
-        stage: Usd.Stage,
-        stage_path: str | os.PathLike | None,
-    ) -> _Place:
-        """Raises UsageError and StageProblems for what cannot be written."""
-        files = None if folder is None else OutputFolder(folder, stage, stage_path)
-        page = None if html is None else Path(html)
-        if page:
-            check_output(page, (".html", ".htm"), made=files and files.folder)
-            check_not_input(page, stage, *([] if stage_path is None else [stage_path]))
-            _check_clock(stage)
-        return cls(files, page)
+    @property
+    def device(self) -> str:
+        return self._drawn.device
 
     @property
-    def wanted(self) -> Wanted:
-        return Wanted(self.folder is not None, self.page is not None)
+    def files(self) -> list[str]:
+        return self._drawn.files
+
+    @property
+    def pictures(self) -> int:
+        return self._drawn.pictures
+
+    @property
+    def seconds(self) -> float:
+        return self._drawn.seconds
+
+    @property
+    def _drawn(self) -> DrawnPictures:
+        return next(made for made in self.made if isinstance(made, DrawnPictures))
 
 
 def _check_clock(stage: Usd.Stage) -> None:
@@ -165,88 +120,74 @@ def _check_clock(stage: Usd.Stage) -> None:
         raise StageProblems([Problem("error", "", None, None, message)])
 
 
-@dataclass(frozen=True)
-class _Shot:
-    """Every mesh of which pictures are drawn."""
+def _canvases(options: PictureOptions, lookup: Lookup) -> Canvases:
+    width, height = options.size
+    pixels = "floats" if options.form == "exr" else "bytes"
+    return Canvases(lambda: Canvas(width, height, pixels, lookup.device), _MOST_PIXELS // (width * height))
 
-    meshes: list[MeshPictures]
-    plan: Plan
-    place: _Place
 
-    @classmethod
-    def of(cls, plan: Plan, options: PictureOptions, place: _Place) -> _Shot:
-        """Raises StageProblems and UsageError for what can be known before a frame is slid."""
-        plan.check_patches(options.patches)
-        meshes, problems = [], []
-        for planned in plan.meshes:
-            if place.folder:
-                check_frames(planned.frames)
-            try:
-                meshes.append(MeshPictures(planned, options, place.wanted))
-            except StageProblems as bad:
-                problems += bad.problems
-        if problems:
-            raise StageProblems(problems)
-        shot = cls([mesh for mesh in meshes if mesh.frame_count], plan, place)
-        shot._check_files(options.form)
-        return shot
+class _Previewing(Making):
+    """The pictures of every mesh, and what is made of all of them."""
 
-    def _check_files(self, form: str) -> None:
-        """Raises UsageError for a file that cannot be written."""
-        folder = self.place.folder
-        if not folder:
+    def __init__(self, asked: Pictures, stage: Usd.Stage, options: SlideOptions, folder: OutputFolder | None):
+        self.patches = asked.patches
+        self._stage, self._options, self._folder = stage, options, folder
+        self._page = None if asked.html is None else Path(asked.html)
+        self._drawn = DrawnPictures()
+        self._easel = Easel(asked, _canvases(asked, options.lookup), folder, self._page is not None, self._drawn)
+        self._meshes: list[MeshPictures] = []
+
+    def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking | None:
+        if self._folder:
+            check_frames(planned.frames)
+        mesh = MeshPictures(planned, report, self._easel)
+        if not mesh.picture_count:
+            return None
+        self._meshes.append(mesh)
+        return mesh
+
+    @contextmanager
+    def running(self, report: BakeReport) -> Iterator[None]:
+        if self._folder:
+            pictures = (path for mesh in self._meshes for path in mesh.files())
+            self._folder.check_all(itertools.chain([self._sheet_path(0)], pictures))
+        with self._easel.canvases.taken() as canvas:
+            self._drawn.device = canvas.device.renderer
+        report.made.append(self._drawn)
+        start = time.monotonic()
+        yield
+        self._drawn.seconds = time.monotonic() - start
+        self._write_sheets()
+        self._write_page(report)
+
+    def _write_sheets(self) -> None:
+        if not self._folder:
             return
-        names = ((mesh.path, words, frame) for mesh in self.meshes for words, frame in mesh.files())
-        pictures = (folder.path(path, words, frame, form) for path, words, frame in names)
-        folder.check_all(itertools.chain([folder.folder / _sheet_name(0, self.plan.options.frames)], pictures))
+        for number, sheet in enumerate(contact_sheets([strip for mesh in self._meshes for strip in mesh.thumbnails])):
+            self._folder.write(self._sheet_path(number), sheet)
+            self._drawn.files.append(str(self._sheet_path(number)))
 
-    def draw(self, stage: Usd.Stage, canvases: Canvases, progress: Progress | None) -> PreviewReport:
-        """Draws every mesh, then what is made of all pictures."""
-        warnings = [*self.plan.problems, *(problem for mesh in self.meshes for problem in mesh.problems)]
-        report = PreviewReport(warnings)
-        with canvases.taken() as canvas:
-            report.device = canvas.device.renderer
-        jobs, total, start = self.plan.options.jobs, sum(mesh.frame_count for mesh in self.meshes), time.monotonic()
-        with pool_of(jobs, total) as pool:
-            for mesh in self.meshes:
-                report.meshes.append(mesh.report)
-                for frame, pictures in mesh.run(canvases, pool, jobs):
-                    self._write(mesh, frame, pictures, report)
-                    if progress:
-                        progress(report.frame_count, total)
-        report.seconds = time.monotonic() - start
-        self._write_sheets(report)
-        self._write_page(stage, report)
-        return report
+    def _sheet_path(self, number: int) -> Path:
+        """With the frames that were asked for, so that tasks of a farm do not take each other's."""
+        asked = self._options.frames
+        ends = [frame_label(frame) for frame in dict.fromkeys((asked[0], asked[-1]))] if asked else []
+        words = ["contact_sheet", *(["-".join(ends)] if ends else []), *([str(number + 1)] if number else [])]
+        return self._folder.folder / ".".join([*words, "png"])
 
-    def _write(self, mesh: MeshPictures, frame: float | None, pictures: list[Picture], report: PreviewReport) -> None:
-        report.pictures += mesh.picture_count
-        for picture in pictures if self.place.folder else ():
-            path = self.place.folder.path(mesh.path, picture.words, frame, picture.form)
-            self.place.folder.write(path, picture.data)
-            report.files.append(str(path))
-
-    def _write_sheets(self, report: PreviewReport) -> None:
-        if not self.place.folder:
+    def _write_page(self, report: BakeReport) -> None:
+        if not self._page:
             return
-        for number, sheet in enumerate(contact_sheets([strip for mesh in self.meshes for strip in mesh.thumbnails])):
-            path = self.place.folder.folder / _sheet_name(number, self.plan.options.frames)
-            self.place.folder.write(path, sheet)
-            report.files.append(str(path))
-
-    def _write_page(self, stage: Usd.Stage, report: PreviewReport) -> None:
-        if not self.place.page:
-            return
-        strips = [strip for mesh in self.meshes for strip in mesh.strips()]
+        strips = [strip for mesh in self._meshes for strip in mesh.strips()]
         frames = sorted({frame for strip in strips for frame in strip.patch.frames if frame is not None})
+        root = self._stage.GetRootLayer()
         facts = {
-            "stage": Sdf.Layer.SplitIdentifier(stage.GetRootLayer().identifier)[0],
+            "stage": Sdf.Layer.SplitIdentifier(root.identifier)[0],
             "frames": f"{len(frames)}, {frame_text(frames[0])} to {frame_text(frames[-1])}" if frames else "none",
             "skinslide": version(),
-            "lookup": choose_lookup(self.plan.options.lookup).lookup,
-            "drawn with": report.device,
+            "lookup": choose_lookup(self._options.lookup).lookup,
+            "drawn with": self._drawn.device,
         }
-        text = page(stage.GetRootLayer().GetDisplayName(), strips, report, facts, stage.GetTimeCodesPerSecond())
-        with replacing(self.place.page) as partial, writing(self.place.page):
+        text = page(root.GetDisplayName(), strips, report, facts, self._stage.GetTimeCodesPerSecond())
+        with replacing(self._page) as partial, writing(self._page):
             partial.write_text(text, "utf-8")
-        report.files.append(str(self.place.page))
+        self._drawn.files.append(str(self._page))

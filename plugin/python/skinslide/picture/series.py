@@ -14,7 +14,8 @@ from skinslide.arrays.slider import Slider
 from skinslide.picture import lettering
 from skinslide.picture.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
 from skinslide.problems import Fault, FrameProblem, SliderError, frame_text
-from skinslide.shot.options import MOST, PictureOptions
+from skinslide.shot.checks import MOST
+from skinslide.shot.options import PictureOptions
 from skinslide.shot.plan import frame_of
 from skinslide.shot.report import PatchReport
 from skinslide.stage.coordinates import read_coordinates
@@ -142,7 +143,8 @@ def _suitable_squares(skin: Skin, faces: np.ndarray) -> float:
 
 
 def _eye(mesh: PatchedMesh, faces: np.ndarray, options: PictureOptions, columns: int) -> Eye:
-    aspect = options.width / columns / options.height
+    width, height = options.size
+    aspect = width / columns / height
     if options.camera is not None:
         return StageCamera(mesh.stage, options.camera, aspect)
     return (FollowingCamera if options.follow else ShotCamera)(mesh, faces, aspect)

@@ -14,11 +14,12 @@ from pxr import Usd
 from skinslide.arrays.native import Lookup, PatchSetup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
-from skinslide.problems import Problem, SliderError, StageProblems, UsageError, errors, frame_text
+from skinslide.problems import Problem, SliderError, UsageError, errors, frame_text
 from skinslide.shot.derived import Derived
+from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
 from skinslide.stage.controls import PatchControls
-from skinslide.stage.mesh import PatchedMesh, is_skinned, read_meshes
+from skinslide.stage.mesh import PatchedMesh, is_skinned
 from skinslide.stage.opening import open_stage
 from skinslide.stage.textures import SampledTexture
 
@@ -153,14 +154,14 @@ def check(
         raise UsageError(str(error)) from error
     name = stage.GetRootLayer().identifier if isinstance(stage, Usd.Stage) else str(stage)
     stage = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
-    meshes, problems = read_meshes(stage, prims)
-    checked = [_check_mesh(mesh, problems) for mesh in meshes]
+    found, problems = read_sliders(stage, prims)
+    checked = [_check_mesh(mesh, slider, problems) for mesh, slider in found]
     severities = ("error", "warning", "note")
     return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)), chosen)
 
 
-def _check_mesh(mesh: PatchedMesh, problems: list[Problem]) -> CheckedMesh:
-    patches = [_checked(info) for slider in _sliders(mesh, problems) for info in slider.patches]
+def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem]) -> CheckedMesh:
+    patches = [_checked(info) for each in ([slider] if slider else _good_sliders(mesh)) for info in each.patches]
     for name in dict.fromkeys(patch.name for patch in patches):
         problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
     problems += _overlaps(mesh)
@@ -182,19 +183,14 @@ def _checked_map(patch: str, used: SampledTexture) -> CheckedMap:
     return CheckedMap(patch, used.name, used.file, used.channel, used.st, list(used.sizes), width, height)
 
 
-def _sliders(mesh: PatchedMesh, problems: list[Problem]) -> list[Slider]:
-    """The slider of all patches, or one for each that is good."""
-    try:
-        return [mesh.slider()]
-    except StageProblems as bad:
-        problems += bad.problems
-    sliders = []
+def _good_sliders(mesh: PatchedMesh) -> Iterator[Slider]:
+    """A slider for each patch that makes one."""
     for patch in mesh.patches:
         try:
-            sliders.append(mesh.build([patch]))
+            slider = mesh.build([patch])
         except SliderError:
             continue
-    return sliders
+        yield slider
 
 
 def _checked(info: PatchInfo) -> CheckedPatch:

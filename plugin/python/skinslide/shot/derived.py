@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -13,20 +13,9 @@ from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays import slider
 from skinslide.problems import Fault, Problem
+from skinslide.shot.products import SlidFrames
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.values import SAME_TIME, flattened
-
-
-class Solved(NamedTuple):
-    """One time of a mesh, solved. Points float32 (V, 3)."""
-
-    cached: np.ndarray
-    slid: np.ndarray
-    patches: tuple[slider.PatchResult, ...]
-    diagnostics: slider.Diagnostics | None  # where they are asked for
-
-
-Solutions = Mapping[Usd.TimeCode, Solved]
 
 
 class Value(NamedTuple):
@@ -54,14 +43,14 @@ class Derived:
             self.blocked.append(normals.primvar.GetIndicesAttr())
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
-        """The times that must be solved before the values at `time` are known; it is one of them."""
+        """The times that must be slid before the values at `time` are known; it is one of them."""
         return {time}.union(*(derived.times_needed(time) for derived in self._recomputed))
 
-    def values(self, time: Usd.TimeCode, solved: Solutions) -> Iterator[Value]:
-        """Everything recomputed at a time; `solved` holds the times it needs."""
+    def values(self, time: Usd.TimeCode, frames: SlidFrames) -> Iterator[Value]:
+        """Everything recomputed at a time; `frames` holds the times it needs."""
         for derived in list(self._recomputed):
             try:
-                yield from derived.values(time, solved)
+                yield from derived.values(time, frames)
             except (slider.SliderError, Fault) as error:
                 self._block(derived, time, str(error))
 
@@ -89,8 +78,8 @@ class _Normals:
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return {time}
 
-    def values(self, time: Usd.TimeCode, solved: Solutions) -> Iterator[Value]:
-        mesh, points = self.mesh, solved[time]
+    def values(self, time: Usd.TimeCode, frames: SlidFrames) -> Iterator[Value]:
+        mesh, points = self.mesh, frames[time]
         # Normals may move over points that do not.
         for sample in (self.attribute.GetTimeSamples() if time.IsDefault() else []) or [time]:
             cached = flattened(self.primvar, sample) if self.primvar else self.attribute.Get(sample)
@@ -121,11 +110,11 @@ class _Rates:
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return {Usd.TimeCode(sample) for sample in samples_around(self.times, time.GetValue(), self.sample_count)}
 
-    def values(self, time: Usd.TimeCode, solved: Solutions) -> Iterator[Value]:
+    def values(self, time: Usd.TimeCode, frames: SlidFrames) -> Iterator[Value]:
         per_second = self.attribute.GetStage().GetTimeCodesPerSecond()
         samples = []
         for sample in samples_around(self.times, time.GetValue(), self.sample_count):
-            points = solved[Usd.TimeCode(sample)]
+            points = frames[Usd.TimeCode(sample)]
             samples.append(slider.Sample(sample / per_second, points.cached, points.slid))
         cached = self.attribute.Get(time)
         if cached is None:

@@ -1,162 +1,198 @@
-"""What commands are asked for, checked before anything is read."""
+"""What commands are asked for: each option once, with its default, its check, and its words on the command line.
+
+An option's name is a keyword of the functions. What it holds has been checked before anything is read.
+"""
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from skinslide.problems import SliderError, UsageError
-from skinslide.shot.frames import checked_frames
+from skinslide.problems import UsageError
+from skinslide.shot import checks
+from skinslide.shot.checks import Options, option, or_none
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
 
+Names = Sequence[str] | str | None
 Frames = Sequence[float] | str | None
 
 VIEWS = ("chequer", "stretch")
 FORMATS = ("png", "exr")
-LEAST, MOST = 1e-37, 1e37  # of what is a float in the core
 
 
 @dataclass(frozen=True)
-class BakeOptions:
-    """The arguments of `skinslide.bake`. Limits are what a patch may have at one frame; None is any number."""
+class SlideOptions(Options):
+    """What is slid, and how. The result depends neither on lookup nor on jobs."""
 
-    prims: list[str] | None
-    frames: list[float] | None  # ascending
-    lookup: Lookup
-    jobs: int
-    max_folded: int | None
-    max_clamped: int | None
-    diagnostics: bool
-
-    @classmethod
-    def checked(
-        cls,
-        prims: Sequence[str] | str | None,
-        frames: Frames,
-        lookup: str | Lookup,
-        jobs: int,
-        max_folded: int | None = None,
-        max_clamped: int | None = None,
-        diagnostics: bool = False,
-    ) -> BakeOptions:
-        """Raises UsageError for what cannot be."""
-        from skinslide.arrays.native import Lookup
-        from skinslide.arrays.slider import choose_lookup
-
-        try:
-            choose_lookup(lookup)
-        except SliderError as error:
-            raise UsageError(str(error)) from error
-        return cls(
-            prims=listed(prims),
-            frames=None if frames is None else checked_frames(frames),
-            lookup=Lookup.of(lookup),
-            jobs=whole_number("jobs", jobs, 1),
-            max_folded=None if max_folded is None else whole_number("max_folded", max_folded, 0),
-            max_clamped=None if max_clamped is None else whole_number("max_clamped", max_clamped, 0),
-            diagnostics=bool(diagnostics),
-        )
+    prims: Names = option(
+        None,
+        or_none(checks.texts),
+        "--prim",
+        action="append",
+        metavar="PATH",
+        help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch). What "
+        "USD cannot compose elsewhere, such as a missing payload, is then a warning and no error",
+    )
+    frames: Frames = option(
+        None,
+        or_none(checks.frames),
+        "--frames",
+        metavar="SPEC",
+        help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
+        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
+    )
+    lookup: str | Lookup = option(
+        "auto",
+        checks.lookup,
+        "--lookup",
+        choices=("auto", "egl", "exact"),
+        help="how rest vertices are looked up in a frame; the result is the same: egl renders a colour a face, exact "
+        "walks, auto is egl where EGL has a hardware device and exact elsewhere (default: %(default)s)",
+    )
+    jobs: int = option(
+        1,
+        checks.whole(1),
+        "--jobs",
+        type=checks.positive_text,
+        metavar="N",
+        help="frames in hand at once; the result is the same (default: the processors, here %(default)s)",
+    )
 
 
 @dataclass(frozen=True)
-class PictureOptions:
+class LayerOptions(Options):
+    """What a bake writes beside points, and how much of what is bad a patch may have at a frame; None is any number."""
+
+    max_folded: int | None = option(
+        None,
+        or_none(checks.whole(0)),
+        "--max-folded",
+        type=checks.count_text,
+        metavar="N",
+        help="fail, and write nothing, where a patch has more than N faces turned over in its embedding at a frame",
+    )
+    max_clamped: int | None = option(
+        None,
+        or_none(checks.whole(0)),
+        "--max-clamped",
+        type=checks.count_text,
+        metavar="N",
+        help="fail, and write nothing, where a patch has more than N vertices looked up outside every face at a frame",
+    )
+    diagnostics: bool = option(
+        False,
+        checks.truth,
+        "--diagnostics",
+        action="store_true",
+        help="write two primvars by vertex beside the points: primvars:skinSlide:stretch, the RMS of log(length / rest "
+        "length) over the edges of patches at the vertex, slid; and primvars:skinSlide:slide, how far it slid",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PictureOptions(Options):
     """What pictures are drawn."""
 
-    patches: list[str] | None
-    views: list[str]
-    camera: str | None
-    follow: bool
-    width: int
-    height: int
-    form: str
-    st: str | None
-    squares: float | None
-    most_stretch: float
+    patches: Names = option(
+        None,
+        or_none(checks.texts),
+        "--patch",
+        action="append",
+        metavar="NAME",
+        help="only this patch; may be given again (default: all)",
+    )
+    views: Sequence[str] | str = option(
+        VIEWS,
+        checks.some_of("view", VIEWS),
+        "--view",
+        action="append",
+        choices=VIEWS,
+        help="chequer: on the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
+        "false colours; may be given again (default: both)",
+    )
+    camera: str | None = option(
+        None,
+        or_none(checks.text),
+        "--camera",
+        metavar="PATH",
+        help="a Camera of the stage (default: one that stands still and has the patch in sight all through the shot)",
+    )
+    follow: bool = option(
+        False, checks.truth, "--follow", action="store_true", help="frame the patch anew in each frame"
+    )
+    size: tuple[int, int] = option(
+        (1920, 1080),
+        checks.picture_size,
+        "--size",
+        type=checks.size_text,
+        metavar="WxH",
+        help="pixels (default: 1920x1080)",
+    )
+    form: str = option(
+        "png",
+        checks.one_of("format", FORMATS),
+        "--format",
+        choices=FORMATS,
+        help="of the pictures; exr is linear light",
+    )
+    st: str | None = option(
+        None,
+        or_none(checks.coordinates),
+        "--st",
+        metavar="NAME",
+        help="the primvar that the chequer follows (default: st, and on a mesh without it places at rest)",
+    )
+    squares: float | None = option(
+        None,
+        or_none(checks.positive),
+        "--squares",
+        type=float,
+        metavar="N",
+        help="of the chequer, for each unit of it (default: 16 across the patch)",
+    )
+    most_stretch: float = option(
+        0.5,
+        checks.positive,
+        "--most-stretch",
+        type=float,
+        metavar="X",
+        help="what the end of the scale of colours stands for (default: %(default)s)",
+    )
 
-    @classmethod
-    def checked(
-        cls,
-        *,
-        views: Sequence[str] | str,
-        size: tuple[int, int],
-        most_stretch: float,
-        patches: Sequence[str] | str | None = None,
-        camera: str | None = None,
-        follow: bool = False,
-        form: str = "png",
-        st: str | None = None,
-        squares: float | None = None,
-    ) -> PictureOptions:
-        """Raises UsageError for what cannot be."""
-        if camera is not None and follow:
+    def __post_init__(self) -> None:
+        if self.camera is not None and self.follow:
             raise UsageError("a camera of the stage does not follow a patch: give one or the other")
-        width, height = _pair("size", size)
-        return cls(
-            patches=listed(patches),
-            views=_views(views),
-            camera=None if camera is None else str(camera),
-            follow=bool(follow),
-            width=whole_number("width", width, 2),
-            height=whole_number("height", height, 1),
-            form=_one_of("format", form, FORMATS),
-            st=None if st is None else coordinates_name(st),
-            squares=None if squares is None else _positive("squares", squares),
-            most_stretch=_positive("most_stretch", most_stretch),
-        )
+        super().__post_init__()
 
 
-def _pair(name: str, pair: Sequence[int]) -> tuple[int, int]:
-    try:
-        first, second = pair
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{name} is {pair!r}; it must be a width and a height") from error
-    return first, second
+@dataclass(frozen=True, kw_only=True)
+class MapOptions(Options):
+    """What maps are drawn."""
 
-
-def _views(asked: Sequence[str] | str) -> list[str]:
-    views = [_one_of("view", view, VIEWS) for view in dict.fromkeys(listed(asked) or ())]
-    if not views:
-        raise UsageError(f"views: there are none in it; there are {', '.join(VIEWS)}")
-    return views
-
-
-def listed(words: Sequence[str] | str | None) -> list[str] | None:
-    return [words] if isinstance(words, str) else None if words is None else [str(word) for word in words]
-
-
-def coordinates_name(st: str) -> str:
-    if not st:
-        raise UsageError("st: the name of the primvar with texture coordinates is empty")
-    return st
-
-
-def whole_number(name: str, number: int, least: int, most: int | None = None) -> int:
-    try:
-        whole = operator.index(number)
-    except TypeError as error:
-        raise UsageError(f"{name} is {number!r}; it must be a whole number") from error
-    if whole < least:
-        raise UsageError(f"{name} is {whole}; it must be at least {least}")
-    if most is not None and whole > most:
-        raise UsageError(f"{name} is {whole}; it must be at most {most}")
-    return whole
-
-
-def _positive(name: str, number: float) -> float:
-    try:
-        found = float(number)
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{name} is {number!r}; it must be a number") from error
-    if not LEAST <= found <= MOST:
-        raise UsageError(f"{name} is {found:g}; it must be above 0, from {LEAST:g} to {MOST:g}")
-    return found
-
-
-def _one_of(name: str, word: str, words: Sequence[str]) -> str:
-    if word not in words:
-        raise UsageError(f"{name} {word!r} is not one of {', '.join(words)}")
-    return word
+    patches: Names = option(
+        None,
+        or_none(checks.texts),
+        "--patch",
+        action="append",
+        metavar="NAME",
+        help="draw the faces of patch NAME only, though all slide; may be given again (default: every patch)",
+    )
+    size: int = option(
+        1024,
+        checks.map_size,
+        "--size",
+        type=checks.positive_text,
+        metavar="N",
+        help="texels along each side, 1 to 16384 (default: %(default)s)",
+    )
+    st: str = option(
+        "st",
+        checks.coordinates,
+        "--st",
+        metavar="NAME",
+        help="the primvar with texture coordinates, in which the maps are drawn and carried on for 4 texels beyond; "
+        "where faces overlap in it, as with mirrored halves, the later in the mesh is seen (default: %(default)s)",
+    )

@@ -11,7 +11,7 @@ from pxr import Usd
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems, UsageError, errors, frame_text
-from skinslide.shot.options import BakeOptions
+from skinslide.shot.options import SlideOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 
@@ -32,20 +32,15 @@ class Plan:
 
     meshes: list[PlannedMesh]
     problems: list[Problem]  # warnings
-    options: BakeOptions
 
     @classmethod
-    def read(cls, stage: Usd.Stage, options: BakeOptions) -> Plan:
+    def read(cls, stage: Usd.Stage, options: SlideOptions) -> Plan:
         """Raises StageProblems where any mesh cannot be slid."""
-        meshes, problems = read_meshes(stage, options.prims)
-        sliders = _build_sliders(meshes, options.lookup, problems)
+        found, problems = read_sliders(stage, options.prims, options.lookup)
         if errors(problems):
             raise StageProblems(problems)
-        planned = [
-            PlannedMesh(mesh, slider, _times(mesh, options.frames))
-            for mesh, slider in zip(meshes, sliders, strict=True)
-        ]
-        return cls(planned, problems + list(_outside(planned, options.frames)), options)
+        planned = [PlannedMesh(mesh, slider, _times(mesh, options.frames)) for mesh, slider in found if slider]
+        return cls(planned, problems + list(_outside(planned, options.frames)))
 
     def check_patches(self, wanted: Sequence[str] | None) -> None:
         """Raises UsageError for no names, and StageProblems for those that no mesh has."""
@@ -57,10 +52,20 @@ class Plan:
             message = f"no mesh has it; there are {', '.join(sorted(there))}"
             raise StageProblems([Problem("error", "", name, None, message) for name in missing])
 
-    @property
-    def frame_count(self) -> int:
-        """Of all meshes."""
-        return sum(len(planned.times) for planned in self.meshes)
+
+def read_sliders(
+    stage: Usd.Stage, prims: Sequence[str] | None, lookup: str | Lookup = "auto"
+) -> tuple[list[tuple[PatchedMesh, Slider | None]], list[Problem]]:
+    """Every mesh that can be read, with a slider unless a patch of it is bad, and every problem."""
+    meshes, problems = read_meshes(stage, prims)
+    sliders = []
+    for mesh in meshes:
+        try:
+            sliders.append(mesh.slider(lookup))
+        except StageProblems as bad:
+            sliders.append(None)
+            problems.extend(bad.problems)
+    return list(zip(meshes, sliders, strict=True)), problems
 
 
 def _outside(meshes: list[PlannedMesh], asked: list[float] | None) -> Iterator[Problem]:
@@ -72,16 +77,6 @@ def _outside(meshes: list[PlannedMesh], asked: list[float] | None) -> Iterator[P
             span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
             message = f"{len(outside)} frames are beyond the samples, which go {span}; the nearest is held there"
             yield Problem("warning", mesh.path, None, outside[0], message)
-
-
-def _build_sliders(meshes: list[PatchedMesh], lookup: Lookup, problems: list[Problem]) -> list[Slider]:
-    sliders = []
-    for mesh in meshes:
-        try:
-            sliders.append(mesh.slider(lookup))
-        except StageProblems as error:
-            problems.extend(error.problems)
-    return sliders
 
 
 def _times(mesh: PatchedMesh, asked: list[float] | None) -> list[Usd.TimeCode]:

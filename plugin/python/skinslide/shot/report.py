@@ -1,10 +1,10 @@
-"""What a bake did, patch by patch: for people as a table, for programs as a dictionary."""
+"""What sliding did, patch by patch: for people as a table, for programs as a dictionary."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -158,12 +158,21 @@ class MeshReport:
         }
 
 
+class Made(Protocol):
+    """What is to be said of something that was made of the slid frames, such as pictures."""
+
+    def as_dict(self) -> dict[str, Any]: ...
+
+    def lines(self, meshes: Sequence[MeshReport]) -> list[str]: ...
+
+
 @dataclass
 class BakeReport:
-    """Every mesh of a bake. `problems`: what reading the stage warned of, and every degradation."""
+    """Every mesh that was slid. `problems`: what reading the stage warned of, and every degradation."""
 
     warnings: list[Problem]
     meshes: list[MeshReport] = field(default_factory=list)
+    made: list[Made] = field(default_factory=list)
 
     @property
     def frame_count(self) -> int:
@@ -179,10 +188,11 @@ class BakeReport:
         return {
             "meshes": [mesh.as_dict() for mesh in self.meshes],
             "problems": [problem.as_dict() for problem in self.problems],
+            **{name: value for made in self.made for name, value in made.as_dict().items()},
         }
 
     def text(self) -> str:
-        """The table for a terminal, and every problem."""
+        """The table for a terminal, every problem, and what was made."""
         rows = [_HEADINGS, *(_row(patch) for mesh in self.meshes for patch in mesh.patches)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [_line(_HEADINGS, widths)]
@@ -190,7 +200,8 @@ class BakeReport:
             counts = f"{mesh.vertex_count} points, {mesh.frame_count} frames"
             lines.append(f"{mesh.path}: {counts}, rest from {mesh.rest_source}")
             lines.extend(_line(_row(patch), widths) for patch in mesh.patches)
-        return "\n".join([*lines, *map(str, self.problems)])
+        made = [line for made in self.made for line in made.lines(self.meshes)]
+        return "\n".join([*lines, *map(str, self.problems), *made])
 
 
 _HEADINGS = ["patch", "vertices", "edges", *STAGES, "ms/frame", "stretch", "slid", "at frame", "folded", "clamped"]

@@ -1,0 +1,171 @@
+"""How an option is declared, and the checks of what functions are given and of what stands on a command line."""
+
+from __future__ import annotations
+
+import inspect
+import operator
+import re
+from argparse import ArgumentTypeError
+from collections.abc import Callable, Sequence
+from dataclasses import Field, field, fields
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from skinslide.problems import SliderError, UsageError
+from skinslide.shot.frames import checked_frames
+
+if TYPE_CHECKING:
+    from skinslide.arrays.native import Lookup
+
+Check = Callable[[str, Any], Any]  # name and value of an option; gives what it holds, or raises UsageError
+
+T = TypeVar("T", bound=type)
+
+LEAST, MOST = 1e-37, 1e37  # of what is a float in the core
+
+
+def option(default: Any, check: Check, flag: str, **words: Any) -> Any:
+    """A field of Options. flag and words are argparse's."""
+    return field(default=default, metadata={"check": check, "flag": flag, "words": words})
+
+
+class Options:
+    """Dataclasses of options, which are checked as they are made. Raises UsageError for what cannot be."""
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            if "check" in each.metadata:
+                object.__setattr__(self, each.name, each.metadata["check"](each.name, getattr(self, each.name)))
+
+
+def described(each: Field[Any], default: Any) -> str:
+    """An option in words."""
+    return each.metadata["words"]["help"].replace("%(default)s", str(default))
+
+
+def documented(table: T) -> T:
+    """Adds its options to what a table says of itself."""
+    lines = [f"    {each.name}: {described(each, each.default)}" for each in fields(table) if "words" in each.metadata]
+    table.__doc__ = "\n".join([inspect.cleandoc(table.__doc__), "", "Attributes:", *lines])
+    return table
+
+
+# ---- What a function is given ----
+
+
+def or_none(check: Check) -> Check:
+    return lambda name, value: None if value is None else check(name, value)
+
+
+def truth(_name: str, value: Any) -> bool:
+    return bool(value)
+
+
+def text(_name: str, value: Any) -> str:
+    return str(value)
+
+
+def texts(_name: str, words: Sequence[str] | str) -> list[str]:
+    return [words] if isinstance(words, str) else [str(word) for word in words]
+
+
+def one_of(what: str, words: Sequence[str]) -> Check:
+    def check(_name: str, word: str) -> str:
+        if word not in words:
+            raise UsageError(f"{what} {word!r} is not one of {', '.join(words)}")
+        return word
+
+    return check
+
+
+def some_of(what: str, words: Sequence[str]) -> Check:
+    """One or more, each once."""
+
+    def check(name: str, asked: Sequence[str] | str | None) -> list[str]:
+        found = [one_of(what, words)(name, word) for word in dict.fromkeys(texts(name, asked or ()))]
+        if not found:
+            raise UsageError(f"{name}: there are none in it; there are {', '.join(words)}")
+        return found
+
+    return check
+
+
+def whole(least: int, most: int | None = None) -> Check:
+    def check(name: str, number: Any) -> int:
+        try:
+            found = operator.index(number)
+        except TypeError as error:
+            raise UsageError(f"{name} is {number!r}; it must be a whole number") from error
+        if found < least:
+            raise UsageError(f"{name} is {found}; it must be at least {least}")
+        if most is not None and found > most:
+            raise UsageError(f"{name} is {found}; it must be at most {most}")
+        return found
+
+    return check
+
+
+def positive(name: str, number: Any) -> float:
+    try:
+        found = float(number)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {number!r}; it must be a number") from error
+    if not LEAST <= found <= MOST:
+        raise UsageError(f"{name} is {found:g}; it must be above 0, from {LEAST:g} to {MOST:g}")
+    return found
+
+
+def frames(_name: str, given: Sequence[float] | str) -> list[float]:
+    return checked_frames(given)
+
+
+def lookup(_name: str, asked: str | Lookup) -> Lookup:
+    from skinslide.arrays.native import Lookup
+    from skinslide.arrays.slider import choose_lookup
+
+    try:
+        choose_lookup(asked)
+    except SliderError as error:
+        raise UsageError(str(error)) from error
+    return Lookup.of(asked)
+
+
+def picture_size(name: str, pair: Sequence[int]) -> tuple[int, int]:
+    try:
+        width, height = pair
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {pair!r}; it must be a width and a height") from error
+    return whole(2)("width", width), whole(1)("height", height)
+
+
+def map_size(name: str, size: Any) -> int:
+    from skinslide.arrays.images import LARGEST_MAP
+
+    return whole(1, LARGEST_MAP)(name, size)
+
+
+def coordinates(name: str, st: str) -> str:
+    if not st:
+        raise UsageError(f"{name}: the name of the primvar with texture coordinates is empty")
+    return st
+
+
+# ---- What stands on a command line ----
+
+
+def count_text(text: str) -> int:
+    if not (text.isascii() and text.isdigit()):
+        raise ArgumentTypeError(f"{text!r} is not a whole number of 0 or more")
+    return int(text)
+
+
+def positive_text(text: str) -> int:
+    if count_text(text) < 1:
+        raise ArgumentTypeError("must be at least 1")
+    return int(text)
+
+
+def size_text(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,9})[xX](\d{1,9})", text, re.ASCII)
+    if not found:
+        raise ArgumentTypeError(f"{text!r} is not a size such as 1920x1080")
+    return int(found[1]), int(found[2])

@@ -1,0 +1,107 @@
+"""What is made of the frames of a shot as they are slid: what the loop of loop.py asks of each product.
+
+A product, such as a layer or pictures, is asked for before anything is read. Its Making is one run of it, and gives the
+meshes that it wants each a MeshMaking.
+"""
+
+from __future__ import annotations
+
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from pxr import Usd
+
+from skinslide.arrays.native import Controls
+from skinslide.arrays.slider import Diagnostics, Slider
+from skinslide.problems import Problem
+from skinslide.shot.options import SlideOptions
+from skinslide.stage.opening import open_stage
+
+if TYPE_CHECKING:
+    from skinslide.shot.plan import PlannedMesh
+    from skinslide.shot.report import BakeReport, MeshReport
+
+
+class Shot(NamedTuple):
+    """An open stage, and the path it was opened by; None where it came open."""
+
+    stage: Usd.Stage
+    path: str | os.PathLike | None
+
+    @classmethod
+    def of(cls, stage: Usd.Stage | str | os.PathLike) -> Shot:
+        """Raises StageError where the stage cannot be opened."""
+        return cls(stage, None) if isinstance(stage, Usd.Stage) else cls(open_stage(stage), stage)
+
+    @property
+    def paths(self) -> list[str | os.PathLike]:
+        return [] if self.path is None else [self.path]
+
+
+class SlidFrame:
+    """One time of a mesh, slid. Points float32 (V, 3); `patches` is the core's result of each."""
+
+    def __init__(self, slider: Slider, points: np.ndarray, controls: Sequence[Controls] | None):
+        frame = slider.slide(points, controls)
+        self.cached, self.slid, self.patches = points, frame.points, frame.patches
+        self._slider, self._controls = slider, controls
+        self._measured: dict[tuple[bool, ...], Diagnostics] = {}
+
+    def measured(self, chosen: Sequence[bool] | None = None) -> Diagnostics:
+        """What was done to each vertex by the set-ups chosen, None by all: measured once, by one thread at a time."""
+        key = () if chosen is None or all(chosen) else tuple(chosen)
+        if key not in self._measured:
+            self._measured[key] = self._slider.diagnose(self.cached, self.slid, self._controls, chosen=key or None)
+        return self._measured[key]
+
+
+SlidFrames = Mapping[Usd.TimeCode, SlidFrame]
+
+
+class Product(Protocol):
+    """What can be asked for."""
+
+    def begin(self, shot: Shot, options: SlideOptions) -> Making:
+        """Raises UsageError and StageProblems for what can be known before the meshes are read."""
+
+
+class Making(ABC):
+    """One run of a product."""
+
+    patches: Sequence[str] | None = None  # names of those it is made of; None: all
+
+    @abstractmethod
+    def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking | None:
+        """None for a mesh of which nothing is made. Raises StageProblems and UsageError for one of which it cannot."""
+
+    @contextmanager
+    def running(self, report: BakeReport) -> Iterator[None]:
+        """Around all frames, once every mesh is known; then ends what is made of all of them.
+
+        Raises UsageError for a file that cannot be written, before the first frame.
+        """
+        yield
+
+
+class MeshMaking(ABC):
+    """One mesh of a run."""
+
+    def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
+        """The times that must be slid before `take` is called for `time`; it is one of them."""
+        return {time}
+
+    @abstractmethod
+    def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], Any]:
+        """Reads of the stage what a time needs; gives the work on its frame, which is done in the pool."""
+
+    @abstractmethod
+    def take(self, time: Usd.TimeCode, frames: SlidFrames, made: Any) -> None:
+        """Takes what the work has made. Times come in order, with the frames that they need."""
+
+    def end(self) -> list[Problem]:
+        """After the last time: the warnings."""
+        return []
