@@ -45,6 +45,8 @@ static skinslide_status complete(const skinslide_value *given, skinslide_value *
         out->type = SKINSLIDE_VALUE_OTHER;
     if (out->type == SKINSLIDE_VALUE_NONE || out->type == SKINSLIDE_VALUE_BLOCKED)
         out->count = 0;
+    else if (!out->is_array)
+        out->count = 1;
     if (!out->type_name)
         out->type_name = name_of_type(out);
     bool needs_data =
@@ -57,8 +59,8 @@ static skinslide_status complete(const skinslide_value *given, skinslide_value *
 
 skinslide_status ss_open(const skinslide_value *given, ss_record *record, skinslide_error *error) {
     skinslide_status status = complete(given, &record->value, error);
-    if (!status)
-        status = complete(record->value.indices, &record->indices, error);
+    if (!status) /* which one value cannot have */
+        status = complete(record->value.is_array ? record->value.indices : NULL, &record->indices, error);
     if (status)
         return status;
     record->length = record->value.count;

@@ -1,5 +1,7 @@
 /* Each allocation fails in turn: OUT_OF_MEMORY, nothing written, nothing lost. The linker sends the core's calloc and free here
  * (--wrap); the solver's ordering takes its functions from SuiteSparse_config. */
+#include "records.h"
+#include "skinslide/paint.h"
 #include "skinslide/picture.h"
 #include "support.h"
 
@@ -241,6 +243,166 @@ static void each_allocation_for_pictures_fails_in_turn(void **state) {
     free_scene(&s);
 }
 
+/* ---- What a scene means ---- */
+
+typedef struct stage_scene {
+    test_mesh grid;
+    skinslide_bytes *file;
+    float st[18];
+} stage_scene;
+
+static void make_stage_scene(stage_scene *s) {
+    const float texel = 0.5f;
+    const skinslide_channel channel = {"R", &texel};
+    skinslide_error error;
+    *s = (stage_scene){.grid = quad_grid(2, 2)};
+    assert_ok(skinslide_exr_encode(&channel, 1, 1, 1, SKINSLIDE_WRAP_CLAMP, &s->file, &error), &error);
+    for (int32_t v = 0; v < 9; v++)
+        s->st[2 * v] = (float)(v % 3), s->st[2 * v + 1] = (float)(v / 3);
+}
+
+static void free_stage_scene(stage_scene *s) {
+    skinslide_bytes_destroy(s->file);
+    free_mesh(&s->grid);
+}
+
+static skinslide_status run_stage_mesh(const stage_scene *s, skinslide_stage_mesh **mesh, skinslide_error *error) {
+    const test_mesh *grid = &s->grid;
+    const skinslide_value points = array_of("points", SKINSLIDE_VALUE_FLOAT, 3, grid->vertex_count, grid->points);
+    const skinslide_stage_input *input = NULL;
+    skinslide_status status = skinslide_stage_mesh_create(mesh, error);
+    if (!status)
+        status = mesh_takes(*mesh, "points", points, error);
+    if (!status)
+        status = mesh_takes(*mesh, "faceVertexCounts", array_of("c", SKINSLIDE_VALUE_INT32, 1, 4, grid->face_counts), error);
+    if (!status)
+        status = mesh_takes(*mesh, "faceVertexIndices", array_of("i", SKINSLIDE_VALUE_INT32, 1, 16, grid->face_indices), error);
+    if (!status)
+        status = mesh_takes(*mesh, "restPoints", points, error);
+    while (!status && (input = skinslide_stage_next_input(SKINSLIDE_STAGE_SUBDIVISION, input)) != NULL)
+        status = skinslide_stage_mesh_take(*mesh, input, NULL, error);
+    return status;
+}
+
+static skinslide_status run_stage_patch(const skinslide_stage_mesh *mesh, skinslide_stage_patch **patch,
+                                        skinslide_error *error) {
+    const skinslide_value faces = INTS("elbow.indices", 0, 1, 2, 3);
+    skinslide_stage_subset subset = SKINSLIDE_STAGE_SUBSET_DEFAULT;
+    subset.path = "/elbow", subset.is_subset = 1, subset.indices = &faces;
+    skinslide_status status = skinslide_stage_patch_create(mesh, "elbow", NULL, patch, error);
+    if (!status)
+        status = skinslide_stage_patch_take_subset(*patch, &subset, error);
+    if (!status)
+        status = skinslide_stage_patch_check_subset(*patch, &faces, 1, error);
+    if (!status)
+        status = patch_takes(*patch, "edges", INTS("edges", 0, 1), error);
+    return status ? status : patch_takes(*patch, "mapSt", text_of("mapSt", "uv"), error);
+}
+
+static skinslide_status run_stage_controls(const stage_scene *s, skinslide_stage_controls *controls, skinslide_error *error) {
+    static const float ones[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+    const skinslide_value st = painted_as(array_of("uv", SKINSLIDE_VALUE_FLOAT, 2, 9, s->st), "vertex");
+    const skinslide_value paint = painted_as(array_of("weight", SKINSLIDE_VALUE_FLOAT, 1, 9, ones), "vertex");
+    skinslide_stage_file file = SKINSLIDE_STAGE_FILE_DEFAULT;
+    file.path = "/w.1001.exr", file.bytes = s->file->data, file.byte_count = s->file->size;
+    skinslide_status status = controls_take(controls, "weight", paint, error);
+    if (!status)
+        status = controls_take(controls, "edgeForceDensities", FLOATS("factors", 2), error);
+    if (!status)
+        status = controls_take(controls, "weightMap", asset_of("weightMap", "w.<UDIM>.exr"), error);
+    if (!status)
+        status = skinslide_stage_controls_take_coordinates(controls, &st, error);
+    while (!status && skinslide_stage_controls_need(controls))
+        status = skinslide_stage_controls_give(controls, &file, error);
+    return status;
+}
+
+static skinslide_status run_stage_derived(const skinslide_stage_mesh *mesh, skinslide_error *error) {
+    const double times[] = {1, 2};
+    const skinslide_value none = blocked_of("velocities");
+    skinslide_stage_derived *derived = NULL;
+    skinslide_status status = skinslide_stage_derived_create(mesh, times, 2, 24, &derived, error);
+    if (!status)
+        status = skinslide_stage_derived_take(derived, input_of(SKINSLIDE_STAGE_DERIVED, NULL, "velocities"), &none, times, 2,
+                                              error);
+    skinslide_stage_derived_destroy(derived);
+    return status;
+}
+
+static skinslide_status run_stage_finding(skinslide_error *error) {
+    const char *schemas[] = {"SkinSlideAPI:elbow", "SkinSlideAPI"}, *properties[] = {"skinSlide:wrist:envelope"};
+    skinslide_stage_prim prim = SKINSLIDE_STAGE_PRIM_DEFAULT;
+    skinslide_stage_finding *finding = NULL;
+    prim.is_mesh = 1, prim.schema_count = 2, prim.schemas = schemas, prim.property_count = 1, prim.properties = properties;
+    skinslide_status status = skinslide_stage_find(&prim, &finding, error);
+    skinslide_stage_finding_destroy(finding);
+    return status;
+}
+
+static skinslide_status run_stage(void *own, skinslide_error *error) {
+    skinslide_stage_mesh *mesh = NULL;
+    skinslide_stage_patch *patch = NULL;
+    skinslide_stage_controls *first = NULL, *frame = NULL;
+    skinslide_patch_setup setup;
+    skinslide_controls controls;
+    skinslide_status status = run_stage_mesh(own, &mesh, error);
+    if (!status)
+        status = run_stage_patch(mesh, &patch, error);
+    if (!status)
+        status = skinslide_stage_controls_create(patch, NULL, &first, error);
+    if (!status)
+        status = run_stage_controls(own, first, error);
+    if (!status)
+        status = skinslide_stage_patch_get(patch, first, &setup, error);
+    if (!status)
+        status = skinslide_stage_controls_create(patch, first, &frame, error);
+    if (!status)
+        status = run_stage_controls(own, frame, error);
+    if (!status)
+        status = skinslide_stage_controls_get(frame, &controls, error);
+    if (!status)
+        status = run_stage_derived(mesh, error);
+    skinslide_stage_controls_destroy(frame), skinslide_stage_controls_destroy(first);
+    skinslide_stage_patch_destroy(patch), skinslide_stage_mesh_destroy(mesh);
+    return status ? status : run_stage_finding(error);
+}
+
+static void each_allocation_for_a_stage_fails_in_turn(void **state) {
+    (void)state;
+    stage_scene s;
+    make_stage_scene(&s);
+    fail_in_turn(run_stage, &s, 100);
+    free_stage_scene(&s);
+}
+
+/* Paint goes where that of the frame before was. */
+static void controls_of_a_frame_allocate_nothing(void **state) {
+    (void)state;
+    test_mesh grid = quad_grid(3, 3);
+    skinslide_stage_mesh *mesh = scene_mesh(&grid);
+    skinslide_stage_patch *patch = scene_patch(mesh, &grid, NULL);
+    skinslide_stage_controls *controls = scene_controls(patch);
+    skinslide_controls out;
+    skinslide_error error;
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t frame = 0; frame < 3 && !status; frame++) {
+        left_to_give = 0, watching = frame > 0;
+        status = controls_take(controls, "weight", NUMBER("weight", 0.5f), &error);
+        if (!status)
+            status = controls_take(controls, "envelope", NUMBER("envelope", 0.5f), &error);
+        if (!status)
+            status = skinslide_stage_controls_get(controls, &out, &error);
+        watching = false;
+    }
+    assert_ok(status, &error);
+    skinslide_stage_controls_destroy(controls);
+    skinslide_stage_patch_destroy(patch);
+    skinslide_stage_mesh_destroy(mesh);
+    free_mesh(&grid);
+}
+
+/* ---- Frames and sizes ---- */
+
 /* A frame allocates nothing but what checks the edges that its controls name, so it cannot fail for memory otherwise. */
 static void a_frame_allocates_nothing(void **state) {
     (void)state;
@@ -291,6 +453,8 @@ int main(void) {
         cmocka_unit_test(each_allocation_fails_in_turn),
         cmocka_unit_test(each_allocation_for_images_fails_in_turn),
         cmocka_unit_test(each_allocation_for_pictures_fails_in_turn),
+        cmocka_unit_test(each_allocation_for_a_stage_fails_in_turn),
+        cmocka_unit_test(controls_of_a_frame_allocate_nothing),
         cmocka_unit_test(a_frame_allocates_nothing),
         cmocka_unit_test(a_pole_takes_room_for_itself_alone),
     };

@@ -1,0 +1,232 @@
+/* Facts of a prim: its patches, why they cannot be slid, in the order in which reasons count, and names that are none. */
+#include "records.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static skinslide_error error;
+
+static skinslide_stage_prim mesh_with(int32_t schema_count, const char *const *schemas) {
+    skinslide_stage_prim prim = SKINSLIDE_STAGE_PRIM_DEFAULT;
+    prim.type_name = "Mesh", prim.is_mesh = 1, prim.is_defined = 1, prim.point_samples = 3;
+    prim.schema_count = schema_count, prim.schemas = schemas;
+    return prim;
+}
+
+#define WITH(...) mesh_with(sizeof((const char *[]){__VA_ARGS__}) / sizeof(char *), (const char *[]){__VA_ARGS__})
+
+static void has(skinslide_stage_prim *prim, int32_t count, const char *const *properties) {
+    prim->property_count = count, prim->properties = properties;
+}
+
+#define HAS(prim, ...) has(prim, sizeof((const char *[]){__VA_ARGS__}) / sizeof(char *), (const char *[]){__VA_ARGS__})
+
+static skinslide_stage_finding *find(const skinslide_stage_prim *prim) {
+    skinslide_stage_finding *finding = NULL;
+    assert_ok(skinslide_stage_find(prim, &finding, &error), &error);
+    return finding;
+}
+
+static void expect_problem(const skinslide_stage_finding *finding, int32_t number, skinslide_severity severity,
+                           const char *patch, const char *message) {
+    assert_true(number < finding->problem_count);
+    const skinslide_stage_problem *problem = finding->problems[number];
+    assert_int_equal(problem->severity, severity);
+    assert_string_equal(problem->message, message);
+    if (patch)
+        assert_string_equal(problem->patch, patch);
+    else
+        assert_null(problem->patch);
+}
+
+static void patches_in_their_order(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("MaterialBindingAPI", "SkinSlideAPI:wrist", "SkinSlideMeshAPI", "SkinSlideAPI:left:elbow");
+    skinslide_stage_finding *finding = find(&prim);
+    assert_true(finding->slides && finding->patch_count == 2 && finding->problem_count == 0);
+    assert_string_equal(finding->patches[0], "wrist");
+    assert_string_equal(finding->patches[1], "left:elbow");
+    skinslide_stage_finding_destroy(finding);
+    prim = mesh_with(0, NULL);
+    finding = find(&prim);
+    assert_true(!finding->slides && finding->patch_count == 0 && finding->problem_count == 0);
+    skinslide_stage_finding_destroy(finding);
+}
+
+/* Facts are taken away one by one, from the reason that counts first to none. */
+static void reasons_in_the_order_in_which_they_count(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+    static const char *const said[] = {
+        "is inside an instance, whose points are shared; author instanceable = false on /copy",
+        "is a prototype of the point instancer /crowd, whose instances share its points; slide a mesh outside it, or put the "
+        "baked mesh in its place",
+        "is not defined, there are only overs; is the path right, and does the cache below it open?",
+        "is a Xform; SkinSlideAPI applies to Mesh only",
+        "is a prim without a type; SkinSlideAPI applies to Mesh only",
+        "is slid already, by x.skinslide; bake that file, or put the cache in its place",
+        "points are slid already, by the bake in out.usdc; slide the cache instead: open the stage without that layer, or "
+        "remove "
+        "the baked attributes from it",
+        "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)",
+        "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)",
+    };
+    prim.instance = "/copy", prim.instancer = "/crowd", prim.is_defined = 0, prim.is_mesh = 0, prim.type_name = "Xform";
+    prim.slid_by = "x.skinslide", prim.baked_by = "out.usdc", prim.point_samples = 0, prim.has_joint_indices = 1;
+    prim.blend_shape_count = 2;
+    for (int32_t step = 0; step < 9; step++) {
+        skinslide_stage_finding *finding = find(&prim);
+        assert_false(finding->slides);
+        assert_int_equal(finding->problem_count, 1);
+        expect_problem(finding, 0, step == 5 ? SKINSLIDE_SEVERITY_WARNING : SKINSLIDE_SEVERITY_ERROR, NULL, said[step]);
+        skinslide_stage_finding_destroy(finding);
+        prim.instance = step >= 0 ? NULL : prim.instance;
+        prim.instancer = step >= 1 ? NULL : prim.instancer;
+        prim.is_defined = step >= 2;
+        prim.type_name = step >= 3 ? NULL : prim.type_name;
+        prim.is_mesh = step >= 4;
+        prim.slid_by = step >= 5 ? NULL : prim.slid_by;
+        prim.baked_by = step >= 6 ? NULL : prim.baked_by;
+        prim.has_joint_indices = step < 7;
+        prim.blend_shape_count = step < 8;
+    }
+    skinslide_stage_finding *finding = find(&prim);
+    assert_true(finding->slides && finding->problem_count == 0);
+    skinslide_stage_finding_destroy(finding);
+}
+
+/* Skinning of points that have samples is for others to warn of: the samples are slid. */
+static void skinned_samples_are_slid(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+    prim.has_joint_indices = 1;
+    skinslide_stage_finding *finding = find(&prim);
+    assert_true(finding->slides);
+    skinslide_stage_finding_destroy(finding);
+}
+
+static void a_schema_without_a_name_is_an_error(void **state) {
+    (void)state;
+    static const char *const bare[] = {"SkinSlideAPI", "SkinSlideAPI:"};
+    for (int i = 0; i < 2; i++) {
+        skinslide_stage_prim prim = WITH(bare[i], "SkinSlideAPI:elbow");
+        skinslide_stage_finding *finding = find(&prim);
+        assert_int_equal(finding->patch_count, 1);
+        assert_true(finding->slides);
+        expect_problem(finding, 0, SKINSLIDE_SEVERITY_ERROR, NULL,
+                       "SkinSlideAPI is applied without a patch's name; apply SkinSlideAPI:NAME");
+        skinslide_stage_finding_destroy(finding);
+    }
+}
+
+static void patches_that_are_not_applied(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+    HAS(&prim, "skinSlide:wrist:envelope", "primvars:skinSlide:wrist:weight:indices", "primvars:skinSlide:ankle:patch",
+        "skinSlide:elbow:envelope", "skinSlide:restPoints", "skinSlide:live:envelope", "skinSlide:cached:points",
+        "skinSlide:cached:primvars:normals", "primvars:skinSlide:stretch", "skinSlide:", "points", "primvars:st");
+    skinslide_stage_finding *finding = find(&prim);
+    assert_int_equal(finding->problem_count, 2);
+    expect_problem(finding, 0, SKINSLIDE_SEVERITY_WARNING, "ankle",
+                   "has properties, but SkinSlideAPI:ankle is not applied to the prim, so it does not slide");
+    expect_problem(finding, 1, SKINSLIDE_SEVERITY_WARNING, "wrist",
+                   "has properties, but SkinSlideAPI:wrist is not applied to the prim, so it does not slide");
+    skinslide_stage_finding_destroy(finding);
+    prim.is_mesh = 0; /* whose properties nobody expects to count */
+    finding = find(&prim);
+    assert_int_equal(finding->problem_count, 1);
+    skinslide_stage_finding_destroy(finding);
+}
+
+static void settings_that_are_none(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow", "SkinSlideAPI:elbow:inner");
+    HAS(&prim, "skinSlide:elbow:envelop", "skinSlide:elbow:weight", "primvars:skinSlide:elbow:weight",
+        "primvars:skinSlide:elbow:weight:indices", "primvars:skinSlide:elbow:envelope", "skinSlide:elbow:inner:envelope",
+        "skinSlide:elbow:inner:nothing", "skinSlide:elbow:holes");
+    skinslide_stage_finding *finding = find(&prim);
+    assert_true(finding->slides);
+    assert_int_equal(finding->problem_count, 4);
+    expect_problem(finding, 0, SKINSLIDE_SEVERITY_WARNING, "elbow",
+                   "skinSlide:elbow:envelop is no setting of a patch, and counts for nothing");
+    expect_problem(finding, 1, SKINSLIDE_SEVERITY_WARNING, "elbow",
+                   "skinSlide:elbow:weight is no setting of a patch, and counts for nothing");
+    expect_problem(finding, 2, SKINSLIDE_SEVERITY_WARNING, "elbow",
+                   "primvars:skinSlide:elbow:envelope is no setting of a patch, and counts for nothing");
+    expect_problem(finding, 3, SKINSLIDE_SEVERITY_WARNING, "elbow:inner",
+                   "skinSlide:elbow:inner:nothing is no setting of a patch, and counts for nothing");
+    skinslide_stage_finding_destroy(finding);
+}
+
+/* Every input is a setting, so that none is warned of. */
+static void every_input_is_a_setting(void **state) {
+    (void)state;
+    static const skinslide_stage_group groups[] = {SKINSLIDE_STAGE_PATCH, SKINSLIDE_STAGE_CONTROLS};
+    for (int g = 0; g < 2; g++) {
+        const skinslide_stage_input *input = NULL;
+        while ((input = skinslide_stage_next_input(groups[g], input)) != NULL) {
+            char name[128];
+            const char *property = name;
+            snprintf(name, sizeof name, "%selbow:%s", input->prefix, input->name);
+            skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+            has(&prim, 1, &property);
+            skinslide_stage_finding *finding = find(&prim);
+            assert_int_equal(finding->problem_count, 0);
+            skinslide_stage_finding_destroy(finding);
+        }
+    }
+}
+
+/* Problems of any number and names of any length. */
+static void many_and_long_names(void **state) {
+    (void)state;
+    enum { MANY = 300, LONG = 2000 };
+    static char texts[MANY][LONG];
+    static const char *properties[MANY];
+    for (int i = 0; i < MANY; i++) {
+        memset(texts[i], 'a' + i % 26, LONG - 1);
+        memcpy(texts[i], "skinSlide:elbow:", 16);
+        properties[i] = texts[i];
+    }
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+    has(&prim, MANY, properties);
+    skinslide_stage_finding *finding = find(&prim);
+    assert_int_equal(finding->problem_count, MANY);
+    assert_true(strlen(finding->problems[MANY - 1]->message) > LONG);
+    skinslide_stage_finding_destroy(finding);
+}
+
+static void facts_that_are_none(void **state) {
+    (void)state;
+    skinslide_stage_finding *finding = NULL;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+    prim.schema_count = -1;
+    assert_int_equal(skinslide_stage_find(&prim, &finding, &error), SKINSLIDE_BAD_ARGUMENT);
+    prim = mesh_with(1, NULL);
+    assert_int_equal(skinslide_stage_find(&prim, &finding, &error), SKINSLIDE_BAD_ARGUMENT);
+    prim.size = 0;
+    assert_int_equal(skinslide_stage_find(&prim, &finding, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_stage_find(NULL, &finding, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_null(finding);
+    skinslide_stage_finding_destroy(NULL);
+}
+
+static void nothing_to_slide(void **state) {
+    (void)state;
+    assert_fails(skinslide_stage_nothing("on the stage", &error), &error, SKINSLIDE_BAD_PATCH,
+                 "nothing to slide: no mesh on the stage has SkinSlideAPI applied");
+    assert_fails(skinslide_stage_nothing(NULL, &error), &error, SKINSLIDE_BAD_PATCH,
+                 "nothing to slide: no mesh has SkinSlideAPI applied");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(patches_in_their_order),       cmocka_unit_test(reasons_in_the_order_in_which_they_count),
+        cmocka_unit_test(skinned_samples_are_slid),     cmocka_unit_test(a_schema_without_a_name_is_an_error),
+        cmocka_unit_test(patches_that_are_not_applied), cmocka_unit_test(settings_that_are_none),
+        cmocka_unit_test(every_input_is_a_setting),     cmocka_unit_test(many_and_long_names),
+        cmocka_unit_test(facts_that_are_none),          cmocka_unit_test(nothing_to_slide),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
