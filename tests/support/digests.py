@@ -1,43 +1,78 @@
-"""SHA-256 digests of what a layer holds, and the files in which they are recorded."""
+"""What a layer holds, bit for bit, and digests of it that are recorded in files."""
 
 import hashlib
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from pxr import Sdf
 
-Digests = dict[str, str]  # "/World/mesh.points" -> "24 samples 5e8f..."
+
+class Values(NamedTuple):
+    """The values of an attribute, as bytes, by time or "default"."""
+
+    type_name: str
+    at: dict[float | str, bytes]
 
 
-def digest(layer: Sdf.Layer) -> Digests:
-    """Of each attribute of a layer with a value: its default and every sample, bit for bit, with their times."""
-    found: Digests = {}
+Contents = dict[str, Values]  # "/World/mesh.points" -> its values
+Digests = dict[str, str]  # "/World/mesh.points" -> "24 values 5e8f..."
+
+
+def contents(layer: Sdf.Layer) -> Contents:
+    """Every attribute of a layer that has a value, if it is that it has none."""
+    found: Contents = {}
 
     def visit(path: Sdf.Path) -> None:
         spec = layer.GetAttributeAtPath(path) if path.IsPropertyPath() else None
-        if spec:
-            times = layer.ListTimeSamplesForPath(path)
-            values = [(time, layer.QueryTimeSample(path, time)) for time in times]
-            if spec.HasInfo("default"):
-                values.insert(0, ("default", spec.default))
-            if values:
-                found[str(path)] = f"{len(values)} values {_sha256(spec.typeName, values)}"
+        if not spec:
+            return
+        at = {time: _bytes(layer.QueryTimeSample(path, time)) for time in layer.ListTimeSamplesForPath(path)}
+        if spec.HasInfo("default"):
+            at["default"] = _bytes(spec.default)
+        if at:
+            found[str(path)] = Values(str(spec.typeName), at)
 
     layer.Traverse(Sdf.Path.absoluteRootPath, visit)
     return found
 
 
-def _sha256(type_name: Sdf.ValueTypeName, values: list[tuple]) -> str:
-    hashed = hashlib.sha256(str(type_name).encode())
-    for time, value in values:
-        hashed.update(f" {time}:".encode())
-        hashed.update(_bytes(value))
-    return hashed.hexdigest()
+BLOCKED = Sdf.ValueBlock().__class__.__name__.encode()
 
 
 def _bytes(value) -> bytes:
+    if isinstance(value, Sdf.ValueBlock):
+        return BLOCKED
     array = np.asarray(value)
     return str(value).encode() if array.dtype.kind in "OU" else array.tobytes()
+
+
+def differences(a: Contents, b: Contents) -> list[str]:
+    """The attributes, and of each the first time, at which two layers differ."""
+    said = []
+    for path in sorted(a.keys() | b.keys()):
+        if path not in a or path not in b:
+            said.append(f"{path} is only in the {'first' if path in a else 'second'}")
+        elif a[path].type_name != b[path].type_name:
+            said.append(f"{path} is {a[path].type_name} and {b[path].type_name}")
+        elif a[path].at != b[path].at:
+            times = a[path].at.keys() | b[path].at.keys()
+            differ = [time for time in times if a[path].at.get(time) != b[path].at.get(time)]
+            said.append(f"{path} differs at {sorted(differ, key=str)[0]}, {len(differ)} times in all")
+    return said
+
+
+def digest(found: Contents) -> Digests:
+    """SHA-256, summed up over all values of an attribute."""
+    return {path: f"{len(values.at)} values {_sha256(values)}" for path, values in found.items()}
+
+
+def _sha256(values: Values) -> str:
+    hashed = hashlib.sha256(values.type_name.encode())
+    for time, value in sorted(values.at.items(), key=lambda item: (isinstance(item[0], float), item[0])):
+        hashed.update(f" {time}:".encode())
+        hashed.update(value)
+    return hashed.hexdigest()
 
 
 class Record:

@@ -1,0 +1,282 @@
+"""Meshes, patches, rest poses and clocks of every kind that slides."""
+
+import numpy as np
+from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
+
+import stages
+from edits import (
+    FACES,
+    PLACE,
+    Edit,
+    Scene,
+    Types,
+    all_of,
+    blocked,
+    clips,
+    floats,
+    half_way,
+    indexed,
+    inherited,
+    normals,
+    on_subset,
+    over,
+    painted,
+    points_as,
+    put,
+    ramp,
+    retyped,
+    sampled,
+    setting,
+    still,
+    subset,
+    text,
+    topology,
+    vectors,
+)
+from layers import CLOCK, HEAD
+from rows import CANNOT_READ, Good
+from stages import FRAMES
+
+UNTIMED = f'defaultPrim = "World"; metersPerUnit = 0.01; upAxis = "Y"; {CLOCK}'
+
+
+def clip_of_points(prim: Usd.Prim) -> None:
+    attribute = prim.CreateAttribute("points", Types.Point3fArray, False)
+    for frame in FRAMES:
+        attribute.Set(stages.vectors(stages.grid().moved(frame)), frame)
+
+
+def points_are_unsampled(scene: Scene) -> None:
+    for frame in FRAMES:
+        scene.points.ClearAtTime(frame)
+
+
+def two_overlapping(scene: Scene) -> None:
+    stages.add_patch(scene.mesh, np.arange(24), "lower")
+    stages.set_property(scene.mesh, "envelope", 0.5, patch="lower")
+    put("skinSlide:lower:weight", Types.FloatArray, "vertex", ramp(49, 1, 0))(scene)
+
+
+def two_meshes(scene: Scene) -> None:
+    other = stages.add_mesh(scene.stage, stages.grid(5, 4), "/World/char/geo/other_GEO")
+    stages.add_patch(other, np.arange(20))
+
+
+def inactive_neighbour(scene: Scene) -> None:
+    other = stages.add_mesh(scene.stage, stages.grid(), "/World/prop/bad_GEO")
+    stages.add_patch(other, None)
+    scene.stage.GetPrimAtPath("/World/prop").SetActive(False)
+
+
+def class_with_opinions(scene: Scene) -> None:
+    source = scene.stage.CreateClassPrim("/_class_skin")
+    source.CreateAttribute(f"{PLACE}:envelope", Types.Float).Set(0.5)
+    scene.prim.GetInherits().AddInherit("/_class_skin")
+
+
+def variants(scene: Scene) -> None:
+    chosen = scene.prim.GetVariantSets().AddVariantSet("skin")
+    for name, envelope in (("full", 1.0), ("half", 0.5)):
+        chosen.AddVariant(name)
+        chosen.SetVariantSelection(name)
+        with chosen.GetVariantEditContext():
+            stages.set_property(scene.mesh, "envelope", envelope)
+
+
+def skinned_earlier(scene: Scene) -> None:
+    """The skinning was baked: there are samples."""
+    UsdSkel.BindingAPI.Apply(scene.prim).CreateJointIndicesPrimvar(False, 1).Set([0] * 49)
+
+
+def joints_off_the_mesh(scene: Scene) -> None:
+    """Of a skinned neighbour's parent: only a constant is inherited."""
+    still(scene)
+    inherited("skel:jointIndices", [0] * 49, "vertex", Types.IntArray)(scene)
+
+
+def blend_shapes_without_targets(scene: Scene) -> None:
+    still(scene)
+    UsdSkel.BindingAPI.Apply(scene.prim).CreateBlendShapeTargetsRel()
+
+
+def inactive_instancer(scene: Scene) -> None:
+    instancer = UsdGeom.PointInstancer.Define(scene.stage, "/World/crowd")
+    instancer.CreatePrototypesRel().SetTargets([scene.prim.GetParent().GetPath()])
+    instancer.GetPrim().SetActive(False)
+
+
+def rest_as(type_name: Sdf.ValueTypeName, name: str = "rest", interpolation: str = "vertex") -> Edit:
+    vector = type_name.scalarType.type.pythonClass
+    values = [vector(*map(float, point)) for point in stages.grid().points]
+    return put(name, type_name, interpolation, values)
+
+
+def rest_points(scene: Scene) -> None:
+    attribute = scene.prim.CreateAttribute("skinSlide:restPoints", Types.Point3fArray, False)
+    attribute.Set(stages.vectors(stages.grid().points))
+    put("rest", Types.Point3fArray, "vertex", [(0, 0, 0)] * 49)(scene)  # which it wins over
+
+
+def rest_by_indices(scene: Scene) -> None:
+    order = np.arange(49)[::-1]
+    put("Pref", Types.Point3fArray, "vertex", stages.vectors(stages.grid().points[order]), 7)(scene)
+    indexed("Pref", order.tolist())(scene)
+
+
+CHOSEN = [
+    Good("plain"),
+    Good("faces: int", put(FACES, Types.IntArray, "uniform", [0] * 6 + [3] * 29 + [-1])),
+    Good("faces: float by vertex", painted(FACES, "vertex", [*floats(49, 0, 0.0)])),
+    Good(
+        "faces: indexed",
+        all_of(put(FACES, Types.BoolArray, "uniform", [False, True]), indexed(FACES, [0] * 6 + [1] * 30)),
+    ),
+    Good(
+        "faces: indices are blocked",
+        all_of(
+            put(FACES, Types.BoolArray, "uniform", [True] * 36),
+            indexed(FACES, [7] * 36),
+            blocked(f"primvars:{FACES}:indices"),
+        ),
+    ),
+    Good(
+        "faces: values vary, faces do not",
+        all_of(*(painted(FACES, "uniform", [frame] * 36, frame) for frame in FRAMES)),
+    ),
+    Good("faces: subset", subset([*range(30), 3, 3])),
+    Good("faces: subset without elementType", subset([*range(30)], None)),
+    Good(
+        "faces: subset of another family",
+        all_of(subset([*range(30)]), on_subset(lambda it: it.CreateFamilyNameAttr("x"))),
+    ),
+    Good(
+        "faces: subset in samples that agree",
+        all_of(
+            subset([*range(30)]),
+            on_subset(lambda it: [it.GetIndicesAttr().Set([*range(30)], frame) for frame in FRAMES]),
+        ),
+    ),
+    Good(
+        "faces: subset behind a blocked primvar",
+        all_of(subset([*range(30)]), put(FACES, Types.BoolArray, "uniform", [True] * 36), blocked(f"primvars:{FACES}")),
+    ),
+    Good(
+        "faces: a primvar wins over the subset",
+        all_of(subset([99]), put(FACES, Types.BoolArray, "uniform", [True] * 36)),
+    ),
+    Good(
+        "faces: by vertex, beside one without points",
+        all_of(topology(counts=lambda counts: [0, *counts]), painted(FACES, "vertex", floats(49))),
+    ),
+    Good("faces: holes of the patch", faces=stages.annulus),
+    Good("faces: several pieces", faces=stages.two_pieces),
+    Good("names: with namespaces", lambda scene: stages.add_patch(scene.mesh, np.arange(12), "left:arm:elbow")),
+    Good("names: not of ASCII", lambda scene: stages.add_patch(scene.mesh, np.arange(12), "élève")),
+    Good("patches: overlapping", two_overlapping),
+    Good("meshes: two", two_meshes),
+    Good("meshes: a bad one that is inactive", inactive_neighbour),
+    Good("prim: invisible", lambda scene: scene.mesh.MakeInvisible()),
+    Good("prim: opinions of a class", class_with_opinions),
+    Good("prim: opinions of a variant", variants),
+    Good("prim: point instancer that is inactive", inactive_instancer),
+]
+
+
+POINTS = [
+    Good("points: on sub-frames", half_way),
+    Good("points: without samples", still),
+    Good(
+        "points: one sample",
+        lambda scene: (
+            [scene.points.ClearAtTime(frame) for frame in FRAMES[1:]]
+            and scene.points.Set(stages.vectors(stages.grid().moved(1003)), FRAMES[0])
+        ),
+    ),
+    Good("points: double", all_of(points_as(Types.Point3dArray), sampled("envelope", {1001.3: 0.5, 1002.7: 1.0}))),
+    Good("points: half", all_of(points_as(Types.Point3hArray), sampled("envelope", {1001.3: 0.5, 1002.7: 1.0}))),
+    Good("points: float3", points_as(Types.Float3Array)),
+    Good("points: left-handed", lambda scene: scene.mesh.CreateOrientationAttr("leftHanded")),
+    Good(
+        "points: left-handed, with normals",
+        all_of(lambda scene: scene.mesh.CreateOrientationAttr("leftHanded"), normals("vertex", 49)),
+    ),
+    Good("points: skinning was baked", skinned_earlier),
+    Good("points: joint indices that are not inherited", joints_off_the_mesh),
+    Good("points: blend shapes without targets", blend_shapes_without_targets),
+    Good(
+        "points: by value clips",
+        all_of(
+            points_are_unsampled,
+            clips(clip_of_points, lambda prim: prim.CreateAttribute("points", Types.Point3fArray, False)),
+        ),
+        rest="rest",
+        refuses=f"points come from value clips, {CANNOT_READ}",
+    ),
+    Good(
+        "points: samples that beat value clips",
+        clips(clip_of_points, lambda prim: prim.CreateAttribute("points", Types.Point3fArray, False)),
+    ),
+    Good(
+        "topology: samples that agree",
+        lambda scene: [
+            scene.mesh.GetFaceVertexIndicesAttr().Set(scene.mesh.GetFaceVertexIndicesAttr().Get(), frame)
+            for frame in FRAMES
+        ],
+    ),
+    Good("topology: counts as unsigned", retyped("faceVertexCounts", Types.UIntArray, Vt.UIntArray([4] * 36))),
+    Good("topology: counts as int64", retyped("faceVertexCounts", Types.Int64Array, Vt.Int64Array([4] * 36))),
+]
+
+
+REST = [
+    *(Good(f"rest: primvars:{name}", rest=name) for name in ("rest", "pref", "Pref", "__Pref")),
+    Good("rest: skinSlide:restPoints", rest_points, rest=""),
+    Good("rest: double", rest_as(Types.Double3Array), rest=""),
+    Good("rest: half", rest_as(Types.Half3Array), rest=""),
+    Good("rest: varying", rest_as(Types.Point3fArray, interpolation="varying"), rest=""),
+    Good("rest: indexed, in a sample", rest_by_indices, rest=""),
+    Good(
+        "rest: blocked, so the next counts",
+        all_of(rest_as(Types.Point3fArray), blocked("primvars:rest"), rest_as(Types.Point3fArray, "pref")),
+        rest="",
+    ),
+    Good("rest: on an ancestor, which does not count", inherited("rest", [(0, 0, 0)], type_name=Types.Point3fArray)),
+]
+
+
+TIMES = [
+    Good(
+        "times: an offset and a scale of the sublayer",
+        vectors("velocities", 49, FRAMES),
+        file=text("@./cache.usda@ (offset = -1000.1; scale = 2)"),
+    ),
+    Good(
+        "times: a scale of a third",
+        sampled("envelope", {1001: 0.0, 1002: 0.5, 1003: 1.0}),
+        file=text("@./cache.usda@ (offset = 0.1; scale = 0.333333)"),
+    ),
+    Good(
+        "times: a payload's offset",
+        file=f'#usda 1.0\n({HEAD}; {CLOCK})\ndef "World" (payload = @./cache.usda@ (offset = 7.5)) {{}}\n',
+    ),
+    Good(
+        "times: another rate than the cache",
+        vectors("velocities", 49, FRAMES),
+        file=text(head=f"{UNTIMED}; timeCodesPerSecond = 48"),
+    ),
+    Good(
+        "times: only frames per second",
+        vectors("velocities", 49, FRAMES),
+        file=text(head=f"{UNTIMED}; framesPerSecond = 48"),
+    ),
+    Good(
+        "times: controls next to points but for noise",
+        sampled("envelope", {1001 + 1e-9: 0.0, 1002 - 1e-9: 0.5, 1003: 1.0}),
+    ),
+    Good("times: the rate of the cache", vectors("velocities", 49, FRAMES), file=text(head=UNTIMED)),
+    Good(
+        "times: controls of the file over those of the cache",
+        setting("envelope", 0.0),
+        file=text(body=over(f"float {PLACE}:envelope.timeSamples = {{ 1001: 0, 1002.5: 1 }}")),
+    ),
+]

@@ -1,0 +1,17 @@
+"""The table of stages that slide. Baked, and opened as a .skinslide file, they are the same bytes."""
+
+import good_derived
+import good_meshes
+import good_settings
+import good_textures
+
+GOOD = [
+    *good_meshes.CHOSEN,
+    *good_meshes.POINTS,
+    *good_meshes.REST,
+    *good_meshes.TIMES,
+    *good_settings.CONTROLS,
+    *good_settings.SETTINGS,
+    *good_textures.TEXTURES,
+    *good_derived.DERIVED,
+]

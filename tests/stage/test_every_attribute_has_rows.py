@@ -1,0 +1,52 @@
+"""Whatever the schema declares, and whatever is painted, has a good row and a bad one in the tables."""
+
+import re
+from pathlib import Path
+
+import pytest
+from pxr import Sdf
+
+from bad_stages import BAD
+from edits import PLACE
+from good_stages import GOOD
+from repository import ROOT
+from rows import made
+from skinslide.stage import schema
+from stages import MESH
+
+
+def declared(schema_class: str) -> list[str]:
+    layer = Sdf.Layer.FindOrOpen(str(ROOT / "schema" / "generatedSchema.usda"))
+    return [
+        spec.name.replace("skinSlide:__INSTANCE_NAME__", PLACE)
+        for spec in layer.GetPrimAtPath(f"/{schema_class}").attributes
+    ]
+
+
+NAMES = [
+    *declared("SkinSlideAPI"),
+    *declared("SkinSlideMeshAPI"),
+    *(f"primvars:{PLACE}:{name}" for name in schema.PRIMVARS),
+]
+
+
+@pytest.fixture(scope="module")
+def authored(tmp_path_factory) -> set[str]:
+    """The properties of the meshes of all good rows."""
+    names = set()
+    for row in GOOD:
+        folder: Path = tmp_path_factory.mktemp("row")
+        made(row, folder)
+        cache = Sdf.Layer.FindOrOpen(str(folder / "cache.usda"))
+        names.update(spec.name for spec in cache.GetPrimAtPath(MESH).properties)
+    return names
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_good_row(name, authored):
+    assert name in authored
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_bad_row(name):
+    assert any(re.search(rf"(^|\W){re.escape(name)}(?!\w|:\w)", row.says) for row in BAD)
