@@ -31,6 +31,13 @@ __attribute__((format(printf, 3, 4))) skinslide_status ss_fail(skinslide_error *
                                                                const char *format, ...);
 skinslide_status ss_out_of_memory(skinslide_error *error);
 
+/* ---- clock.c ---- */
+
+/* Seconds since some moment. */
+double ss_now(void);
+/* Adds the seconds since *since to *sum, and sets it to now. */
+void ss_lap(double *since, double *sum);
+
 #ifdef __cplusplus
 }
 #endif

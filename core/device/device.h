@@ -2,7 +2,7 @@
 #ifndef SKINSLIDE_DEVICE_H
 #define SKINSLIDE_DEVICE_H
 
-#include "plane.h"
+#include "patch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,6 +29,11 @@ typedef struct ss_id_patch {
     int32_t query_count;
     int32_t side; /* texels; at least 1 */
 } ss_id_patch;
+
+enum { SS_CANDIDATES = 9 };
+
+/* Faces of the texels around a query: that of its own texel or -1, then the other distinct ones, then -1. */
+typedef int32_t ss_candidates[SS_CANDIDATES];
 
 typedef struct ss_idbuffer ss_idbuffer;
 /* patches are copied, their faces are kept. resolution 0: patches[].side, or the device's limit where that is less.

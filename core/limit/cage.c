@@ -206,7 +206,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     if (!status)
         status = ss_fit_work_create(cage->fit, &work->fit, error);
     if (!status)
-        status = ss_face_tree_create(&cage->patch->faces, &work->tree, error);
+        status = ss_face_tree_create(cage->patch, &work->tree, error);
     if (status)
         ss_cage_work_destroy(work);
     else
@@ -226,18 +226,18 @@ void ss_cage_work_destroy(ss_cage_work *work) {
 /* ---- Targets of one frame ---- */
 
 /* Looks the middle of a face up, at the mean of where its corners are looked up. It stays where all of them do. */
-static ss_location locate_middle(const ss_cage_work *work, const ss_frame *frame, int32_t face) {
+static ss_place locate_middle(const ss_cage_work *work, const ss_slide *slide, int32_t face) {
     const ss_faces *faces = &work->cage->patch->faces;
     int32_t begin = faces->face_start[face], end = faces->face_start[face + 1];
-    ss_location found = {.face = SS_STAYS};
+    ss_place found = {.triangle = SS_STAYS};
     double mean[2] = {0, 0};
     bool stays = true;
     for (int32_t c = begin; c < end; c++) {
         int32_t vertex = faces->corner_vertex[c], i = work->cage->free_index[vertex];
-        const double *place = i < 0 ? frame->uv[vertex] : frame->queries[i];
-        stays = stays && (i < 0 || frame->locations[i].face == SS_STAYS);
+        const double *at = i < 0 ? slide->uv[vertex] : slide->asked[i];
+        stays = stays && (i < 0 || slide->places[i].triangle == SS_STAYS);
         for (int k = 0; k < 2; k++)
-            mean[k] += place[k] / (end - begin);
+            mean[k] += at[k] / (end - begin);
     }
     if (!stays && !ss_face_tree_holding(work->tree, mean, &found))
         ss_face_tree_nearest(work->tree, mean, &found);
@@ -245,35 +245,35 @@ static ss_location locate_middle(const ss_cage_work *work, const ss_frame *frame
 }
 
 /* Where a sample is looked up: t less the origin, and n. A sample that stays is looked up where it is. */
-static void find_target(const ss_cage_work *work, const ss_frame *frame, const sample *own, const ss_location *location,
-                        const double origin[3], double target[3], double normal[3]) {
+static void find_target(const ss_cage_work *work, const float *points, const double (*uv)[2], const sample *own,
+                        const ss_place *place, const double origin[3], double target[3], double normal[3]) {
     const ss_cage *cage = work->cage;
-    bool stays = location->face == SS_STAYS;
-    int32_t face = stays ? own->face : location->face;
-    ss_parameter at = stays ? own->at : ss_parametrise(&cage->patch->faces, cage->loop, frame->uv, location);
-    ss_limit_prepare(cage->surfaces, face, frame->points, origin, work->scratch);
+    bool stays = place->triangle == SS_STAYS;
+    int32_t face = stays ? own->face : cage->patch->triangles.face[place->triangle];
+    ss_parameter at = stays ? own->at : ss_parametrise(cage->patch, cage->loop, uv, place);
+    ss_limit_prepare(cage->surfaces, face, points, origin, work->scratch);
     ss_limit_normal(cage->surfaces, face, &at, work->scratch, target, normal);
 }
 
 /* residual = t - L Md, and n, of sample s. */
-static void list_target(const ss_cage_work *work, const ss_frame *frame, int32_t s) {
+static void list_target(const ss_cage_work *work, const float *points, const ss_slide *slide, int32_t s) {
     const sample *own = &work->cage->samples[s];
     const ss_rows *stencils = &work->cage->stencils;
-    ss_location location = own->free_index < 0 ? locate_middle(work, frame, own->face) : frame->locations[own->free_index];
-    const float *near = frame->points + 3 * (int64_t)own->origin;
+    ss_place place = own->free_index < 0 ? locate_middle(work, slide, own->face) : slide->places[own->free_index];
+    const float *near = points + 3 * (int64_t)own->origin;
     double origin[3] = {near[0], near[1], near[2]}, *residual = work->residual[s];
-    find_target(work, frame, own, &location, origin, residual, work->normal[s]);
+    find_target(work, points, slide->uv, own, &place, origin, residual, work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
-            residual[axis] -= stencils->value[k] * (frame->points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
-    for (int axis = 0; axis < 3 && location.face == SS_STAYS; axis++)
+            residual[axis] -= stencils->value[k] * (points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
+    for (int axis = 0; axis < 3 && place.triangle == SS_STAYS; axis++)
         residual[axis] = 0;
 }
 
-static void list_targets(const ss_cage_work *work, const ss_frame *frame) {
-    ss_face_tree_build(work->tree, frame->uv);
+static void list_targets(const ss_cage_work *work, const float *points, const ss_slide *slide) {
+    ss_face_tree_build(work->tree, slide->uv);
     for (int32_t s = 0; s < work->cage->sample_count; s++)
-        list_target(work, frame, s);
+        list_target(work, points, slide, s);
 }
 
 /* ---- Damping ---- */
@@ -287,9 +287,9 @@ static double mean_edge(const ss_faces *faces, int32_t face, const double *lengt
     return sum / (ss_fan_size(faces, face) + 2);
 }
 
-static double bound(const ss_cage *cage, const ss_frame *frame, int32_t i) {
-    int32_t face = frame->locations[i].face == SS_STAYS ? cage->samples[i].face : frame->locations[i].face;
-    return most_deviation * mean_edge(&cage->patch->faces, face, frame->lengths);
+static double bound(const ss_cage *cage, const double *lengths, const ss_place *place, int32_t i) {
+    int32_t face = place->triangle == SS_STAYS ? cage->samples[i].face : cage->patch->triangles.face[place->triangle];
+    return most_deviation * mean_edge(&cage->patch->faces, face, lengths);
 }
 
 /* Puts the solution in place of the linear displacement, no farther from it than the bound. Returns whether that held it back.
@@ -309,22 +309,22 @@ static bool take_damped(const double solution[3], double most, double linear[3])
 
 /* ---- One frame ---- */
 
-static bool any_slides(const ss_frame *frame, int32_t count) {
+static bool any_slides(const ss_slide *slide, int32_t count) {
     for (int32_t i = 0; i < count; i++)
-        if (frame->locations[i].face != SS_STAYS)
+        if (slide->places[i].triangle != SS_STAYS)
             return true;
     return false;
 }
 
-int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, double (*displacement)[3]) {
+int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, const ss_slide *slide, double (*displacement)[3]) {
     int32_t damped = 0, count = work->cage->patch->free_count;
-    if (!any_slides(frame, count))
+    if (!any_slides(slide, count))
         return 0;
     memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
-    list_targets(work, frame);
+    list_targets(work, frame->points, slide);
     ss_fit_samples(work->fit, frame->points, (const double(*)[3])work->residual, (const double(*)[3])work->normal,
                    work->solution);
     for (int32_t i = 0; i < count; i++)
-        damped += take_damped(work->solution[i], bound(work->cage, frame, i), displacement[i]);
+        damped += take_damped(work->solution[i], bound(work->cage, frame->lengths, &slide->places[i], i), displacement[i]);
     return damped;
 }

@@ -17,8 +17,8 @@ typedef struct ss_parameter {
     double st[2];
 } ss_parameter;
 
-/* The parameters of a location in the embedding. loop: the scheme is. */
-ss_parameter ss_parametrise(const ss_faces *faces, bool loop, const double (*uv)[2], const ss_location *location);
+/* The parameters of a place in an embedding. loop: the scheme is. */
+ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const double (*uv)[2], const ss_place *place);
 
 typedef struct ss_topology ss_topology;             /* a subdivided mesh, checked; keeps the mesh and its arrays */
 typedef struct ss_limit_surfaces ss_limit_surfaces; /* limit surfaces of some of its faces: immutable, and good without it */
@@ -79,15 +79,6 @@ void ss_fit_samples(ss_fit_work *work, const float *points, const double (*resid
 typedef struct ss_cage ss_cage;           /* limit surfaces and samples of a patch: immutable */
 typedef struct ss_cage_work ss_cage_work; /* one a thread */
 
-/* One patch in one frame. */
-typedef struct ss_frame {
-    const float *points;          /* [mesh vertex_count][3] */
-    const double *lengths;        /* [edge_count] */
-    const double (*uv)[2];        /* [vertex_count] Ud */
-    const double (*queries)[2];   /* [free_count] */
-    const ss_location *locations; /* [free_count] */
-} ss_frame;
-
 skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
                                 skinslide_error *error);
 void ss_cage_destroy(ss_cage *cage);
@@ -95,7 +86,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
 void ss_cage_work_destroy(ss_cage_work *work);
 /* displacement [free_count]: in the linear one, out the one that keeps the limit surface. Returns how many vertices were
  * damped. */
-int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, double (*displacement)[3]);
+int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, const ss_slide *slide, double (*displacement)[3]);
 
 #ifdef __cplusplus
 }

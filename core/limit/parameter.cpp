@@ -67,10 +67,9 @@ const double accepted_miss = 1e-8; /* in a quad; a polygon takes the best of its
 
 /* The parameters of a triangle of the fan, for faces on which the inverse fails: quads of no area or not convex, and polygons
  * none of whose quads has one; in these the corner that is nearest by weight. */
-ss_parameter from_fan(const ss_faces *faces, const double (*uv)[2], const ss_location *location, int32_t n) {
-    double weights[3];
-    ss_linear_weights(faces, uv, location, weights);
-    int32_t second = location->triangle + 1;
+ss_parameter from_fan(const ss_patch *patch, const ss_place *place, int32_t n) {
+    const double *weights = place->weight;
+    int32_t second = place->triangle - patch->triangles.first_triangle[patch->triangles.face[place->triangle]] + 1;
     if (n == 4) {
         dvec2 b = second == 1 ? dvec2(1, 0) : dvec2(1, 1), c = second == 1 ? dvec2(1, 1) : dvec2(0, 1);
         dvec2 st = weights[1] * b + weights[2] * c;
@@ -90,42 +89,42 @@ Quad corner_quad(const ss_faces *faces, const double (*uv)[2], int32_t face, int
     return {{here, 0.5 * (here + next), mean, 0.5 * (previous + here)}};
 }
 
-ss_parameter in_quad(const ss_faces *faces, const double (*uv)[2], const ss_location *location, dvec2 p) {
+ss_parameter in_quad(const ss_patch *patch, const double (*uv)[2], const ss_place *place, dvec2 p) {
+    int32_t face = patch->triangles.face[place->triangle];
     Quad quad;
     for (int32_t k = 0; k < 4; k++)
-        quad.corners[k] = corner_of(faces, uv, location->face, k);
+        quad.corners[k] = corner_of(&patch->faces, uv, face, k);
     double missed;
     dvec2 st = inverse_bilinear(quad, p, &missed);
     if (missed > accepted_miss)
-        return from_fan(faces, uv, location, 4);
+        return from_fan(patch, place, 4);
     return {-1, {st.x, st.y}};
 }
 
-ss_parameter in_polygon(const ss_faces *faces, const double (*uv)[2], const ss_location *location, dvec2 p, int32_t n) {
+ss_parameter in_polygon(const ss_patch *patch, const double (*uv)[2], const ss_place *place, dvec2 p, int32_t n) {
+    const ss_faces *faces = &patch->faces;
+    int32_t face = patch->triangles.face[place->triangle];
     dvec2 mean(0);
     for (int32_t k = 0; k < n; k++)
-        mean += corner_of(faces, uv, location->face, k) / double(n);
+        mean += corner_of(faces, uv, face, k) / double(n);
     double least = INFINITY;
     ss_parameter best = {-1, {0, 0}};
     for (int32_t k = 0; k < n; k++) {
-        Quad quad = corner_quad(faces, uv, location->face, k, n, mean);
+        Quad quad = corner_quad(faces, uv, face, k, n, mean);
         double missed;
         dvec2 st = inverse_bilinear(quad, p, &missed);
         if (missed < least)
             least = missed, best = {k, {st.x, st.y}};
     }
-    return best.corner < 0 ? from_fan(faces, uv, location, n) : best;
+    return best.corner < 0 ? from_fan(patch, place, n) : best;
 }
 
 } // namespace
 
-ss_parameter ss_parametrise(const ss_faces *faces, bool loop, const double (*uv)[2], const ss_location *location) {
-    int32_t n = ss_fan_size(faces, location->face) + 2;
-    dvec2 p(location->uv[0], location->uv[1]);
-    if (loop) {
-        double weights[3];
-        ss_linear_weights(faces, uv, location, weights);
-        return {-1, {weights[1], weights[2]}};
-    }
-    return n == 4 ? in_quad(faces, uv, location, p) : in_polygon(faces, uv, location, p, n);
+ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const double (*uv)[2], const ss_place *place) {
+    int32_t n = ss_fan_size(&patch->faces, patch->triangles.face[place->triangle]) + 2;
+    dvec2 p(place->uv[0], place->uv[1]);
+    if (loop)
+        return {-1, {place->weight[1], place->weight[2]}};
+    return n == 4 ? in_quad(patch, uv, place, p) : in_polygon(patch, uv, place, p, n);
 }

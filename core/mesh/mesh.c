@@ -187,3 +187,10 @@ int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t 
     }
     return pieces;
 }
+
+int32_t ss_largest_face(const ss_faces *faces) {
+    int32_t largest = 3;
+    for (int32_t f = 0; f < faces->face_count; f++)
+        largest = ss_fan_size(faces, f) + 2 > largest ? ss_fan_size(faces, f) + 2 : largest;
+    return largest;
+}

@@ -50,7 +50,7 @@ bool ss_number_edges(ss_faces *faces);
  */
 int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack);
 
-/* ---- Fans, triangles.c: a face of n corners as n - 2 triangles about its first ---- */
+/* ---- Fans: a face of n corners as n - 2 triangles about its first ---- */
 
 /* Triangle t of the fan of a face, as patch vertices. */
 static inline void ss_fan(const ss_faces *faces, int32_t face, int32_t triangle, int32_t vertices[3]) {
@@ -62,8 +62,6 @@ static inline int32_t ss_fan_size(const ss_faces *faces, int32_t face) {
     return faces->face_start[face + 1] - faces->face_start[face] - 2;
 }
 
-/* The triangle of the fan that has the side which begins at a corner. */
-int32_t ss_fan_of_side(const ss_faces *faces, int32_t corner);
 /* Corners of the largest face. */
 int32_t ss_largest_face(const ss_faces *faces);
 

@@ -153,6 +153,13 @@ int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *leng
     return clamped;
 }
 
+/* Not moved to the patch's centre: so differences are those of edge lengths, to the bit, and rest has no stretch at all. */
+void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]) {
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        for (int k = 0; k < 3; k++)
+            out[v][k] = points[3 * (int64_t)patch->mesh_vertex[v] + k];
+}
+
 static skinslide_status measure_rest(ss_patch *patch, const float *rest_points, skinslide_error *error) {
     int32_t edges = patch->faces.edge_count;
     ss_edge_lengths(patch, rest_points, patch->rest_length);
@@ -229,7 +236,6 @@ static void allocate(ss_patch *patch) {
     patch->vertex_loop = SS_NEW(memory, int32_t, vertices);
     patch->loop_place = SS_NEW(memory, int32_t, vertices);
     patch->fixed = SS_NEW(memory, uint8_t, vertices);
-    patch->fixed_uv = ss_new(memory, vertices, sizeof *patch->fixed_uv);
     patch->free_vertex = SS_NEW(memory, int32_t, vertices);
     patch->free_before = SS_NEW(memory, int32_t, vertices);
 }
@@ -246,7 +252,7 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
     put_outer_first(patch, scratch[0]);
     hold_loops(patch);
     order_free(patch, scratch[0]);
-    return SKINSLIDE_OK;
+    return ss_list_triangles(patch) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
 skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,

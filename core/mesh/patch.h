@@ -10,6 +10,16 @@ extern "C" {
 
 /* ---- patch.c: one connected patch, a disk with holes ---- */
 
+/* The triangles of the fans of its faces, and how they meet. Side k of a triangle goes from its vertex k to the next. */
+typedef struct ss_triangles {
+    int32_t count;
+    int32_t (*vertex)[3];     /* [count] patch vertices */
+    int32_t (*neighbour)[3];  /* [count] over each side, -1 on the border */
+    int32_t *face;            /* [count] patch face */
+    int32_t *first_triangle;  /* [face_count] */
+    int32_t *vertex_triangle; /* [vertex_count] a triangle at the vertex; on the border the one whose side leaves along it */
+} ss_triangles;
+
 typedef struct ss_patch {
     ss_memory memory;
     char label[160]; /* "patch elbow" or "patch elbow (piece 2 of 2)" */
@@ -26,12 +36,12 @@ typedef struct ss_patch {
     int32_t zero_length_edges;
     int32_t *loop_start; /* [loop_count + 1]; loop 0 is the outer boundary, the others holes, as faces go round them */
     int32_t *loop_vertex;
-    uint8_t *fixed;        /* [vertex_count] */
-    double (*fixed_uv)[2]; /* [vertex_count], where fixed */
-    int32_t *free_vertex;  /* [free_count] in an order in which each has a neighbour before it */
-    int32_t *free_before;  /* [free_count] the place in free_vertex of that neighbour, -1 for a first */
-    int32_t *loop_place;   /* [vertex_count] where loop_vertex has the vertex, on loops */
-    int32_t *vertex_loop;  /* [vertex_count] the loop that the vertex is on, -1 inside */
+    uint8_t *fixed;       /* [vertex_count] */
+    int32_t *free_vertex; /* [free_count] in an order in which each has a neighbour before it */
+    int32_t *free_before; /* [free_count] the place in free_vertex of that neighbour, -1 for a first */
+    int32_t *loop_place;  /* [vertex_count] where loop_vertex has the vertex, on loops */
+    int32_t *vertex_loop; /* [vertex_count] the loop that the vertex is on, -1 inside */
+    ss_triangles triangles;
 } ss_patch;
 
 skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,
@@ -46,48 +56,17 @@ int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex);
 int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b);
 /* The length of every edge, none under patch->shortest; returns how many were. points is the whole mesh's. */
 int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths);
+/* The points [vertex_count][3] of the patch, of the whole mesh's. */
+void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
 
 /* ---- triangles.c ---- */
 
-/* The triangles of the fans of a patch's faces, and how they meet: immutable. Side k of a triangle goes from its vertex k to
- * the next. */
-typedef struct ss_triangles {
-    ss_memory memory;
-    const ss_patch *patch;
-    int32_t triangle_count;
-    int32_t (*vertex)[3];     /* [triangle_count] patch vertices */
-    int32_t (*neighbour)[3];  /* [triangle_count] over each side, -1 on the border */
-    int32_t *face;            /* [triangle_count] patch face */
-    int32_t *first_triangle;  /* [face_count] */
-    int32_t *vertex_triangle; /* [vertex_count] a triangle at the vertex; on the border the one whose side leaves along it */
-} ss_triangles;
-
-skinslide_status ss_triangles_create(const ss_patch *patch, ss_triangles **out, skinslide_error *error);
-void ss_triangles_destroy(ss_triangles *triangles);
+/* Fills patch->triangles, all else being there. False where memory is short. */
+bool ss_list_triangles(ss_patch *patch);
+/* The triangle that has the side which begins at a corner. */
+int32_t ss_triangle_of_side(const ss_patch *patch, int32_t corner);
 /* Which vertex of the triangle a patch vertex is. */
-int ss_triangle_corner(const ss_triangles *triangles, int32_t triangle, int32_t vertex);
-
-/* A triangle in a pose. */
-typedef struct ss_facet {
-    double first[3], second[3]; /* from its vertex 0 to 1 and 2 */
-    double gram[3];             /* the inverse of their products: 11, 12, 22 */
-    double normal[3];           /* of unit length */
-    bool has_area;
-} ss_facet;
-
-typedef struct ss_posed {
-    const ss_triangles *triangles;
-    double (*point)[3]; /* [vertex_count] */
-    ss_facet *facet;    /* [triangle_count] */
-} ss_posed;
-
-/* The patch's of the whole mesh's points: [vertex_count][3]. */
-void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
-bool ss_posed_allocate(ss_memory *memory, const ss_triangles *triangles, ss_posed *pose);
-/* points is the whole mesh's. */
-void ss_posed_set(ss_posed *pose, const float *points);
-/* The plane as a pose: an embedding uv [vertex_count][2], to walk straight in. */
-void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]);
+int ss_triangle_corner(const ss_patch *patch, int32_t triangle, int32_t vertex);
 
 #ifdef __cplusplus
 }

@@ -55,12 +55,12 @@ static double arc_length(const ss_patch *patch, int32_t from, int32_t to) {
     return length;
 }
 
-static void place_on_circle(ss_patch *patch) {
+static void place_on_circle(const ss_patch *patch, double (*uv)[2]) {
     double whole = arc_length(patch, 0, outer_count(patch)), walked = 0;
     for (int32_t i = 0; i < outer_count(patch); i++) {
-        double *uv = patch->fixed_uv[outer_vertex(patch, i)], direction[2];
+        double *at = uv[outer_vertex(patch, i)], direction[2];
         ss_circle(walked / whole, direction);
-        uv[0] = 0.5 + 0.5 * direction[0], uv[1] = 0.5 + 0.5 * direction[1];
+        at[0] = 0.5 + 0.5 * direction[0], at[1] = 0.5 + 0.5 * direction[1];
         walked += side_length(patch, i);
     }
 }
@@ -68,22 +68,22 @@ static void place_on_circle(ss_patch *patch) {
 /* ---- The square ---- */
 
 /* Places from corner number side, at loop position from, up to the next corner at to. */
-static void place_on_side(ss_patch *patch, int side, int32_t from, int32_t to) {
+static void place_on_side(const ss_patch *patch, int side, int32_t from, int32_t to, double (*uv)[2]) {
     static const double corners[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     const double *a = corners[side], *b = corners[side + 1];
     double whole = arc_length(patch, from, to), walked = 0;
     for (int32_t i = from; i < to; i++) {
-        double share = walked / whole, *uv = patch->fixed_uv[outer_vertex(patch, i)];
+        double share = walked / whole, *at = uv[outer_vertex(patch, i)];
         for (int k = 0; k < 2; k++)
-            uv[k] = a[k] == b[k] ? a[k] : a[k] < b[k] ? share : 1 - share;
+            at[k] = a[k] == b[k] ? a[k] : a[k] < b[k] ? share : 1 - share;
         walked += side_length(patch, i);
     }
 }
 
 /* corners: loop positions, ascending; the first goes to (0,0). */
-static void place_on_square(ss_patch *patch, const int32_t corners[4]) {
+static void place_on_square(const ss_patch *patch, const int32_t corners[4], double (*uv)[2]) {
     for (int side = 0; side < 4; side++)
-        place_on_side(patch, side, corners[side], side < 3 ? corners[side + 1] : corners[0] + outer_count(patch));
+        place_on_side(patch, side, corners[side], side < 3 ? corners[side + 1] : corners[0] + outer_count(patch), uv);
 }
 
 static void sort4(int32_t values[4]) {
@@ -172,17 +172,17 @@ bool ss_has_corners(const ss_patch *patch) {
     return patch->setup->corners;
 }
 
-skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, skinslide_error *error) {
+skinslide_status ss_place_boundary(const ss_patch *patch, skinslide_boundary boundary, const float *rest_points,
+                                   double (*uv)[2], skinslide_error *error) {
     bool given = ss_has_corners(patch);
-    skinslide_boundary boundary = patch->setup->boundary;
     if (boundary == SKINSLIDE_BOUNDARY_AUTO)
         boundary = given ? SKINSLIDE_BOUNDARY_SQUARE : SKINSLIDE_BOUNDARY_CIRCLE;
     int32_t corners[4];
     skinslide_status status = given ? find_corners(patch, corners, error) : SKINSLIDE_OK;
     if (status)
         return status;
-    if (boundary == SKINSLIDE_BOUNDARY_CIRCLE || patch->setup->rule == SKINSLIDE_RULE_RELAXED) {
-        place_on_circle(patch);
+    if (boundary == SKINSLIDE_BOUNDARY_CIRCLE) {
+        place_on_circle(patch, uv);
         return SKINSLIDE_OK;
     }
     if (outer_count(patch) < 4)
@@ -190,6 +190,6 @@ skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, sk
                        patch->label, outer_count(patch));
     if (!given)
         choose_corners(patch, rest_points, corners);
-    place_on_square(patch, corners);
+    place_on_square(patch, corners, uv);
     return SKINSLIDE_OK;
 }

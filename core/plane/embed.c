@@ -9,6 +9,10 @@
 
 #include <string.h>
 
+ss_net ss_net_of(const ss_patch *patch, const uint8_t *fixed) {
+    return (ss_net){patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, fixed};
+}
+
 /* One end of an edge whose other end is fixed. */
 static void hold(const ss_system *system, ss_factor *factor, int32_t vertex, const double at[2], double density) {
     int32_t k = system->unknown[vertex];
@@ -43,4 +47,18 @@ skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const doub
         if (system->unknown[v] >= 0)
             memcpy(uv[v], factor->right[system->unknown[v]], sizeof *uv);
     return SKINSLIDE_OK;
+}
+
+skinslide_status ss_embed_once(const ss_net *net, const char *label, const double *density, double (*uv)[2],
+                               skinslide_error *error) {
+    ss_system *system = NULL;
+    ss_factor *factor = NULL;
+    skinslide_status status = ss_system_create(net, label, &system, error);
+    if (!status)
+        status = ss_factor_create(system, &factor, error);
+    if (!status)
+        status = ss_embed(system, factor, density, uv, error);
+    ss_factor_destroy(factor);
+    ss_system_destroy(system);
+    return status;
 }

@@ -20,7 +20,7 @@ typedef struct key {
 
 struct ss_face_tree {
     ss_memory memory;
-    const ss_faces *faces;
+    const ss_patch *patch;
     const double (*uv)[2];
     key *keys;   /* [face_count] in Z-order */
     node *nodes; /* node i has children 2i + 1 and 2i + 2, each with half of its keys */
@@ -33,13 +33,13 @@ static int32_t node_count(int32_t faces) {
     return nodes;
 }
 
-skinslide_status ss_face_tree_create(const ss_faces *faces, ss_face_tree **out, skinslide_error *error) {
+skinslide_status ss_face_tree_create(const ss_patch *patch, ss_face_tree **out, skinslide_error *error) {
     ss_face_tree *tree = calloc(1, sizeof *tree);
     if (!tree)
         return ss_out_of_memory(error);
-    tree->faces = faces;
-    tree->keys = SS_NEW(&tree->memory, key, faces->face_count);
-    tree->nodes = SS_NEW(&tree->memory, node, node_count(faces->face_count));
+    tree->patch = patch;
+    tree->keys = SS_NEW(&tree->memory, key, patch->faces.face_count);
+    tree->nodes = SS_NEW(&tree->memory, node, node_count(patch->faces.face_count));
     if (tree->memory.failed) {
         ss_face_tree_destroy(tree);
         return ss_out_of_memory(error);
@@ -72,10 +72,10 @@ static uint64_t quantized(double share) {
 
 static uint64_t z_order(const ss_face_tree *tree, int32_t face) {
     double sum[2] = {0, 0};
-    int32_t begin = tree->faces->face_start[face], end = tree->faces->face_start[face + 1];
+    int32_t begin = tree->patch->faces.face_start[face], end = tree->patch->faces.face_start[face + 1];
     for (int32_t c = begin; c < end; c++)
         for (int k = 0; k < 2; k++)
-            sum[k] += tree->uv[tree->faces->corner_vertex[c]][k];
+            sum[k] += tree->uv[tree->patch->faces.corner_vertex[c]][k];
     return spread(quantized(sum[0] / (end - begin))) | spread(quantized(sum[1] / (end - begin))) << 1;
 }
 
@@ -91,9 +91,9 @@ static node empty_node(void) {
 }
 
 static void add_face(const ss_face_tree *tree, node *box, int32_t face) {
-    for (int32_t c = tree->faces->face_start[face]; c < tree->faces->face_start[face + 1]; c++)
+    for (int32_t c = tree->patch->faces.face_start[face]; c < tree->patch->faces.face_start[face + 1]; c++)
         for (int k = 0; k < 2; k++) {
-            double x = tree->uv[tree->faces->corner_vertex[c]][k];
+            double x = tree->uv[tree->patch->faces.corner_vertex[c]][k];
             box->low[k] = x < box->low[k] ? x : box->low[k];
             box->high[k] = x > box->high[k] ? x : box->high[k];
         }
@@ -126,10 +126,10 @@ static void build_node(ss_face_tree *tree, int32_t index, int32_t begin, int32_t
 
 void ss_face_tree_build(ss_face_tree *tree, const double (*uv)[2]) {
     tree->uv = uv;
-    for (int32_t f = 0; f < tree->faces->face_count; f++)
+    for (int32_t f = 0; f < tree->patch->faces.face_count; f++)
         tree->keys[f] = (key){z_order(tree, f), f};
-    qsort(tree->keys, (size_t)tree->faces->face_count, sizeof *tree->keys, by_code);
-    build_node(tree, 0, 0, tree->faces->face_count);
+    qsort(tree->keys, (size_t)tree->patch->faces.face_count, sizeof *tree->keys, by_code);
+    build_node(tree, 0, 0, tree->patch->faces.face_count);
 }
 
 /* ---- Queries: depth first, with what the stack of ranges has left to see ---- */
@@ -149,9 +149,9 @@ static bool box_holds(const node *box, const double p[2]) {
     return box->low[0] <= p[0] && p[0] <= box->high[0] && box->low[1] <= p[1] && p[1] <= box->high[1];
 }
 
-bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_location *out) {
-    range stack[STACK] = {{0, 0, tree->faces->face_count}};
-    int32_t lowest = INT32_MAX;
+bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_place *out) {
+    range stack[STACK] = {{0, 0, tree->patch->faces.face_count}};
+    int32_t lowest = INT32_MAX, holding = -1;
     for (int top = 1; top > 0;) {
         range r = stack[--top];
         const node *box = &tree->nodes[r.node];
@@ -163,14 +163,14 @@ bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_locati
         }
         for (int32_t i = r.begin; i < r.end; i++) {
             int32_t face = tree->keys[i].face;
-            int32_t triangle = face < lowest ? ss_fan_holding(tree->faces, face, tree->uv, p) : -1;
-            if (triangle >= 0) {
-                lowest = face;
-                *out = (ss_location){face, triangle, {p[0], p[1]}};
-            }
+            int32_t triangle = face < lowest ? ss_triangle_holding(tree->patch, face, tree->uv, p) : -1;
+            if (triangle >= 0)
+                lowest = face, holding = triangle;
         }
     }
-    return lowest != INT32_MAX;
+    if (holding >= 0)
+        ss_place_at(tree->patch, tree->uv, holding, p, out);
+    return holding >= 0;
 }
 
 double ss_nearest_on_side(const ss_faces *faces, const double (*uv)[2], int32_t corner, const double p[2], double out[2]) {
@@ -193,29 +193,33 @@ static double box_distance(const node *box, const double p[2]) {
     return square;
 }
 
-static void nearest_on_face(const ss_face_tree *tree, int32_t face, const double p[2], double *best, ss_location *out) {
-    for (int32_t c = tree->faces->face_start[face]; c < tree->faces->face_start[face + 1]; c++) {
-        double at[2], square = ss_nearest_on_side(tree->faces, tree->uv, c, p, at);
-        if (square < *best || (square == *best && face < out->face)) {
-            *best = square;
-            *out = (ss_location){face, ss_fan_of_side(tree->faces, c), {at[0], at[1]}};
-        }
+/* The nearest side so far. */
+typedef struct nearest {
+    int32_t face, corner;
+    double square, at[2]; /* of the distance; the point on it */
+} nearest;
+
+static void nearest_on_face(const ss_face_tree *tree, int32_t face, const double p[2], nearest *best) {
+    for (int32_t c = tree->patch->faces.face_start[face]; c < tree->patch->faces.face_start[face + 1]; c++) {
+        double at[2], square = ss_nearest_on_side(&tree->patch->faces, tree->uv, c, p, at);
+        if (square < best->square || (square == best->square && face < best->face))
+            *best = (nearest){face, c, square, {at[0], at[1]}};
     }
 }
 
-double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_location *out) {
-    range stack[STACK] = {{0, 0, tree->faces->face_count}};
-    double best = INFINITY;
-    out->face = INT32_MAX;
+double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_place *out) {
+    range stack[STACK] = {{0, 0, tree->patch->faces.face_count}};
+    nearest best = {.face = INT32_MAX, .square = INFINITY};
     for (int top = 1; top > 0;) {
         range r = stack[--top];
-        if (box_distance(&tree->nodes[r.node], p) > best)
+        if (box_distance(&tree->nodes[r.node], p) > best.square)
             continue;
         if (r.end - r.begin > LEAF)
             top = push_children(stack, top, r);
         else
             for (int32_t i = r.begin; i < r.end; i++)
-                nearest_on_face(tree, tree->keys[i].face, p, &best, out);
+                nearest_on_face(tree, tree->keys[i].face, p, &best);
     }
-    return sqrt(best);
+    ss_place_at(tree->patch, tree->uv, ss_triangle_of_side(tree->patch, best.corner), best.at, out);
+    return sqrt(best.square);
 }

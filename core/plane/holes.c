@@ -42,51 +42,30 @@ static void join_caps(const ss_patch *patch, const float *rest_points, int32_t (
     }
 }
 
-/* uv [vertices and caps]: embedded with the outer loop alone held. */
-static skinslide_status embed_capped(const ss_net *net, const double *density, const char *label, double (*uv)[2],
-                                     skinslide_error *error) {
-    ss_system *system = NULL;
-    ss_factor *factor = NULL;
-    skinslide_status status = ss_system_create(net, label, &system, error);
-    if (!status)
-        status = ss_factor_create(system, &factor, error);
-    if (!status)
-        status = ss_embed(system, factor, density, uv, error);
-    ss_factor_destroy(factor);
-    ss_system_destroy(system);
-    return status;
-}
-
-/* Whether the loops of holes have a place: the relaxed rule's plane holds them, free or not. */
-static bool holds_holes(const ss_patch *patch) {
-    return patch->loop_count > 1 &&
-           (patch->setup->holes == SKINSLIDE_HOLES_PINNED || patch->setup->rule == SKINSLIDE_RULE_RELAXED);
-}
-
-skinslide_status ss_place_holes(ss_patch *patch, const float *rest_points, skinslide_error *error) {
-    if (!holds_holes(patch))
-        return SKINSLIDE_OK;
+skinslide_status ss_place_holes(const ss_patch *patch, const float *rest_points, double (*uv)[2], skinslide_error *error) {
     int32_t holes = patch->loop_count - 1, vertices = patch->vertex_count + holes;
     int32_t spokes = patch->loop_start[patch->loop_count] - patch->loop_start[1];
     int32_t edge_count = patch->faces.edge_count + spokes;
+    if (holes == 0)
+        return SKINSLIDE_OK;
     ss_memory memory = {0};
     int32_t(*edges)[2] = ss_new(&memory, edge_count, sizeof *edges);
     double *density = SS_NEW(&memory, double, edge_count);
     uint8_t *fixed = SS_NEW(&memory, uint8_t, vertices);
-    double(*uv)[2] = ss_new(&memory, vertices, sizeof *uv);
+    double(*capped)[2] = ss_new(&memory, vertices, sizeof *capped);
     skinslide_status status = memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
         join_caps(patch, rest_points, edges, density);
         for (int32_t v = 0; v < patch->vertex_count; v++) {
             fixed[v] = patch->vertex_loop[v] == 0;
-            uv[v][0] = patch->fixed_uv[v][0], uv[v][1] = patch->fixed_uv[v][1];
+            capped[v][0] = uv[v][0], capped[v][1] = uv[v][1];
         }
         ss_net net = {vertices, edge_count, (const int32_t(*)[2])edges, fixed};
-        status = embed_capped(&net, density, patch->label, uv, error);
+        status = ss_embed_once(&net, patch->label, density, capped, error);
     }
     for (int32_t v = 0; v < patch->vertex_count && !status; v++)
         if (patch->vertex_loop[v] > 0)
-            patch->fixed_uv[v][0] = uv[v][0], patch->fixed_uv[v][1] = uv[v][1];
+            uv[v][0] = capped[v][0], uv[v][1] = capped[v][1];
     ss_free(&memory);
     return status;
 }

@@ -4,13 +4,13 @@
 #include <float.h>
 #include <math.h>
 
-int32_t ss_fan_holding(const ss_faces *faces, int32_t face, const double (*uv)[2], const double p[2]) {
-    for (int32_t t = 0; t < ss_fan_size(faces, face); t++) {
+int32_t ss_triangle_holding(const ss_patch *patch, int32_t face, const double (*uv)[2], const double p[2]) {
+    for (int32_t t = 0; t < ss_fan_size(&patch->faces, face); t++) {
         int32_t v[3];
-        ss_fan(faces, face, t, v);
+        ss_fan(&patch->faces, face, t, v);
         const double *a = uv[v[0]], *b = uv[v[1]], *c = uv[v[2]];
         if (ss_orient(a, b, p) >= 0 && ss_orient(b, c, p) >= 0 && ss_orient(c, a, p) >= 0 && ss_orient(a, b, c) > 0)
-            return t;
+            return patch->triangles.first_triangle[face] + t;
     }
     return -1;
 }

@@ -32,7 +32,7 @@ skinslide_status ss_locator_create(const ss_patch *patch, ss_locator **out, skin
     locator->seen = SS_NEW(&locator->memory, uint8_t, patch->faces.face_count);
     skinslide_status status = locator->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_face_tree_create(&patch->faces, &locator->tree, error);
+        status = ss_face_tree_create(patch, &locator->tree, error);
     if (status)
         ss_locator_destroy(locator);
     else
@@ -131,25 +131,26 @@ static int32_t gather_touching(ss_locator *locator, int32_t face, const double p
 }
 
 /* The lowest face with area that holds p, given one that does. */
-static bool settle(ss_locator *locator, int32_t face, const double p[2], bool on_border, ss_location *out) {
-    int32_t count = 1;
+static bool settle(ss_locator *locator, int32_t face, const double p[2], bool on_border, ss_place *out) {
+    int32_t count = 1, lowest = INT32_MAX, holding = -1;
     locator->stack[0] = face;
     if (on_border)
         count = gather_touching(locator, face, p);
-    out->face = INT32_MAX;
     for (int32_t i = 0; i < count; i++) {
         int32_t candidate = locator->stack[i];
-        int32_t triangle = candidate < out->face ? ss_fan_holding(&locator->patch->faces, candidate, locator->uv, p) : -1;
+        int32_t triangle = candidate < lowest ? ss_triangle_holding(locator->patch, candidate, locator->uv, p) : -1;
         if (triangle >= 0)
-            *out = (ss_location){candidate, triangle, {p[0], p[1]}};
+            lowest = candidate, holding = triangle;
     }
-    return out->face != INT32_MAX;
+    if (holding >= 0)
+        ss_place_at(locator->patch, locator->uv, holding, p, out);
+    return holding >= 0;
 }
 
 /* ---- What a texture proposed ---- */
 
 /* The place in the candidates of the first that holds p, with its answer; -1 where none does. Faces are convex. */
-static int32_t try_candidates(ss_locator *locator, const ss_candidates *candidates, const double p[2], ss_location *out) {
+static int32_t try_candidates(ss_locator *locator, const ss_candidates *candidates, const double p[2], ss_place *out) {
     for (int32_t k = 0; candidates && k < SS_CANDIDATES; k++) {
         bool on_border;
         int32_t face = (*candidates)[k];
@@ -163,7 +164,7 @@ static int32_t try_candidates(ss_locator *locator, const ss_candidates *candidat
 
 /* ---- What the walk cannot reach ---- */
 
-static void search(ss_locator *locator, const double p[2], ss_location *out, ss_located *located) {
+static void search(ss_locator *locator, const double p[2], ss_place *out, ss_located *located) {
     if (!locator->tree_built)
         ss_face_tree_build(locator->tree, locator->uv);
     locator->tree_built = true;
@@ -172,43 +173,49 @@ static void search(ss_locator *locator, const double p[2], ss_location *out, ss_
         located->clamped += ss_face_tree_nearest(locator->tree, p, out) > 0;
 }
 
-/* Puts *out on side i of the loop's sides, counted round it, where that is nearer to p; returns whether it was. */
-static bool try_side(const ss_locator *locator, int32_t loop, int32_t i, const double p[2], double *nearest, ss_location *out) {
+/* A point on the border. */
+typedef struct border_point {
+    int32_t corner;       /* that its side begins at */
+    double at[2], square; /* of the distance */
+} border_point;
+
+/* Side i of the loop's sides, counted round it, where that is nearer to p; returns whether it was. */
+static bool try_side(const ss_locator *locator, int32_t loop, int32_t i, const double p[2], border_point *nearest) {
     const ss_patch *patch = locator->patch;
     int32_t begin = patch->loop_start[loop], count = patch->loop_start[loop + 1] - begin;
     int32_t corner = patch->vertex_corner[patch->loop_vertex[begin + (i % count + count) % count]];
     double at[2], square = ss_nearest_on_side(&patch->faces, locator->uv, corner, p, at);
-    if (square >= *nearest)
+    if (square >= nearest->square)
         return false;
-    *nearest = square;
-    *out = (ss_location){patch->faces.corner_face[corner], ss_fan_of_side(&patch->faces, corner), {at[0], at[1]}};
+    *nearest = (border_point){corner, {at[0], at[1]}, square};
     return true;
 }
 
 /* A vertex on a free loop slides along it, from its own sides one way or the other for as long as that is nearer to p: it never
  * jumps across the hole. */
-static void slide_on_loop(const ss_locator *locator, int32_t vertex, const double p[2], ss_location *out) {
+static void slide_on_loop(const ss_locator *locator, int32_t vertex, const double p[2], ss_place *out) {
     const ss_patch *patch = locator->patch;
     int32_t loop = patch->vertex_loop[vertex], own = patch->loop_place[vertex] - patch->loop_start[loop];
-    double nearest = INFINITY;
-    try_side(locator, loop, own, p, &nearest, out);
-    int32_t way = try_side(locator, loop, own - 1, p, &nearest, out) ? -1 : 1;
+    border_point nearest = {.square = INFINITY};
+    try_side(locator, loop, own, p, &nearest);
+    int32_t way = try_side(locator, loop, own - 1, p, &nearest) ? -1 : 1;
     int32_t next = way < 0 ? own - 2 : own + 1;
-    while (try_side(locator, loop, next, p, &nearest, out))
+    while (try_side(locator, loop, next, p, &nearest))
         next += way;
+    ss_place_at(patch, locator->uv, ss_triangle_of_side(patch, nearest.corner), nearest.at, out);
 }
 
 /* ---- All queries ---- */
 
 static void locate_one(ss_locator *locator, int32_t i, bool regular, const double p[2], const ss_candidates *candidates,
-                       ss_location *out, ss_located *located) {
+                       ss_place *out, ss_located *located) {
     const ss_patch *patch = locator->patch;
     int32_t vertex = patch->free_vertex[i], own_face = patch->faces.corner_face[patch->vertex_corner[vertex]];
     int32_t before = patch->free_before[i], start = before < 0 ? own_face : locator->landed[before];
     bool on_border;
     locator->landed[i] = own_face;
     if (p[0] == locator->uv[vertex][0] && p[1] == locator->uv[vertex][1]) {
-        *out = (ss_location){SS_STAYS, 0, {p[0], p[1]}};
+        *out = ss_place_staying(p);
         return;
     }
     if (patch->vertex_loop[vertex] >= 0) {
@@ -223,15 +230,15 @@ static void locate_one(ss_locator *locator, int32_t i, bool regular, const doubl
     located->walked += walked;
     if (candidate < 0 && !walked)
         search(locator, p, out, located);
-    locator->landed[i] = out->face;
+    locator->landed[i] = patch->triangles.face[out->triangle];
 }
 
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
-                     const ss_candidates *candidates, ss_location *locations) {
+                     const ss_candidates *candidates, ss_place *places) {
     ss_located located = {0};
     locator->uv = uv;
     locator->tree_built = false;
     for (int32_t i = 0; i < locator->patch->free_count; i++)
-        locate_one(locator, i, regular, query[i], candidates ? &candidates[i] : NULL, &locations[i], &located);
+        locate_one(locator, i, regular, query[i], candidates ? &candidates[i] : NULL, &places[i], &located);
     return located;
 }

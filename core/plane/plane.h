@@ -2,8 +2,9 @@
 #ifndef SKINSLIDE_PLANE_H
 #define SKINSLIDE_PLANE_H
 
+#include "device.h"
 #include "linear.h"
-#include "patch.h"
+#include "rule.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -16,8 +17,9 @@ int ss_orient(const double a[2], const double b[2], const double c[2]);
 
 /* ---- boundary.c ---- */
 
-/* fixed_uv of the outer loop. */
-skinslide_status ss_place_boundary(ss_patch *patch, const float *rest_points, skinslide_error *error);
+/* Puts the outer loop into uv [vertex_count][2]. Names the artist's corner that cannot be one. */
+skinslide_status ss_place_boundary(const ss_patch *patch, skinslide_boundary boundary, const float *rest_points,
+                                   double (*uv)[2], skinslide_error *error);
 /* Whether the set-up's corners, where it has them, are this patch's: of several pieces, those of the one that has all four. */
 bool ss_has_corners(const ss_patch *patch);
 /* (cos, sin) of turns of a full circle, turns in [0,1): plain arithmetic only, so the same bits everywhere. */
@@ -25,34 +27,29 @@ void ss_circle(double turns, double out[2]);
 
 /* ---- holes.c ---- */
 
-/* fixed_uv of the loops of holes, where they fall with every hole capped: where they are pinned, or the rule is relaxed. The
- * outer loop has its places. */
-skinslide_status ss_place_holes(ss_patch *patch, const float *rest_points, skinslide_error *error);
+/* Puts the loops of holes into uv [vertex_count][2], whose outer loop is there: where they fall with every hole capped. */
+skinslide_status ss_place_holes(const ss_patch *patch, const float *rest_points, double (*uv)[2], skinslide_error *error);
 
 /* ---- density.c ---- */
 
-/* Values of controls: names the mesh element whose value is not one. */
-skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
-                                   skinslide_error *error);
-/* The painted multiplier of every edge: [edge_count]. Controls are checked. */
-void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double *paint);
-/* Force density of every edge by the patch's rule, times paint. */
+/* Force density of every edge by the patch's rule, times paint, NULL for 1. */
 void ss_force_density(const ss_patch *patch, const double *lengths, const double *paint, double *density);
-/* weight times envelope of every free vertex, in their order: [free_count]. Returns how many values were outside 0..1. */
-int32_t ss_slide_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
-/* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */
-bool ss_slide_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits);
 
 /* ---- embed.c ---- */
 
+/* The edges of a patch; fixed is [vertex_count]. Both must live as long. */
+ss_net ss_net_of(const ss_patch *patch, const uint8_t *fixed);
 /* Solves for the free vertices of uv [vertex_count][2], whose fixed ones are given. density is [edge_count], > 0. */
 skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
                           skinslide_error *error);
+/* The same for a system that is not needed again; label begins messages. */
+skinslide_status ss_embed_once(const ss_net *net, const char *label, const double *density, double (*uv)[2],
+                               skinslide_error *error);
 
 /* ---- layout.c: how the faces of an embedding lie ---- */
 
-/* The first triangle of the fan that turns left and holds p, its border included; -1 where none does. */
-int32_t ss_fan_holding(const ss_faces *faces, int32_t face, const double (*uv)[2], const double p[2]);
+/* The first triangle of the face that turns left and holds p, its border included; -1 where none does. */
+int32_t ss_triangle_holding(const ss_patch *patch, int32_t face, const double (*uv)[2], const double p[2]);
 
 typedef struct ss_layout {
     int32_t folded;    /* faces turned over by more than the rounding of their corners */
@@ -64,28 +61,15 @@ ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]);
 
 /* ---- locate.c, facetree.c ---- */
 
-enum { SS_CANDIDATES = 9 };
-
-/* Faces of the texels around a query: that of its own texel or -1, then the other distinct ones, then -1. */
-typedef int32_t ss_candidates[SS_CANDIDATES];
-
-#define SS_STAYS (-1)
-
-typedef struct ss_location {
-    int32_t face;     /* patch face, or SS_STAYS: the vertex keeps its place */
-    int32_t triangle; /* of the face's fan */
-    double uv[2];     /* in that triangle */
-} ss_location;
-
 typedef struct ss_face_tree ss_face_tree; /* faces of an embedding by place */
-skinslide_status ss_face_tree_create(const ss_faces *faces, ss_face_tree **out, skinslide_error *error);
+skinslide_status ss_face_tree_create(const ss_patch *patch, ss_face_tree **out, skinslide_error *error);
 void ss_face_tree_destroy(ss_face_tree *tree);
 /* uv is read by the queries that follow, too. */
 void ss_face_tree_build(ss_face_tree *tree, const double (*uv)[2]);
 /* The lowest face that holds p, its border included; false where none does. */
-bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_location *out);
+bool ss_face_tree_holding(const ss_face_tree *tree, const double p[2], ss_place *out);
 /* The point nearest to p on the sides of the faces, of the lowest face where several are as near. Returns the distance. */
-double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_location *out);
+double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_place *out);
 /* The point of the side that begins at a corner nearest to p. Returns the distance squared. */
 double ss_nearest_on_side(const ss_faces *faces, const double (*uv)[2], int32_t corner, const double p[2], double out[2]);
 
@@ -101,20 +85,23 @@ typedef struct ss_locator ss_locator;
 skinslide_status ss_locator_create(const ss_patch *patch, ss_locator **out, skinslide_error *error);
 void ss_locator_destroy(ss_locator *locator);
 /* Looks up query [free_count][2], in the order of free_vertex, in the faces of uv. candidates [free_count], or NULL, are only
- * a help: any faces at all give the same locations. They are not looked at where the layout is not regular. */
+ * a help: any faces at all give the same places. They are not looked at where the layout is not regular. */
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
-                     const ss_candidates *candidates, ss_location *locations);
+                     const ss_candidates *candidates, ss_place *places);
 
 /* ---- interpolate.c ---- */
 
 /* The displacement of every free vertex, in their order, from its own place to where it is looked up. points is the whole
  * mesh's; weights is scratch [largest face]. */
-void ss_interpolate(const ss_patch *patch, const double (*uv)[2], const ss_location *locations, const float *points,
-                    double *weights, double (*displacement)[3]);
-/* Weights, which sum to 1, of the corners of the location's triangle, and of its face: false where a polygon that turned over
- * leaves the latter without meaning. */
-void ss_linear_weights(const ss_faces *faces, const double (*uv)[2], const ss_location *location, double weights[3]);
-bool ss_mean_value_weights(const ss_faces *faces, const double (*uv)[2], const ss_location *location, double *weights);
+void ss_interpolate(const ss_patch *patch, const double (*uv)[2], const ss_place *places, const float *points, double *weights,
+                    double (*displacement)[3]);
+/* Weights, which sum to 1, of a polygon's corners [count], vertices of uv, at a point: false where a polygon that turned over
+ * leaves them without meaning. */
+bool ss_mean_value_weights(const double (*uv)[2], const int32_t *corners, int32_t count, const double p[2], double *weights);
+
+/* ---- plane.c ---- */
+
+extern const ss_rule ss_plane_rule; /* UNIT and FAST */
 
 #ifdef __cplusplus
 }

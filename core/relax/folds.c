@@ -8,7 +8,7 @@
 #define LEAST_KEPT 0.2  /* by one step, of what a face has more than that */
 
 static const int32_t *corners_of(const ss_relaxer *relaxer, int32_t face, int32_t *count) {
-    const ss_faces *faces = &relaxer->chart->triangles->patch->faces;
+    const ss_faces *faces = &relaxer->chart->patch->faces;
     *count = ss_fan_size(faces, face) + 2;
     return faces->corner_vertex + faces->face_start[face];
 }
@@ -49,7 +49,7 @@ static void add_face(ss_relaxer *relaxer, int32_t face, double r) {
 }
 
 void ss_fold_model(ss_relaxer *relaxer) {
-    for (int32_t f = 0; f < relaxer->chart->triangles->patch->faces.face_count; f++) {
+    for (int32_t f = 0; f < relaxer->chart->patch->faces.face_count; f++) {
         double rest = relaxer->chart->area[f], r = rest > 0 ? area_now(relaxer, f) / rest : 1;
         if (r > 0 && r < LOW_AREA)
             add_face(relaxer, f, r);
@@ -87,7 +87,7 @@ static double face_reach(const ss_relaxer *relaxer, int32_t face) {
 /* Each vertex goes about as far as its faces let all go together, (1 + sum r^-4)^-1/4 of the step: a smooth minimum of the
  * whole and of the r of its faces. Then all go as far as the shortened steps let them. */
 void ss_limit_steps(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     double all = 1;
     for (int32_t v = 0; v < patch->vertex_count; v++)
         relaxer->reach[v] = 1;
@@ -115,13 +115,12 @@ bool ss_has_turned(const ss_relaxer *relaxer, int32_t face) {
 
 /* ---- The result ---- */
 
-int32_t ss_count_turned(ss_relaxer *relaxer, const ss_location *locations) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+int32_t ss_count_turned(ss_relaxer *relaxer, const ss_place *places) {
+    const ss_patch *patch = relaxer->chart->patch;
     int32_t turned = 0;
     for (int32_t i = 0; i < patch->free_count; i++) {
-        int32_t v = patch->free_vertex[i];
-        for (int k = 0; k < 2; k++)
-            relaxer->uv[v][k] = locations[i].face == SS_STAYS ? relaxer->chart->uv[v][k] : locations[i].uv[k];
+        double *uv = relaxer->uv[patch->free_vertex[i]];
+        uv[0] = places[i].uv[0], uv[1] = places[i].uv[1];
     }
     for (int32_t f = 0; f < patch->faces.face_count; f++)
         turned += relaxer->chart->area[f] > 0 && area_now(relaxer, f) <= 0;

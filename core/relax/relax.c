@@ -27,20 +27,20 @@ skinslide_status ss_relaxer_create(const ss_chart *chart, const ss_system *syste
     if (!relaxer)
         return ss_out_of_memory(error);
     ss_memory *memory = &relaxer->memory;
-    int32_t vertices = chart->triangles->patch->vertex_count;
+    int32_t vertices = chart->patch->vertex_count;
     relaxer->chart = chart;
     relaxer->point = ss_new(memory, vertices, sizeof *relaxer->point);
     relaxer->gradient = ss_new(memory, vertices, sizeof *relaxer->gradient);
-    relaxer->site = SS_NEW(memory, ss_site, vertices);
-    relaxer->before = SS_NEW(memory, ss_site, vertices);
+    relaxer->place = SS_NEW(memory, ss_place, vertices);
+    relaxer->before = SS_NEW(memory, ss_place, vertices);
     relaxer->uv = ss_new(memory, vertices, sizeof *relaxer->uv);
-    relaxer->place = ss_new(memory, vertices, sizeof *relaxer->place);
+    relaxer->at = ss_new(memory, vertices, sizeof *relaxer->at);
     relaxer->way = ss_new(memory, vertices, sizeof *relaxer->way);
     relaxer->axis = ss_new(memory, vertices, sizeof *relaxer->axis);
     relaxer->slope = ss_new(memory, vertices, sizeof *relaxer->slope);
     relaxer->step = ss_new(memory, vertices, sizeof *relaxer->step);
     relaxer->reach = SS_NEW(memory, double, vertices);
-    relaxer->rest_paint = SS_NEW(memory, double, chart->triangles->patch->faces.edge_count);
+    relaxer->rest_paint = SS_NEW(memory, double, chart->patch->faces.edge_count);
     skinslide_status status = memory->failed ? ss_out_of_memory(error) : ss_blocks_create(system, &relaxer->blocks, error);
     if (!status)
         status = ss_blocks_create(system, &relaxer->rest, error);
@@ -63,40 +63,40 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
 /* ---- Where vertices are ---- */
 
 /* How the place moves with u and v: blended from the gradients of the triangle's vertices. */
-static void blend_gradient(const ss_relaxer *relaxer, const ss_site *site, double out[2][3]) {
-    const int32_t *v = relaxer->chart->triangles->vertex[site->triangle];
+static void blend_gradient(const ss_relaxer *relaxer, const ss_place *place, double out[2][3]) {
+    const int32_t *v = relaxer->chart->patch->triangles.vertex[place->triangle];
     memset(out, 0, sizeof(double[2][3]));
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 2; k++)
-            ss_add(site->weight[j], relaxer->gradient[v[j]][k], out[k]);
+            ss_add(place->weight[j], relaxer->gradient[v[j]][k], out[k]);
 }
 
 /* How far the place on the rounded surface is above that on the triangle, along the normal: halfway to where the planes that
  * touch the surface at the triangle's vertices average, as in Phong tessellation (Boubekeur and Alexa 2008). */
 static void lift(const ss_relaxer *relaxer, int32_t vertex, double out[3]) {
-    const ss_site *site = &relaxer->site[vertex];
-    const int32_t *v = relaxer->chart->triangles->vertex[site->triangle];
+    const ss_place *place = &relaxer->place[vertex];
+    const int32_t *v = relaxer->chart->patch->triangles.vertex[place->triangle];
     double off[3] = {0, 0, 0}, gradient[2][3], normal[3];
-    blend_gradient(relaxer, site, gradient);
+    blend_gradient(relaxer, place, gradient);
     ss_cross(gradient[0], gradient[1], normal);
     ss_normalise(normal);
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 2; k++)
-            ss_add(site->weight[j] * (relaxer->uv[vertex][k] - relaxer->chart->uv[v[j]][k]), relaxer->gradient[v[j]][k], off);
+            ss_add(place->weight[j] * (relaxer->uv[vertex][k] - relaxer->chart->uv[v[j]][k]), relaxer->gradient[v[j]][k], off);
     ss_add(0.5 * ss_dot(off, normal), normal, out);
 }
 
 /* A vertex that has not moved has its place in the cache, to the bit. */
 static void set_place(ss_relaxer *relaxer, int32_t vertex) {
-    const ss_site *site = &relaxer->site[vertex];
-    const int32_t *v = relaxer->chart->triangles->vertex[site->triangle];
-    int corner = ss_site_corner(site);
-    ss_site_blend(relaxer->chart->triangles, site, relaxer->chart->uv, relaxer->uv[vertex]);
-    memset(relaxer->place[vertex], 0, sizeof relaxer->place[vertex]);
+    const ss_place *place = &relaxer->place[vertex];
+    const int32_t *v = relaxer->chart->patch->triangles.vertex[place->triangle];
+    int corner = ss_place_corner(place);
+    ss_place_in_plane(relaxer->chart->patch, relaxer->chart->uv, place, relaxer->uv[vertex]);
+    memset(relaxer->at[vertex], 0, sizeof relaxer->at[vertex]);
     for (int j = 0; j < 3; j++)
-        ss_add(site->weight[j], relaxer->point[v[j]], relaxer->place[vertex]);
+        ss_add(place->weight[j], relaxer->point[v[j]], relaxer->at[vertex]);
     if (corner < 0)
-        lift(relaxer, vertex, relaxer->place[vertex]);
+        lift(relaxer, vertex, relaxer->at[vertex]);
 }
 
 /* The ways are those of u and v; of a vertex of a free loop, that along it. */
@@ -105,11 +105,11 @@ static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
     memset(way, 0, sizeof relaxer->way[vertex]);
     memset(axis, 0, sizeof relaxer->axis[vertex]);
     way[0][0] = way[1][1] = 1;
-    if (relaxer->chart->triangles->patch->vertex_loop[vertex] >= 0) {
-        ss_site_border(&relaxer->chart->plane, &relaxer->site[vertex], border);
+    if (relaxer->chart->patch->vertex_loop[vertex] >= 0) {
+        ss_border_way(&relaxer->chart->plane, &relaxer->place[vertex], border);
         way[0][0] = border[0], way[0][1] = border[1], way[1][1] = 0;
     }
-    blend_gradient(relaxer, &relaxer->site[vertex], gradient);
+    blend_gradient(relaxer, &relaxer->place[vertex], gradient);
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 2; k++)
             ss_add(way[i][k], gradient[k], axis[i]);
@@ -117,11 +117,11 @@ static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
 
 /* The cache. */
 static void start(ss_relaxer *relaxer, const float *points) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     ss_take_points(patch, points, relaxer->point);
     ss_chart_gradient(relaxer->chart, (const double(*)[3])relaxer->point, relaxer->gradient);
     for (int32_t v = 0; v < patch->vertex_count; v++) {
-        relaxer->site[v] = ss_site_of_vertex(relaxer->chart->triangles, v);
+        relaxer->place[v] = ss_place_of_vertex(relaxer->chart->patch, relaxer->chart->uv, v);
         relaxer->step[v][0] = relaxer->step[v][1] = 0;
         set_place(relaxer, v);
     }
@@ -131,7 +131,7 @@ static void start(ss_relaxer *relaxer, const float *points) {
 
 /* Empties the blocks. The second unknown of a vertex of a free loop, which does nothing, gets a stiffness. */
 static void clear(const ss_relaxer *relaxer, ss_blocks *blocks) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     ss_blocks_clear(blocks);
     for (int32_t i = 0; i < patch->free_count; i++)
         if (patch->vertex_loop[patch->free_vertex[i]] >= 0)
@@ -140,7 +140,7 @@ static void clear(const ss_relaxer *relaxer, ss_blocks *blocks) {
 
 /* Turns forces into the step, whole. Returns what the model says it lowers E by. */
 static double solve(ss_relaxer *relaxer, ss_blocks *blocks) {
-    int32_t count = relaxer->chart->triangles->patch->free_count;
+    int32_t count = relaxer->chart->patch->free_count;
     double lowers = 0;
     memcpy(relaxer->slope, blocks->right, (size_t)count * sizeof *blocks->right);
     ss_blocks_solve(blocks);
@@ -151,7 +151,7 @@ static double solve(ss_relaxer *relaxer, ss_blocks *blocks) {
 
 /* The first step: its matrix is the same in every frame with the same paint. */
 static double solve_rest(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     size_t bytes = (size_t)patch->faces.edge_count * sizeof *relaxer->rest_paint;
     if (memcmp(relaxer->rest_paint, relaxer->paint, bytes) != 0) {
         memset(relaxer->rest_paint, 0, bytes);
@@ -177,24 +177,24 @@ static void walk(ss_relaxer *relaxer, int32_t vertex) {
     const ss_posed *plane = &relaxer->chart->plane;
     const double *step = relaxer->step[vertex], *own = relaxer->uv[vertex], *way = relaxer->way[vertex][0];
     double goal[2] = {own[0] + step[0], own[1] + step[1]};
-    relaxer->before[vertex] = relaxer->site[vertex];
-    if (relaxer->chart->triangles->patch->vertex_loop[vertex] >= 0)
-        ss_site_walk_border(plane, &relaxer->site[vertex], step[0] * way[0] + step[1] * way[1]);
+    relaxer->before[vertex] = relaxer->place[vertex];
+    if (relaxer->chart->patch->vertex_loop[vertex] >= 0)
+        ss_walk_border(plane, &relaxer->place[vertex], step[0] * way[0] + step[1] * way[1]);
     else
-        ss_site_walk(plane, &relaxer->site[vertex], goal);
+        ss_walk(plane, &relaxer->place[vertex], goal);
     set_place(relaxer, vertex);
 }
 
 /* Puts the free vertices of a face back to where they were before the step. Returns whether any was elsewhere. */
 static bool put_back(ss_relaxer *relaxer, int32_t face) {
-    const ss_faces *faces = &relaxer->chart->triangles->patch->faces;
+    const ss_faces *faces = &relaxer->chart->patch->faces;
     bool any = false;
     for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++) {
         int32_t v = faces->corner_vertex[c];
         if (relaxer->step[v][0] == 0 && relaxer->step[v][1] == 0)
             continue;
         relaxer->step[v][0] = relaxer->step[v][1] = 0;
-        relaxer->site[v] = relaxer->before[v];
+        relaxer->place[v] = relaxer->before[v];
         set_place(relaxer, v);
         any = true;
     }
@@ -204,7 +204,7 @@ static bool put_back(ss_relaxer *relaxer, int32_t face) {
 /* Takes a part of the step found. Steps are limited so that no face turns over, but walks end at holes: a face that turns over
  * for that goes back, and so on, until none is left. */
 static void take(ss_relaxer *relaxer, const ss_blocks *found, double part) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         int32_t v = patch->free_vertex[i];
         const double *along = found->right[ss_blocks_unknown(found, v)];
@@ -231,23 +231,25 @@ static double ease(double lowers) {
 }
 
 static bool stays(const ss_relaxer *relaxer, int32_t vertex) {
-    const ss_site *site = &relaxer->site[vertex];
-    int corner = ss_site_corner(site);
-    return corner >= 0 && relaxer->chart->triangles->vertex[site->triangle][corner] == vertex;
+    const ss_place *place = &relaxer->place[vertex];
+    int corner = ss_place_corner(place);
+    return corner >= 0 && relaxer->chart->patch->triangles.vertex[place->triangle][corner] == vertex;
 }
 
-static void write_locations(const ss_relaxer *relaxer, ss_location *locations) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+static void write_places(const ss_relaxer *relaxer, ss_place *places) {
+    const ss_patch *patch = relaxer->chart->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         int32_t v = patch->free_vertex[i];
-        locations[i] = ss_site_location(relaxer->chart->triangles, &relaxer->site[v], relaxer->chart->uv);
+        places[i] = relaxer->place[v];
         if (stays(relaxer, v))
-            locations[i].face = SS_STAYS;
+            places[i] = ss_place_staying(relaxer->chart->uv[v]);
+        else
+            ss_place_settle(patch, relaxer->chart->uv, &places[i]);
     }
 }
 
-int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, ss_location *locations) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, ss_place *places) {
+    const ss_patch *patch = relaxer->chart->patch;
     int32_t steps = 0;
     double part = 1;
     relaxer->paint = paint;
@@ -262,6 +264,6 @@ int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, 
             break;
         take(relaxer, steps == 0 ? relaxer->rest : relaxer->blocks, part);
     }
-    write_locations(relaxer, locations);
+    write_places(relaxer, places);
     return steps;
 }

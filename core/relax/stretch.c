@@ -23,14 +23,14 @@ static bool counts(const ss_patch *patch, int32_t edge) {
 
 /* From the first end to the second. */
 static double edge_vector(const ss_relaxer *relaxer, int32_t edge, double out[3]) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
-    ss_subtract(relaxer->place[patch->edge_vertex[edge][1]], relaxer->place[patch->edge_vertex[edge][0]], out);
+    const ss_patch *patch = relaxer->chart->patch;
+    ss_subtract(relaxer->at[patch->edge_vertex[edge][1]], relaxer->at[patch->edge_vertex[edge][0]], out);
     double length = ss_length(out);
     return length < patch->shortest ? patch->shortest : length;
 }
 
 double ss_stretch_energy(const ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     double sum = 0, vector[3];
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         double stretch = log(edge_vector(relaxer, e, vector) / patch->rest_length[e]);
@@ -50,7 +50,7 @@ typedef struct edge_model {
 } edge_model;
 
 static void set_springs(const ss_relaxer *relaxer, int32_t edge, edge_model *model) {
-    const int32_t *v = relaxer->chart->triangles->patch->edge_vertex[edge];
+    const int32_t *v = relaxer->chart->patch->edge_vertex[edge];
     const double(*uv)[2] = (const double(*)[2])relaxer->uv, (*own)[2] = relaxer->chart->uv;
     double spring = relaxer->paint[edge] * relaxer->chart->inverse_square[edge];
     model->spring = (HOLD + DAMPING) * spring;
@@ -64,7 +64,7 @@ static double positive(double x) {
 }
 
 static edge_model model_edge(const ss_relaxer *relaxer, int32_t edge) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     edge_model model;
     double vector[3], weight = relaxer->paint[edge], length = edge_vector(relaxer, edge, vector);
     double stretch = log(length / patch->rest_length[edge]), stiff = weight / (length * length);
@@ -79,7 +79,7 @@ static edge_model model_edge(const ss_relaxer *relaxer, int32_t edge) {
 }
 
 static edge_model model_rest_edge(const ss_relaxer *relaxer, int32_t edge) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     edge_model model;
     double vector[3], weight = relaxer->paint[edge];
     model.across = 0, model.more = weight;
@@ -100,7 +100,7 @@ static double way_dot(const double a[2], const double b[2]) {
 
 static void add_forces(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t edge, const edge_model *model) {
     for (int end = 0; end < 2; end++) {
-        int32_t v = relaxer->chart->triangles->patch->edge_vertex[edge][end], unknown = ss_blocks_unknown(blocks, v);
+        int32_t v = relaxer->chart->patch->edge_vertex[edge][end], unknown = ss_blocks_unknown(blocks, v);
         for (int j = 0; j < 2 && unknown >= 0; j++)
             blocks->right[unknown][j] -=
                 model->pull * model->slope[end][j] + (end ? 1 : -1) * way_dot(relaxer->way[v][j], model->hold);
@@ -121,7 +121,7 @@ static void add_own(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t vertex
 }
 
 static void add_stiffness(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t edge, const edge_model *model) {
-    const int32_t *v = relaxer->chart->triangles->patch->edge_vertex[edge];
+    const int32_t *v = relaxer->chart->patch->edge_vertex[edge];
     bool first_is_row;
     add_own(relaxer, blocks, v[0], 0, model);
     add_own(relaxer, blocks, v[1], 1, model);
@@ -137,7 +137,7 @@ static void add_stiffness(const ss_relaxer *relaxer, ss_blocks *blocks, int32_t 
 }
 
 void ss_stretch_model(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         if (!counts(patch, e))
             continue;
@@ -148,7 +148,7 @@ void ss_stretch_model(ss_relaxer *relaxer) {
 }
 
 void ss_rest_stiffness(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         edge_model model = model_rest_edge(relaxer, e);
         if (counts(patch, e))
@@ -157,7 +157,7 @@ void ss_rest_stiffness(ss_relaxer *relaxer) {
 }
 
 void ss_rest_forces(ss_relaxer *relaxer) {
-    const ss_patch *patch = relaxer->chart->triangles->patch;
+    const ss_patch *patch = relaxer->chart->patch;
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         edge_model model = model_rest_edge(relaxer, e);
         if (counts(patch, e))

@@ -63,7 +63,7 @@ skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int3
     const ss_part *part = find_part(slider, patch, uv, error);
     if (!part)
         return SKINSLIDE_BAD_ARGUMENT;
-    memcpy(uv, part->rest_uv, (size_t)part->patch->vertex_count * sizeof *part->rest_uv);
+    memcpy(uv, part->rest->uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
     return SKINSLIDE_OK;
 }
 
@@ -74,7 +74,7 @@ skinslide_status skinslide_workspace_embedding(const skinslide_workspace *worksp
         return SKINSLIDE_BAD_ARGUMENT;
     if (!workspace->has_frame)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
-    memcpy(uv, workspace->patches[patch].uv, (size_t)part->patch->vertex_count * sizeof *part->rest_uv);
+    memcpy(uv, workspace->patches[patch].slide->uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
     return SKINSLIDE_OK;
 }
 
@@ -87,7 +87,7 @@ skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, i
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace's lookup is exact: it draws no ID buffer");
     if (!workspace->has_frame)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
-    const double(*uv)[2] = (const double(*)[2])workspace->patches[patch].uv;
+    const double(*uv)[2] = workspace->patches[patch].slide->uv;
     skinslide_status status = SKINSLIDE_OK;
     if (texels)
         status = ss_idbuffer_read(workspace->idbuffer, patch, uv, texels, error);

@@ -77,8 +77,7 @@ skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace
 static void describe_patches(const skinslide_slider *slider, ss_id_patch *patches) {
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_part *part = &slider->parts[p];
-        patches[p] = (ss_id_patch){&part->patch->faces, part->patch->free_count,
-                                   ss_id_side(part->patch, (const double(*)[2])part->rest_uv)};
+        patches[p] = (ss_id_patch){&part->patch->faces, part->patch->free_count, ss_id_side(part->patch, part->rest->uv)};
     }
 }
 
@@ -93,11 +92,5 @@ skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const 
     skinslide_status status =
         open_lookup(options, load, patches, slider->part_count, &workspace->idbuffer, &workspace->lookup, error);
     ss_free(&scratch);
-    for (int32_t p = 0; p < slider->part_count && workspace->idbuffer && !status; p++) {
-        workspace->patches[p].candidates =
-            ss_new(&workspace->memory, slider->parts[p].patch->free_count, sizeof(ss_candidates));
-        if (!workspace->patches[p].candidates)
-            status = ss_out_of_memory(error);
-    }
     return status;
 }

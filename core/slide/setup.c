@@ -81,75 +81,28 @@ skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const s
 
 /* ---- Parts ---- */
 
-static void copy_fixed(const ss_patch *patch, double (*uv)[2]) {
-    memcpy(uv, patch->fixed_uv, (size_t)patch->vertex_count * sizeof *uv);
+static const ss_rule *rule_of(skinslide_rule rule) {
+    static const ss_rule *const rules[] = {[SKINSLIDE_RULE_UNIT] = &ss_plane_rule,
+                                           [SKINSLIDE_RULE_FAST] = &ss_plane_rule,
+                                           [SKINSLIDE_RULE_RELAXED] = &ss_relaxed_rule};
+    return rules[rule];
 }
 
-/* Rest embedding of a part with paint: needs scratch for the forces [edge_count]. */
-static skinslide_status embed_rest(ss_part *part, const ss_system *system, const double *paint, double *density,
-                                   skinslide_error *error) {
-    ss_factor *factor = NULL;
-    skinslide_status status = ss_factor_create(system, &factor, error);
-    if (!status) {
-        ss_force_density(part->patch, part->patch->rest_length, paint, density);
-        copy_fixed(part->patch, part->rest_uv);
-        status = ss_embed(system, factor, density, part->rest_uv, error);
-    }
-    ss_factor_destroy(factor);
-    return status;
-}
-
-/* The plane of the relaxed rule, which serves rest and every frame: every loop held and no paint, so that it does not fold.
- * Needs scratch for the forces and for no paint, [edge_count] each. */
-static skinslide_status embed_plane(ss_part *part, double *density, double *no_paint, skinslide_error *error) {
-    const ss_patch *patch = part->patch;
-    ss_memory scratch = {0};
-    ss_system *system = NULL;
-    uint8_t *fixed = SS_NEW(&scratch, uint8_t, patch->vertex_count);
-    skinslide_status status = fixed ? SKINSLIDE_OK : ss_out_of_memory(error);
-    for (int32_t v = 0; v < patch->vertex_count && !status; v++)
-        fixed[v] = patch->vertex_loop[v] >= 0;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++)
-        no_paint[e] = 1;
-    ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, fixed};
-    if (!status)
-        status = ss_system_create(&net, patch->label, &system, error);
-    if (!status)
-        status = embed_rest(part, system, no_paint, density, error);
-    ss_system_destroy(system);
-    ss_free(&scratch);
-    return status;
-}
-
-/* From a patch to a part: symbolic factor, paint, weights, rest embedding. */
+/* From a patch to a part: its controls, and what its rule makes of it at rest. */
 static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslide_mesh *mesh,
                                 const skinslide_controls *controls, skinslide_error *error) {
     const ss_patch *patch = part->patch;
-    ss_memory scratch = {0};
     part->paint = SS_NEW(memory, double, patch->faces.edge_count);
     part->weights = SS_NEW(memory, double, patch->free_count);
     part->limits = SS_NEW(memory, double, patch->free_count);
-    part->rest_uv = ss_new(memory, patch->vertex_count, sizeof *part->rest_uv);
-    double *density = SS_NEW(&scratch, double, patch->faces.edge_count);
-    double *no_paint = SS_NEW(&scratch, double, patch->faces.edge_count);
-    skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, patch->fixed};
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    ss_paint(patch, controls, part->paint);
+    part->clamped_weights = ss_control_weights(patch, controls, part->weights);
+    part->limited = ss_control_limits(patch, controls, part->limits);
+    skinslide_status status = rule_of(patch->setup->rule)->create(patch, mesh->rest_points, part->paint, &part->rest, error);
     if (!status)
-        status = ss_system_create(&net, patch->label, &part->system, error);
-    if (!status) {
-        ss_paint(patch, controls, part->paint);
-        part->clamped_weights = ss_slide_weights(patch, controls, part->weights);
-        part->limited = ss_slide_limits(patch, controls, part->limits);
-        status = patch->setup->rule == SKINSLIDE_RULE_RELAXED ? embed_plane(part, density, no_paint, error)
-                                                              : embed_rest(part, part->system, part->paint, density, error);
-    }
-    if (!status)
-        status = ss_triangles_create(patch, &part->triangles, error);
-    if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
-        status = ss_chart_create(part->triangles, (const double(*)[2])part->rest_uv, mesh->rest_points, &part->chart, error);
-    if (!status)
-        part->rest_layout = ss_lay_out(patch, (const double(*)[2])part->rest_uv);
-    ss_free(&scratch);
+        part->rest_layout = ss_lay_out(patch, part->rest->uv);
     return status;
 }
 
@@ -208,12 +161,8 @@ static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh
         ss_patch_create(mesh, &slider->setups[setup], setup, pieces->chosen, count, piece, pieces->count, &part->patch, error);
     if (!status) {
         slider->part_count++;
-        status = ss_place_boundary(part->patch, mesh->rest_points, error);
-    }
-    if (!status)
-        status = ss_place_holes(part->patch, mesh->rest_points, error);
-    if (!status)
         status = prepare(&slider->memory, part, mesh, &slider->setups[setup].controls, error);
+    }
     if (!status)
         status = add_cage(slider, mesh, part, error);
     return status;
@@ -331,9 +280,8 @@ void skinslide_slider_destroy(skinslide_slider *slider) {
         return;
     for (int32_t p = 0; p < slider->part_count; p++) {
         ss_cage_destroy(slider->parts[p].cage);
-        ss_chart_destroy(slider->parts[p].chart);
-        ss_triangles_destroy(slider->parts[p].triangles);
-        ss_system_destroy(slider->parts[p].system);
+        if (slider->parts[p].rest)
+            slider->parts[p].rest->rule->destroy(slider->parts[p].rest);
         ss_patch_destroy(slider->parts[p].patch);
     }
     ss_free(&slider->memory);

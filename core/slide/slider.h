@@ -2,25 +2,20 @@
 #ifndef SKINSLIDE_SLIDER_H
 #define SKINSLIDE_SLIDER_H
 
-#include "device.h"
 #include "limit.h"
 #include "relax.h"
-#include "travel.h"
 
 /* One patch, ready to slide: immutable. */
 typedef struct ss_part {
     ss_patch *patch;
-    ss_system *system;
-    double *paint;        /* [edge_count] of the set-up's controls */
-    double (*rest_uv)[2]; /* [vertex_count] U0 with that paint */
-    double *weights;      /* [free_count] weight times envelope of the set-up's controls */
-    double *limits;       /* [free_count] largest distances of the set-up's controls */
-    bool limited;         /* whether any is finite */
+    ss_rest *rest;
+    double *paint;   /* [edge_count] of the set-up's controls */
+    double *weights; /* [free_count] weight times envelope of the set-up's controls */
+    double *limits;  /* [free_count] largest distances of the set-up's controls */
+    bool limited;    /* whether any is finite */
     int32_t clamped_weights;
     ss_layout rest_layout;
     ss_cage *cage; /* NULL unless its interpolation is LIMIT */
-    ss_triangles *triangles;
-    ss_chart *chart; /* NULL unless the rule is RELAXED */
 } ss_part;
 
 struct skinslide_slider {
@@ -34,24 +29,14 @@ struct skinslide_slider {
 
 /* What one thread needs to slide one patch. */
 typedef struct ss_patch_work {
-    ss_factor *factor;
-    ss_locator *locator;
-    ss_relaxer *relaxer; /* NULL unless the rule is RELAXED */
-    ss_traveller *traveller;
-    const double *paint;            /* the part's, or own_paint [edge_count] */
-    const double *weights, *limits; /* the part's, or own_weights and own_limits [free_count] */
-    bool limited;
-    const double (*rest_uv)[2]; /* the part's, or own_rest_uv */
-    double *own_paint, *own_weights, *own_limits, (*own_rest_uv)[2];
-    double *lengths, *density; /* [edge_count] */
-    double (*uv)[2];           /* [vertex_count] Ud, fixed vertices in place */
-    double (*queries)[2];      /* [free_count] */
-    ss_location *locations;    /* [free_count] */
-    double (*displacement)[3]; /* [free_count] */
-    double *corner_weights;    /* [largest face] */
-    ss_cage_work *cage;        /* NULL unless the part has one */
-    bool regular;              /* this frame's layout */
-    ss_candidates *candidates; /* [free_count], NULL with lookup EXACT */
+    ss_slide *slide;
+    ss_frame frame;                   /* paint, weights and limits are the part's, or its own */
+    double *lengths;                  /* [edge_count] */
+    double *own_paint;                /* [edge_count] */
+    double *own_weights, *own_limits; /* [free_count] */
+    double (*displacement)[3];        /* [free_count] */
+    double *corner_weights;           /* [largest face] */
+    ss_cage_work *cage;               /* NULL unless the part has one */
 } ss_patch_work;
 
 struct skinslide_workspace {
@@ -65,15 +50,32 @@ struct skinslide_workspace {
     skinslide_lookup_info lookup;
 };
 
+/* ---- painted.c ---- */
+
+/* Values of controls: names the mesh element whose value is not one. */
+skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
+                                   skinslide_error *error);
+/* The painted multiplier of every edge: [edge_count]. Controls are checked. */
+void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double *paint);
+/* weight times envelope of every free vertex, in their order: [free_count]. Returns how many values were outside 0..1. */
+int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
+/* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */
+bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits);
+
+/* ---- setup.c ---- */
+
 /* Controls of one frame, [setup_count]. */
 skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
                                          skinslide_error *error);
 
-/* ---- lookup.c ---- */
+/* ---- workspace.c ---- */
 
 /* skinslide_workspace_create, with EGL by another loader. */
 skinslide_status ss_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,
                                      ss_egl_loader load, skinslide_workspace **out, skinslide_error *error);
+
+/* ---- lookup.c ---- */
+
 /* Makes the workspace's ID buffer, where its options come to EGL. */
 skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const skinslide_workspace_options *options,
                                           ss_egl_loader load, skinslide_error *error);

@@ -4,33 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static skinslide_status make_patch_work(ss_memory *memory, const ss_part *part, ss_patch_work *work, skinslide_error *error) {
-    const ss_patch *patch = part->patch;
-    int32_t edges = patch->faces.edge_count, vertices = patch->vertex_count, free_count = patch->free_count;
+static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t p, skinslide_error *error) {
+    const ss_part *part = &workspace->slider->parts[p];
+    ss_memory *memory = &workspace->memory;
+    ss_patch_work *work = &workspace->patches[p];
+    int32_t edges = part->patch->faces.edge_count, free_count = part->patch->free_count;
+    work->lengths = SS_NEW(memory, double, edges);
     work->own_paint = SS_NEW(memory, double, edges);
     work->own_weights = SS_NEW(memory, double, free_count);
     work->own_limits = SS_NEW(memory, double, free_count);
-    work->own_rest_uv = ss_new(memory, vertices, sizeof *work->own_rest_uv);
-    work->lengths = SS_NEW(memory, double, edges);
-    work->density = SS_NEW(memory, double, edges);
-    work->uv = ss_new(memory, vertices, sizeof *work->uv);
-    work->queries = ss_new(memory, free_count, sizeof *work->queries);
-    work->locations = SS_NEW(memory, ss_location, free_count);
     work->displacement = ss_new(memory, free_count, sizeof *work->displacement);
-    work->corner_weights = SS_NEW(memory, double, ss_largest_face(&patch->faces));
+    work->corner_weights = SS_NEW(memory, double, ss_largest_face(&part->patch->faces));
     if (memory->failed)
         return ss_out_of_memory(error);
-    memcpy(work->uv, patch->fixed_uv, (size_t)vertices * sizeof *work->uv);
-    memcpy(work->own_rest_uv, patch->fixed_uv, (size_t)vertices * sizeof *work->own_rest_uv);
-    skinslide_status status = ss_factor_create(part->system, &work->factor, error);
+    skinslide_status status = part->rest->rule->open(part->rest, workspace->idbuffer, p, &work->slide, error);
     if (!status && part->cage)
         status = ss_cage_work_create(part->cage, &work->cage, error);
-    if (!status)
-        status = ss_locator_create(patch, &work->locator, error);
-    if (!status)
-        status = ss_traveller_create(part->triangles, &work->traveller, error);
-    if (!status && patch->setup->rule == SKINSLIDE_RULE_RELAXED)
-        status = ss_relaxer_create(part->chart, part->system, &work->relaxer, error);
     return status;
 }
 
@@ -46,10 +35,10 @@ skinslide_status ss_workspace_create(const skinslide_slider *slider, const skins
     workspace->results = SS_NEW(&workspace->memory, skinslide_patch_result, slider->part_count);
     workspace->sum = ss_new(&workspace->memory, slider->vertex_count, sizeof *workspace->sum);
     skinslide_status status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    for (int32_t p = 0; p < slider->part_count && !status; p++)
-        status = make_patch_work(&workspace->memory, &slider->parts[p], &workspace->patches[p], error);
     if (!status)
         status = ss_workspace_open_lookup(workspace, options, load, error);
+    for (int32_t p = 0; p < slider->part_count && !status; p++)
+        status = make_patch_work(workspace, p, error);
     if (status)
         skinslide_workspace_destroy(workspace);
     else
@@ -65,14 +54,12 @@ skinslide_status skinslide_workspace_create(const skinslide_slider *slider, cons
 void skinslide_workspace_destroy(skinslide_workspace *workspace) {
     if (!workspace)
         return;
-    ss_idbuffer_destroy(workspace->idbuffer);
     for (int32_t p = 0; workspace->patches && p < workspace->slider->part_count; p++) {
-        ss_factor_destroy(workspace->patches[p].factor);
-        ss_locator_destroy(workspace->patches[p].locator);
         ss_cage_work_destroy(workspace->patches[p].cage);
-        ss_relaxer_destroy(workspace->patches[p].relaxer);
-        ss_traveller_destroy(workspace->patches[p].traveller);
+        if (workspace->patches[p].slide)
+            workspace->slider->parts[p].rest->rule->close(workspace->patches[p].slide);
     }
+    ss_idbuffer_destroy(workspace->idbuffer);
     ss_free(&workspace->memory);
     free(workspace);
 }

@@ -111,18 +111,20 @@ static void print_lookups(int32_t side) {
     float *points = bumped(&mesh, 0.5 * side, 0.5 * side, 0.15 * side, 0.15 * side), *slid = copy_points(&mesh);
     stop_unless(!skinslide_workspace_create(slider, &exact, &workspace, NULL), "no workspace");
     stop_unless(!skinslide_slide(workspace, points, NULL, slid, NULL, NULL), "no frame");
-    const ss_patch_work *work = &workspace->patches[0];
-    const double(*uv)[2] = (const double(*)[2])work->uv, (*queries)[2] = (const double(*)[2])work->queries;
+    const ss_slide *slide = workspace->patches[0].slide;
+    ss_locator *locator = NULL;
+    stop_unless(!ss_locator_create(part->patch, &locator, NULL), "no locator");
     double seconds[2] = {1e9, 1e9};
     for (int i = 0; i < 2 * FRAMES; i++) {
         double start = now();
-        ss_locate(work->locator, uv, i % 2 == 0, queries, NULL, work->locations);
+        ss_locate(locator, slide->uv, i % 2 == 0, (const double(*)[2])slide->asked, NULL, slide->places);
         double taken = now() - start;
         seconds[i % 2] = taken < seconds[i % 2] ? taken : seconds[i % 2];
     }
     printf("%d queries: walk %.2f ms, tree %.2f ms, %.1f times as long\n", part->patch->free_count, 1e3 * seconds[0],
            1e3 * seconds[1], seconds[1] / seconds[0]);
     free(points), free(slid);
+    ss_locator_destroy(locator);
     skinslide_workspace_destroy(workspace);
     skinslide_slider_destroy(slider);
     free_mesh(&mesh);

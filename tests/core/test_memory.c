@@ -82,10 +82,10 @@ typedef struct scene {
     skinslide_patch_setup setups[2];
     skinslide_controls controls[2];
     painted paint;
-    float *points, *slid, *slide, *normals;
+    float *points, *slid, *slide, *normals, *limits;
 } scene;
 
-/* Two set-ups, of two grids and holes, painted by the frame, with edges. */
+/* Two set-ups, one of them relaxed, of two grids and holes; painted and limited by the frame, with edges. */
 static void make_scene(scene *s) {
     static const int32_t edges[2] = {0, 1};
     static const float factors[1] = {2};
@@ -93,7 +93,12 @@ static void make_scene(scene *s) {
     s->mesh = join_meshes(&sheet, &holed);
     s->faces = all_faces(&s->mesh);
     s->setups[0] = setup_of(s->faces, s->mesh.face_count), s->setups[1] = setup_of(s->faces, 20);
+    s->setups[1].rule = SKINSLIDE_RULE_RELAXED;
     s->paint = paint_at_random(&s->mesh, 1);
+    s->limits = malloc((size_t)s->mesh.vertex_count * sizeof(float));
+    for (int32_t v = 0; v < s->mesh.vertex_count; v++)
+        s->limits[v] = 0.01f;
+    s->paint.controls.max_distance = s->limits;
     s->controls[0] = s->controls[1] = s->paint.controls;
     s->controls[0].edges = edges, s->controls[0].edge_density = factors, s->controls[0].edge_count = 1;
     s->points = random_pose(&s->mesh, 1);
@@ -104,7 +109,7 @@ static void make_scene(scene *s) {
 }
 
 static void free_scene(scene *s) {
-    free(s->faces), free(s->points), free(s->slid), free(s->slide), free(s->normals);
+    free(s->faces), free(s->points), free(s->slid), free(s->slide), free(s->normals), free(s->limits);
     free_painted(&s->paint);
     free_mesh(&s->mesh);
 }
@@ -403,7 +408,8 @@ static void controls_of_a_frame_allocate_nothing(void **state) {
 
 /* ---- Frames and sizes ---- */
 
-/* A frame allocates nothing but what checks the edges that its controls name, so it cannot fail for memory otherwise. */
+/* A frame allocates nothing but what checks the edges that its controls name and, at the first limit, what measures ways: so it
+ * cannot fail for memory otherwise. */
 static void a_frame_allocates_nothing(void **state) {
     (void)state;
     scene s;
@@ -419,6 +425,30 @@ static void a_frame_allocates_nothing(void **state) {
     assert_ok(plain, &error);
     free_rig(&r);
     free_scene(&s);
+}
+
+/* Then nothing is written, and the workspace slides the next frame as one that never failed. */
+static void the_first_limit_may_find_no_memory(void **state) {
+    (void)state;
+    for (int32_t setup = 0; setup < 2; setup++) {
+        scene s;
+        make_scene(&s);
+        rig r = rig_of_setups(&s.mesh, &s.setups[setup], 1), fresh = rig_of_setups(&s.mesh, &s.setups[setup], 1);
+        skinslide_controls limited = SKINSLIDE_CONTROLS_DEFAULT;
+        skinslide_error error;
+        limited.max_distance = s.limits;
+        float *expected = slide_with(&fresh, &s.mesh, s.points, &limited, NULL);
+        left_to_give = 0, watching = true;
+        skinslide_status status = skinslide_slide(r.workspace, s.points, &limited, s.slid, NULL, &error);
+        watching = false;
+        assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+        assert_same_bytes(s.slid, s.points, POINT_BYTES(&s.mesh));
+        assert_ok(skinslide_slide(r.workspace, s.points, &limited, s.slid, NULL, &error), &error);
+        assert_same_bytes(s.slid, expected, POINT_BYTES(&s.mesh));
+        free(expected);
+        free_rig(&r), free_rig(&fresh);
+        free_scene(&s);
+    }
 }
 
 /* 200 faces around a pole have 200 vertices and more each; the 1,800 others have 16, and no room is taken for more. */
@@ -456,6 +486,7 @@ int main(void) {
         cmocka_unit_test(each_allocation_for_a_stage_fails_in_turn),
         cmocka_unit_test(controls_of_a_frame_allocate_nothing),
         cmocka_unit_test(a_frame_allocates_nothing),
+        cmocka_unit_test(the_first_limit_may_find_no_memory),
         cmocka_unit_test(a_pole_takes_room_for_itself_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

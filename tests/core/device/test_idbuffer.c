@@ -19,7 +19,7 @@ static drawn draw_fixture(int32_t index, uint64_t seed) {
     dice at = {seed};
     float *pose = random_pose(&d.f.mesh, seed);
     d.patch = patch_of(&d.f.mesh, (skinslide_patch_setup){.controls = SKINSLIDE_CONTROLS_DEFAULT});
-    d.uv = embedding_of(d.patch, pose);
+    d.uv = embedding_of(d.patch, d.f.mesh.points, pose);
     d.queries = calloc((size_t)d.patch->free_count + 1, sizeof *d.queries);
     for (int32_t i = 0; i < d.patch->free_count; i++)
         for (int k = 0; k < 2; k++)

@@ -1,6 +1,6 @@
 /* Interpolation LIMIT: what does not slide keeps its bits, what does keeps the limit surface. */
 #define _POSIX_C_SOURCE 200809L /* pthread */
-#include "surface.h"
+#include "distance.h"
 
 #include <math.h>
 #include <pthread.h>

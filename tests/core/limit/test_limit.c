@@ -202,7 +202,7 @@ static surfaces_of_patch surfaces_for(const test_mesh *mesh, const skinslide_sub
     assert_ok(ss_limit_surfaces_create(topology, s.patch->mesh_face, mesh->face_count, "all", &s.surfaces, &error), &error);
     ss_topology_destroy(topology);
     s.points = random_pose(mesh, seed);
-    s.uv = embedding_of(s.patch, s.points);
+    s.uv = embedding_of(s.patch, mesh->points, s.points);
     s.scratch = malloc((size_t)ss_limit_surfaces_scratch(s.surfaces) * sizeof *s.scratch);
     return s;
 }
@@ -213,11 +213,12 @@ static void free_surfaces(surfaces_of_patch *s) {
     free(s->points), free(s->uv), free(s->scratch);
 }
 
-static void point_at(const surfaces_of_patch *s, const ss_location *location, double out[3]) {
+static void point_at(const surfaces_of_patch *s, const ss_place *place, double out[3]) {
     const double origin[3] = {0, 0, 0};
-    ss_parameter at = ss_parametrise(&s->patch->faces, s->loop, (const double(*)[2])s->uv, location);
-    ss_limit_prepare(s->surfaces, location->face, s->points, origin, s->scratch);
-    ss_limit_point(s->surfaces, location->face, &at, s->scratch, out);
+    ss_parameter at = ss_parametrise(s->patch, s->loop, (const double(*)[2])s->uv, place);
+    int32_t face = s->patch->triangles.face[place->triangle];
+    ss_limit_prepare(s->surfaces, face, s->points, origin, s->scratch);
+    ss_limit_point(s->surfaces, face, &at, s->scratch, out);
 }
 
 /* A point of a side is the same from both faces, whatever polygons they are. Fitted patches meet along curves that agree to
@@ -234,12 +235,13 @@ static void check_sides(const test_mesh *mesh, skinslide_scheme scheme, int32_t 
         int32_t twin = faces->corner_twin[c];
         if (twin < 0)
             continue;
-        double share = roll_share(&d), here[3], there[3];
-        const double *a = s.uv[faces->corner_vertex[c]], *b = s.uv[faces->corner_vertex[twin]];
-        ss_location from = {faces->corner_face[c], ss_fan_of_side(faces, c), {0, 0}}, to = from;
+        double share = roll_share(&d), p[2], here[3], there[3];
+        const double(*uv)[2] = (const double(*)[2])s.uv, *a = s.uv[faces->corner_vertex[c]],
+              *b = s.uv[faces->corner_vertex[twin]];
         for (int k = 0; k < 2; k++)
-            from.uv[k] = to.uv[k] = a[k] + share * (b[k] - a[k]);
-        to.face = faces->corner_face[twin], to.triangle = ss_fan_of_side(faces, twin);
+            p[k] = a[k] + share * (b[k] - a[k]);
+        ss_place from = place_at(s.patch, uv, ss_triangle_of_side(s.patch, c), p);
+        ss_place to = place_at(s.patch, uv, ss_triangle_of_side(s.patch, twin), p);
         point_at(&s, &from, here), point_at(&s, &to, there);
         assert_near(point_distance(here, there), 0, 2e-3 * size);
     }
@@ -263,9 +265,9 @@ static void check_corners(const test_mesh *mesh, skinslide_scheme scheme, int32_
     for (int32_t c = 0; c < faces->corner_count; c++) {
         int32_t face = faces->corner_face[c];
         const double *p = s.uv[faces->corner_vertex[c]];
-        ss_location location = {face, ss_fan_of_side(faces, c), {p[0], p[1]}};
+        ss_place place = place_at(s.patch, (const double(*)[2])s.uv, ss_triangle_of_side(s.patch, c), p);
         double got[3], expected[3];
-        point_at(&s, &location, got);
+        point_at(&s, &place, got);
         ss_parameter corner = ss_limit_parameter(s.surfaces, face, c - faces->face_start[face], 0, 0);
         ss_limit_point(s.surfaces, face, &corner, s.scratch, expected);
         assert_near(point_distance(got, expected), 0, 1e-6 * size);
@@ -285,8 +287,8 @@ static void a_quad_by_hand(void **state) {
     test_mesh mesh = quad_grid(1, 1);
     ss_patch *patch = patch_of(&mesh, setup_of(NULL, 0));
     const double uv[4][2] = {{0, 0}, {4, 0}, {0, 2}, {2, 2}}; /* vertices of the grid: 0 1 over 2 3, the face 0 1 3 2 */
-    ss_location location = {0, 0, {1.5, 1}};
-    ss_parameter at = ss_parametrise(&patch->faces, false, uv, &location);
+    ss_place place = place_at(patch, uv, 0, (double[2]){1.5, 1});
+    ss_parameter at = ss_parametrise(patch, false, uv, &place);
     assert_int_equal(at.corner, -1);
     assert_near(at.st[0], 0.5, 1e-15);
     assert_near(at.st[1], 0.5, 1e-15);
@@ -306,8 +308,9 @@ static void awkward_faces_give_parameters(void **state) {
     dice d = {1};
     for (int shape = 0; shape < 4; shape++)
         for (int i = 0; i < 100; i++) {
-            ss_location location = {0, i % 2, {roll_share(&d), shape == 3 ? 0 : roll_share(&d)}};
-            ss_parameter at = ss_parametrise(&patch->faces, false, shapes[shape], &location);
+            const double p[2] = {roll_share(&d), shape == 3 ? 0 : roll_share(&d)};
+            ss_place place = place_at(patch, shapes[shape], i % 2, p);
+            ss_parameter at = ss_parametrise(patch, false, shapes[shape], &place);
             assert_true(at.st[0] >= 0 && at.st[0] <= 1 && at.st[1] >= 0 && at.st[1] <= 1);
         }
     ss_patch_destroy(patch);

@@ -2,6 +2,7 @@
 #include "support.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Measured against long double; 1e-15 is nine units in the last place of numbers near 1, and the quarters are exact. */
 static void the_circle_is_cos_and_sin(void **state) {
@@ -35,18 +36,20 @@ static void places_on_the_circle_are_shares_of_the_arc(void **state) {
     static const double shares[] = {0, 1, 2, 3, 5, 7};
     test_mesh mesh = line_hexagon();
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
+    double(*uv)[2] = held_uv_of(patch, mesh.points);
     for (int32_t v = 0; v < 6; v++) {
         double angle = 2 * acos(-1) * shares[v] / 8;
-        assert_near(patch->fixed_uv[v][0], 0.5 + 0.5 * cos(angle), 1e-15);
-        assert_near(patch->fixed_uv[v][1], 0.5 + 0.5 * sin(angle), 1e-15);
+        assert_near(uv[v][0], 0.5 + 0.5 * cos(angle), 1e-15);
+        assert_near(uv[v][1], 0.5 + 0.5 * sin(angle), 1e-15);
     }
+    free(uv);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
 
-static void expect_uv(const ss_patch *patch, int32_t vertex, double u, double v) {
-    assert_near(patch->fixed_uv[vertex][0], u, 0);
-    assert_near(patch->fixed_uv[vertex][1], v, 0);
+static void expect_uv(double (*uv)[2], int32_t vertex, double u, double v) {
+    assert_near(uv[vertex][0], u, 0);
+    assert_near(uv[vertex][1], v, 0);
 }
 
 /* 5 x 3 vertices with corners at the ends, listed out of order. The lowest position of the loop goes to (0,0), and the others
@@ -58,8 +61,10 @@ static void corners_go_to_the_square(void **state) {
     for (int32_t boundary = SKINSLIDE_BOUNDARY_AUTO; boundary <= SKINSLIDE_BOUNDARY_SQUARE; boundary++) {
         ss_patch *patch =
             patch_of(&mesh, (skinslide_patch_setup){.corners = corners, .boundary = (skinslide_boundary)boundary});
-        expect_uv(patch, 0, 0, 0), expect_uv(patch, 4, 1, 0), expect_uv(patch, 14, 1, 1), expect_uv(patch, 10, 0, 1);
-        expect_uv(patch, 1, 0.25, 0), expect_uv(patch, 9, 1, 0.5), expect_uv(patch, 13, 0.75, 1), expect_uv(patch, 5, 0, 0.5);
+        double(*uv)[2] = held_uv_of(patch, mesh.points);
+        expect_uv(uv, 0, 0, 0), expect_uv(uv, 4, 1, 0), expect_uv(uv, 14, 1, 1), expect_uv(uv, 10, 0, 1);
+        expect_uv(uv, 1, 0.25, 0), expect_uv(uv, 9, 1, 0.5), expect_uv(uv, 13, 0.75, 1), expect_uv(uv, 5, 0, 0.5);
+        free(uv);
         ss_patch_destroy(patch);
     }
     free_mesh(&mesh);
@@ -72,7 +77,10 @@ static void a_circle_ignores_corners(void **state) {
     ss_patch *round = patch_of(&mesh, (skinslide_patch_setup){0});
     ss_patch *patch =
         patch_of(&mesh, (skinslide_patch_setup){.corners = (int32_t[]){14, 0, 10, 4}, .boundary = SKINSLIDE_BOUNDARY_CIRCLE});
-    assert_same_bytes(patch->fixed_uv, round->fixed_uv, (size_t)patch->vertex_count * sizeof *patch->fixed_uv);
+    double(*uv)[2] = held_uv_of(patch, mesh.points);
+    double(*circle)[2] = held_uv_of(round, mesh.points);
+    assert_same_bytes(uv, circle, (size_t)patch->vertex_count * sizeof *uv);
+    free(uv), free(circle);
     ss_patch_destroy(patch), ss_patch_destroy(round);
     free_mesh(&mesh);
 }
@@ -82,7 +90,9 @@ static void corners_of_a_square_are_found(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(6, 6);
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
-    expect_uv(patch, 0, 0, 0), expect_uv(patch, 6, 1, 0), expect_uv(patch, 48, 1, 1), expect_uv(patch, 42, 0, 1);
+    double(*uv)[2] = held_uv_of(patch, mesh.points);
+    expect_uv(uv, 0, 0, 0), expect_uv(uv, 6, 1, 0), expect_uv(uv, 48, 1, 1), expect_uv(uv, 42, 0, 1);
+    free(uv);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
@@ -107,9 +117,11 @@ static void sharpness_is_of_the_whole_angle(void **state) {
     (void)state;
     test_mesh mesh = fanned_square();
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
+    double(*uv)[2] = held_uv_of(patch, mesh.points);
     for (int corner = 1; corner < 26; corner += 8)
         for (int axis = 0; axis < 2; axis++)
-            assert_true(patch->fixed_uv[corner][axis] == 0 || patch->fixed_uv[corner][axis] == 1);
+            assert_true(uv[corner][axis] == 0 || uv[corner][axis] == 1);
+    free(uv);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
@@ -122,19 +134,21 @@ static void corners_are_the_nearest_to_the_quarters(void **state) {
     test_mesh mesh = line_hexagon();
     mesh.points[12] = 1.4f;
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
-    expect_uv(patch, 1, 0, 0), expect_uv(patch, 3, 1, 0), expect_uv(patch, 4, 1, 1), expect_uv(patch, 5, 0, 1);
-    expect_uv(patch, 2, 0.5, 0), expect_uv(patch, 0, 0, 0.5);
+    double(*uv)[2] = held_uv_of(patch, mesh.points);
+    expect_uv(uv, 1, 0, 0), expect_uv(uv, 3, 1, 0), expect_uv(uv, 4, 1, 1), expect_uv(uv, 5, 0, 1);
+    expect_uv(uv, 2, 0.5, 0), expect_uv(uv, 0, 0, 0.5);
+    free(uv);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
 
-static int32_t count_at_corners(const ss_patch *patch) {
+static int32_t count_at_corners(const ss_patch *patch, double (*uv)[2]) {
     int32_t count = 0;
     for (int32_t i = 0; i < patch->loop_start[1]; i++) {
-        const double *uv = patch->fixed_uv[patch->loop_vertex[i]];
-        count += (uv[0] == 0 || uv[0] == 1) && (uv[1] == 0 || uv[1] == 1);
-        assert_true(uv[0] == 0 || uv[0] == 1 || uv[1] == 0 || uv[1] == 1);
-        assert_true(uv[0] >= 0 && uv[0] <= 1 && uv[1] >= 0 && uv[1] <= 1);
+        const double *at = uv[patch->loop_vertex[i]];
+        count += (at[0] == 0 || at[0] == 1) && (at[1] == 0 || at[1] == 1);
+        assert_true(at[0] == 0 || at[0] == 1 || at[1] == 0 || at[1] == 1);
+        assert_true(at[0] >= 0 && at[0] <= 1 && at[1] >= 0 && at[1] <= 1);
     }
     return count;
 }
@@ -146,7 +160,9 @@ static void four_corners_are_always_chosen(void **state) {
         fixture f = make_fixture(i);
         if (f.square) {
             ss_patch *patch = patch_of(&f.mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
-            assert_int_equal(count_at_corners(patch), 4);
+            double(*uv)[2] = held_uv_of(patch, f.mesh.points);
+            assert_int_equal(count_at_corners(patch, uv), 4);
+            free(uv);
             ss_patch_destroy(patch);
         }
         free_mesh(&f.mesh);
@@ -158,7 +174,9 @@ static void four_corners_are_always_chosen(void **state) {
             for (int k = 0; k < 3 * sides; k++) /* very uneven sides */
                 mesh.points[k] = (float)pow(10, roll_between(&d, -5, 5));
             ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
-            assert_int_equal(count_at_corners(patch), 4);
+            double(*uv)[2] = held_uv_of(patch, mesh.points);
+            assert_int_equal(count_at_corners(patch, uv), 4);
+            free(uv);
             ss_patch_destroy(patch);
             free_mesh(&mesh);
         }
@@ -172,7 +190,8 @@ static void expect_corners(const test_mesh *mesh, const int32_t corners[4], cons
     skinslide_error error;
     ss_patch *patch = NULL;
     assert_ok(ss_patch_create(&view, &setup, 0, faces, mesh->face_count, 0, 1, &patch, &error), &error);
-    assert_fails(ss_place_boundary(patch, mesh->points, &error), &error, SKINSLIDE_BAD_CONTROL, text);
+    double uv[9][2];
+    assert_fails(ss_place_boundary(patch, setup.boundary, mesh->points, uv, &error), &error, SKINSLIDE_BAD_CONTROL, text);
     ss_patch_destroy(patch);
 }
 

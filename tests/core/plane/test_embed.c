@@ -6,19 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static ss_net net_of(const ss_patch *patch) {
-    return (ss_net){patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, patch->fixed};
-}
-
 static skinslide_status embed_once(const ss_net *net, const double *density, double (*uv)[2], skinslide_error *error) {
-    ss_system *system = NULL;
-    ss_factor *factor = NULL;
-    assert_ok(ss_system_create(net, "patch p", &system, error), error);
-    assert_ok(ss_factor_create(system, &factor, error), error);
-    skinslide_status status = ss_embed(system, factor, density, uv, error);
-    ss_factor_destroy(factor);
-    ss_system_destroy(system);
-    return status;
+    return ss_embed_once(net, "patch p", density, uv, error);
 }
 
 static double *random_densities(int32_t count, uint64_t seed, double decades) {
@@ -35,26 +24,24 @@ static void the_free_vertex_is_the_weighted_mean(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(2, 2);
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE});
-    double density[12], uv[9][2];
+    double density[12], (*uv)[2] = held_uv_of(patch, mesh.points);
     skinslide_error error;
     for (int e = 0; e < 12; e++)
         density[e] = 100;
     density[ss_patch_edge(patch, 1, 4)] = 1, density[ss_patch_edge(patch, 3, 4)] = 2;
     density[ss_patch_edge(patch, 5, 4)] = 3, density[ss_patch_edge(patch, 7, 4)] = 4;
-    memcpy(uv, patch->fixed_uv, sizeof uv);
-    ss_net net = net_of(patch);
+    ss_net net = ss_net_of(patch, patch->fixed);
     assert_ok(embed_once(&net, density, uv, &error), &error);
     assert_near(uv[4][0], (1 * 0.5 + 2 * 0 + 3 * 1 + 4 * 0.5) / 10, 2e-16);
     assert_near(uv[4][1], (1 * 0 + 2 * 0.5 + 3 * 0.5 + 4 * 1) / 10, 2e-16);
+    free(uv);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
 
-static void compare_with_dense(const ss_patch *patch, const double *density, double tolerance) {
-    size_t size = (size_t)patch->vertex_count * sizeof(double[2]);
-    double(*sparse)[2] = malloc(size), (*dense)[2] = malloc(size);
-    memcpy(sparse, patch->fixed_uv, size), memcpy(dense, patch->fixed_uv, size);
-    ss_net net = net_of(patch);
+static void compare_with_dense(const ss_patch *patch, const float *rest_points, const double *density, double tolerance) {
+    double(*sparse)[2] = held_uv_of(patch, rest_points), (*dense)[2] = held_uv_of(patch, rest_points);
+    ss_net net = ss_net_of(patch, patch->fixed);
     skinslide_error error;
     assert_ok(embed_once(&net, density, sparse, &error), &error);
     embed_densely(&net, density, dense);
@@ -72,7 +59,7 @@ static void sparse_and_dense_agree(void **state) {
         for (int32_t holes = 0; holes < 2; holes++) {
             ss_patch *patch = patch_of(&f.mesh, (skinslide_patch_setup){.holes = (skinslide_holes)holes});
             double *density = random_densities(patch->faces.edge_count, (uint64_t)i, 2);
-            compare_with_dense(patch, density, 1e-11);
+            compare_with_dense(patch, f.mesh.points, density, 1e-11);
             free(density);
             ss_patch_destroy(patch);
         }
@@ -105,10 +92,8 @@ static void forces_cancel(void **state) {
             fixture f = make_fixture(i);
             ss_patch *patch = patch_of(&f.mesh, (skinslide_patch_setup){0});
             double *density = random_densities(patch->faces.edge_count, (uint64_t)i, decades);
-            size_t size = (size_t)patch->vertex_count * sizeof(double[2]);
-            double(*uv)[2] = malloc(size);
-            memcpy(uv, patch->fixed_uv, size);
-            ss_net net = net_of(patch);
+            double(*uv)[2] = held_uv_of(patch, f.mesh.points);
+            ss_net net = ss_net_of(patch, patch->fixed);
             skinslide_error error;
             assert_ok(embed_once(&net, density, uv, &error), &error);
             expect_balance(patch, density, (const double(*)[2])uv);
@@ -128,7 +113,7 @@ static void embeddings_are_inside(void **state) {
             ss_patch *patch =
                 patch_of(&f.mesh, (skinslide_patch_setup){.boundary = f.square && square ? SKINSLIDE_BOUNDARY_SQUARE
                                                                                          : SKINSLIDE_BOUNDARY_CIRCLE});
-            double(*uv)[2] = embedding_of(patch, f.mesh.points);
+            double(*uv)[2] = embedding_of(patch, f.mesh.points, f.mesh.points);
             for (int32_t v = 0; v < patch->vertex_count; v++) {
                 double radius = hypot(uv[v][0] - 0.5, uv[v][1] - 0.5);
                 assert_true(uv[v][0] >= 0 && uv[v][0] <= 1 + 1e-15 && uv[v][1] >= 0 && uv[v][1] <= 1 + 1e-15);
@@ -145,16 +130,15 @@ static void a_factor_remembers_nothing(void **state) {
     (void)state;
     test_mesh mesh = triangle_grid(9, 9);
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
-    ss_net net = net_of(patch);
+    ss_net net = ss_net_of(patch, patch->fixed);
     size_t size = (size_t)patch->vertex_count * sizeof(double[2]);
-    double(*first)[2] = malloc(size), (*again)[2] = malloc(size);
+    double(*first)[2] = held_uv_of(patch, mesh.points), (*again)[2] = held_uv_of(patch, mesh.points);
     double *density = random_densities(net.edge_count, 1, 3), *other = random_densities(net.edge_count, 2, 3);
     ss_system *system = NULL;
     ss_factor *factor = NULL;
     skinslide_error error;
     assert_ok(ss_system_create(&net, "patch p", &system, &error), &error);
     assert_ok(ss_factor_create(system, &factor, &error), &error);
-    memcpy(first, patch->fixed_uv, size), memcpy(again, patch->fixed_uv, size);
     assert_ok(ss_embed(system, factor, density, first, &error), &error);
     assert_ok(ss_embed(system, factor, other, again, &error), &error);
     assert_ok(ss_embed(system, factor, density, again, &error), &error);
@@ -170,12 +154,12 @@ static void nothing_free_is_nothing_to_solve(void **state) {
     (void)state;
     test_mesh mesh = polygon(5);
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
-    double density[5] = {1, 1, 1, 1, 1}, uv[5][2];
-    memcpy(uv, patch->fixed_uv, sizeof uv);
-    ss_net net = net_of(patch);
+    double density[5] = {1, 1, 1, 1, 1}, (*uv)[2] = held_uv_of(patch, mesh.points), (*held)[2] = held_uv_of(patch, mesh.points);
+    ss_net net = ss_net_of(patch, patch->fixed);
     skinslide_error error;
     assert_ok(embed_once(&net, density, uv, &error), &error);
-    assert_same_bytes(uv, patch->fixed_uv, sizeof uv);
+    assert_same_bytes(uv, held, 5 * sizeof *uv);
+    free(uv), free(held);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }

@@ -12,23 +12,21 @@ static double distance(const double a[2], const double b[2]) {
 
 /* The same face and triangle where p is in one; else the same nearest face, at the same distance but for the rounding of
  * numbers under 2. */
-static void compare(const ss_face_tree *tree, const ss_faces *faces, const double (*uv)[2], const double p[2]) {
+static void compare(const ss_face_tree *tree, const ss_patch *patch, const double (*uv)[2], const double p[2]) {
     bool inside;
-    ss_location expected = search_all(faces, uv, p, &inside), found = {-7, -7, {0, 0}};
+    ss_place expected = search_all(patch, uv, p, &inside), found = {.triangle = -7};
     assert_int_equal(ss_face_tree_holding(tree, p, &found), inside);
     if (inside) {
-        assert_int_equal(found.face, expected.face);
-        assert_int_equal(found.triangle, expected.triangle);
+        assert_same_place(&found, &expected);
         assert_true(found.uv[0] == p[0] && found.uv[1] == p[1]);
         return;
     }
-    assert_int_equal(found.face, -7);
+    assert_int_equal(found.triangle, -7);
     double away = ss_face_tree_nearest(tree, p, &found);
     assert_near(away, distance(p, expected.uv), 1e-15);
     assert_near(distance(p, found.uv), away, 1e-15);
-    assert_int_equal(found.face, expected.face);
-    assert_in_range(found.face, 0, faces->face_count - 1);
-    assert_in_range(found.triangle, 0, ss_fan_size(faces, found.face) - 1);
+    assert_in_range(found.triangle, 0, patch->triangles.count - 1);
+    assert_int_equal(patch->triangles.face[found.triangle], patch->triangles.face[expected.triangle]);
 }
 
 static void compare_on(const ss_patch *patch, double (*uv)[2], uint64_t seed) {
@@ -36,12 +34,12 @@ static void compare_on(const ss_patch *patch, double (*uv)[2], uint64_t seed) {
     skinslide_error error;
     dice d = {seed};
     const double(*view)[2] = (const double(*)[2])uv;
-    assert_ok(ss_face_tree_create(&patch->faces, &tree, &error), &error);
+    assert_ok(ss_face_tree_create(patch, &tree, &error), &error);
     ss_face_tree_build(tree, view);
     for (int i = 0; i < QUERIES; i++) {
         double p[2];
         random_query(&patch->faces, view, &d, p);
-        compare(tree, &patch->faces, view, p);
+        compare(tree, patch, view, p);
     }
     ss_face_tree_destroy(tree);
     free(uv);
@@ -60,7 +58,7 @@ static void on_every_fixture(double (*(*make)(const ss_patch *patch, const test_
 
 static double (*embedded(const ss_patch *patch, const test_mesh *mesh, uint64_t seed))[2] {
     float *points = random_pose(mesh, seed);
-    double(*uv)[2] = embedding_of(patch, points);
+    double(*uv)[2] = embedding_of(patch, mesh->points, points);
     free(points);
     return uv;
 }

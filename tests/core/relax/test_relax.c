@@ -1,5 +1,5 @@
 /* The relaxed rule, and the largest distances of every rule. */
-#include "surface.h"
+#include "distance.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -64,7 +64,7 @@ static void blocks_are_solved(void **state) {
     (void)state;
     test_mesh mesh = triangle_grid(9, 7);
     ss_patch *patch = patch_of(&mesh, relaxed());
-    ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, patch->fixed};
+    ss_net net = ss_net_of(patch, patch->fixed);
     skinslide_error error;
     ss_system *system;
     ss_blocks *blocks;
@@ -99,9 +99,11 @@ static void gradients_of_a_linear_map(void **state) {
     (void)state;
     static const double map[2][3] = {{2, -1, 0.5}, {0.25, 3, -4}};
     test_mesh mesh = grid_with_holes(false);
-    rig r = rig_of(&mesh, relaxed());
-    const ss_chart *chart = r.slider->parts[0].chart;
-    int32_t count = chart->triangles->patch->vertex_count;
+    ss_patch *patch = patch_of(&mesh, relaxed());
+    ss_chart *chart = NULL;
+    skinslide_error error;
+    assert_ok(ss_chart_create(patch, mesh.points, &chart, &error), &error);
+    int32_t count = patch->vertex_count;
     double(*points)[3] = malloc((size_t)count * sizeof *points), (*gradient)[2][3] = malloc((size_t)count * sizeof *gradient);
     for (int32_t v = 0; v < count; v++)
         for (int k = 0; k < 3; k++)
@@ -111,7 +113,8 @@ static void gradients_of_a_linear_map(void **state) {
         for (int i = 0; i < 6; i++)
             assert_near(gradient[v][i / 3][i % 3], map[i / 3][i % 3], 1e-12);
     free(points), free(gradient);
-    free_rig(&r);
+    ss_chart_destroy(chart);
+    ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
 

@@ -1,5 +1,5 @@
 /* What a frame promises: rest is left alone, so is what cannot slide, and the rest slides on the surface. */
-#include "surface.h"
+#include "distance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* See queries.h. */
 #include "queries.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -49,4 +50,20 @@ double (*tangled(const ss_patch *patch, uint64_t seed))[2] {
     for (int32_t v = 0; v < patch->vertex_count; v++)
         uv[v][0] = roll_share(&d), uv[v][1] = roll_share(&d);
     return uv;
+}
+
+double longest_side(const double *a, const double *b, const double *c) {
+    return fmax(hypot(a[0] - b[0], a[1] - b[1]), fmax(hypot(b[0] - c[0], b[1] - c[1]), hypot(c[0] - a[0], c[1] - a[1])));
+}
+
+void expect_point(const double (*uv)[2], const int32_t *vertices, int32_t count, const double *weights, const double p[2],
+                  double tolerance) {
+    double at[2] = {0, 0}, sum = 0;
+    for (int32_t k = 0; k < count; k++) {
+        sum += weights[k];
+        at[0] += weights[k] * uv[vertices[k]][0], at[1] += weights[k] * uv[vertices[k]][1];
+    }
+    assert_near(sum, 1, 4 * DBL_EPSILON * count);
+    assert_near(at[0], p[0], tolerance);
+    assert_near(at[1], p[1], tolerance);
 }

@@ -11,4 +11,11 @@ void random_query(const ss_faces *faces, const double (*uv)[2], dice *d, double 
 /* A uv for every vertex at random: faces overlap, turn over and cross themselves. */
 double (*tangled(const ss_patch *patch, uint64_t seed))[2];
 
+/* Of a triangle in the plane. */
+double longest_side(const double *a, const double *b, const double *c);
+
+/* Weights of vertices [count] sum to 1 and give p back. */
+void expect_point(const double (*uv)[2], const int32_t *vertices, int32_t count, const double *weights, const double p[2],
+                  double tolerance);
+
 #endif

@@ -48,10 +48,6 @@ ss_patch *patch_of(const test_mesh *mesh, skinslide_patch_setup choices) {
     ss_patch *patch = NULL;
     skinslide_status status = ss_patch_create(&view, &kept, 0, faces, mesh->face_count, 0, 1, &patch, &error);
     free(faces);
-    if (!status)
-        status = ss_place_boundary(patch, mesh->points, &error);
-    if (!status)
-        status = ss_place_holes(patch, mesh->points, &error);
     assert_ok(status, &error);
     return patch;
 }
@@ -87,25 +83,25 @@ float *slide_with(const rig *r, const test_mesh *mesh, const float *points, cons
     return slid;
 }
 
-double (*embedding_of(const ss_patch *patch, const float *points))[2] {
-    size_t edges = (size_t)patch->faces.edge_count, vertices = (size_t)patch->vertex_count;
+double (*held_uv_of(const ss_patch *patch, const float *rest_points))[2] {
+    double(*uv)[2] = calloc((size_t)patch->vertex_count, sizeof *uv);
+    skinslide_error error;
+    assert_ok(ss_place_boundary(patch, patch->setup->boundary, rest_points, uv, &error), &error);
+    if (patch->setup->holes == SKINSLIDE_HOLES_PINNED)
+        assert_ok(ss_place_holes(patch, rest_points, uv, &error), &error);
+    return uv;
+}
+
+double (*embedding_of(const ss_patch *patch, const float *rest_points, const float *points))[2] {
+    size_t edges = (size_t)patch->faces.edge_count;
     double *lengths = malloc(edges * sizeof *lengths), *density = malloc(edges * sizeof *density);
-    double *paint = malloc(edges * sizeof *paint), (*uv)[2] = malloc(vertices * sizeof *uv);
-    skinslide_controls none = SKINSLIDE_CONTROLS_DEFAULT;
-    ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, patch->fixed};
-    ss_system *system;
-    ss_factor *factor;
+    double(*uv)[2] = held_uv_of(patch, rest_points);
+    ss_net net = ss_net_of(patch, patch->fixed);
     skinslide_error error;
     ss_edge_lengths(patch, points, lengths);
-    ss_paint(patch, &none, paint);
-    ss_force_density(patch, lengths, paint, density);
-    memcpy(uv, patch->fixed_uv, vertices * sizeof *uv);
-    assert_ok(ss_system_create(&net, patch->label, &system, &error), &error);
-    assert_ok(ss_factor_create(system, &factor, &error), &error);
-    assert_ok(ss_embed(system, factor, density, uv, &error), &error);
-    ss_factor_destroy(factor);
-    ss_system_destroy(system);
-    free(lengths), free(density), free(paint);
+    ss_force_density(patch, lengths, NULL, density);
+    assert_ok(ss_embed_once(&net, patch->label, density, uv, &error), &error);
+    free(lengths), free(density);
     return uv;
 }
 
@@ -164,24 +160,35 @@ void embed_densely(const ss_net *net, const double *density, double (*uv)[2]) {
     free(rows), free(unknown);
 }
 
-ss_location search_all(const ss_faces *faces, const double (*uv)[2], const double p[2], bool *inside) {
+ss_place place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle, const double p[2]) {
+    ss_place place;
+    ss_place_at(patch, uv, triangle, p, &place);
+    return place;
+}
+
+ss_place search_all(const ss_patch *patch, const double (*uv)[2], const double p[2], bool *inside) {
+    const ss_faces *faces = &patch->faces;
     *inside = true;
     for (int32_t f = 0; f < faces->face_count; f++) {
-        int32_t triangle = ss_fan_holding(faces, f, uv, p);
+        int32_t triangle = ss_triangle_holding(patch, f, uv, p);
         if (triangle >= 0)
-            return (ss_location){f, triangle, {p[0], p[1]}};
+            return place_at(patch, uv, triangle, p);
     }
     *inside = false;
-    double best = INFINITY, at[2];
-    ss_location nearest = {0};
+    double best = INFINITY, at[2], nearest[2] = {0, 0};
+    int32_t corner = 0;
     for (int32_t c = 0; c < faces->corner_count; c++) {
         double square = ss_nearest_on_side(faces, uv, c, p, at);
-        if (square < best) {
-            best = square;
-            nearest = (ss_location){faces->corner_face[c], ss_fan_of_side(faces, c), {at[0], at[1]}};
-        }
+        if (square < best)
+            best = square, corner = c, nearest[0] = at[0], nearest[1] = at[1];
     }
-    return nearest;
+    return place_at(patch, uv, ss_triangle_of_side(patch, corner), nearest);
+}
+
+void assert_same_place(const ss_place *a, const ss_place *b) {
+    assert_int_equal(a->triangle, b->triangle);
+    assert_same_bytes(a->weight, b->weight, sizeof a->weight);
+    assert_same_bytes(a->uv, b->uv, sizeof a->uv);
 }
 
 bool choose_way(const fixture *f, int32_t way, skinslide_patch_setup *choices) {

@@ -47,14 +47,23 @@ void free_rig(rig *r);
 float *slide_with(const rig *r, const test_mesh *mesh, const float *points, const skinslide_controls *controls,
                   skinslide_patch_result *results);
 
+/* Where the plane rule puts what it holds; free vertices at 0: [vertex_count][2], to be freed. */
+double (*held_uv_of(const ss_patch *patch, const float *rest_points))[2];
+
 /* The embedding of a patch for some points, with the set-up's rule and no paint: [vertex_count][2], to be freed. */
-double (*embedding_of(const ss_patch *patch, const float *points))[2];
+double (*embedding_of(const ss_patch *patch, const float *rest_points, const float *points))[2];
 
 /* The same system as ss_embed's, solved densely by elimination with row exchanges. */
 void embed_densely(const ss_net *net, const double *density, double (*uv)[2]);
 
+/* What ss_place_at gives. */
+ss_place place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle, const double p[2]);
+
 /* The lowest face that holds p among all, each tested; else the nearest of all sides, when *inside is false. */
-ss_location search_all(const ss_faces *faces, const double (*uv)[2], const double p[2], bool *inside);
+ss_place search_all(const ss_patch *patch, const double (*uv)[2], const double p[2], bool *inside);
+
+/* The same in every bit. */
+void assert_same_place(const ss_place *a, const ss_place *b);
 
 /* Every way to set up a fixture: boundaries x holes x rules x interpolations. Some are no way for the fixture: false. */
 enum { WAY_COUNT = 24 };

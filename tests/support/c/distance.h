@@ -1,6 +1,6 @@
 /* How far a point is from a surface, in double. */
-#ifndef SKINSLIDE_TEST_SURFACE_H
-#define SKINSLIDE_TEST_SURFACE_H
+#ifndef SKINSLIDE_TEST_DISTANCE_H
+#define SKINSLIDE_TEST_DISTANCE_H
 
 #include "support.h"
 

@@ -1,5 +1,5 @@
-/* See surface.h. */
-#include "surface.h"
+/* See distance.h. */
+#include "distance.h"
 
 #include <math.h>
 

@@ -1,0 +1,117 @@
+/* The artist's controls: what every edge pulls with, and how far each vertex goes. */
+#include "slider.h"
+
+#include <math.h>
+
+/* ---- Checks that name mesh elements ---- */
+
+static skinslide_status check_density(const float *values, int32_t count, const char *name, const char *element,
+                                      skinslide_error *error) {
+    for (int32_t i = 0; values && i < count; i++)
+        if (!(values[i] > 0) || isinf(values[i]))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: force density of %s %d is %g; it must be finite and > 0",
+                           name, element, i, values[i]);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status check_edge_density(const char *name, const skinslide_controls *controls, skinslide_error *error) {
+    if (controls->edge_count < 0 || (controls->edge_count > 0 && (!controls->edges || !controls->edge_density)))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: edges without force densities, or the reverse", name);
+    for (int32_t i = 0; i < controls->edge_count; i++) {
+        float value = controls->edge_density[i];
+        if (!(value > 0) || isinf(value))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL,
+                           "patch %s: force density of edge %d-%d is %g; it must be finite and > 0", name,
+                           controls->edges[2 * i], controls->edges[2 * i + 1], value);
+    }
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
+                                   skinslide_error *error) {
+    skinslide_status status = check_density(controls->vertex_density, mesh->vertex_count, name, "vertex", error);
+    if (!status)
+        status = check_density(controls->face_density, mesh->face_count, name, "face", error);
+    if (!status)
+        status = check_edge_density(name, controls, error);
+    if (status)
+        return status;
+    for (int32_t v = 0; controls->weight && v < mesh->vertex_count; v++)
+        if (isnan(controls->weight[v]))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: weight of vertex %d is not a number", name, v);
+    for (int32_t v = 0; controls->max_distance && v < mesh->vertex_count; v++)
+        if (!(controls->max_distance[v] >= 0))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: largest distance of vertex %d is %g; it must be >= 0", name,
+                           v, controls->max_distance[v]);
+    if (isnan(controls->envelope))
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: envelope is not a number", name);
+    return SKINSLIDE_OK;
+}
+
+/* ---- Paint ---- */
+
+static void paint_vertices(const ss_patch *patch, const float *density, double *paint) {
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        const int32_t *v = patch->edge_vertex[e];
+        paint[e] *= 0.5 * ((double)density[patch->mesh_vertex[v[0]]] + density[patch->mesh_vertex[v[1]]]);
+    }
+}
+
+/* An edge takes the mean of the faces of the patch that it bounds: one or two. */
+static void paint_faces(const ss_patch *patch, const float *density, double *paint) {
+    const ss_faces *faces = &patch->faces;
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        int32_t twin = faces->corner_twin[c];
+        double here = density[patch->mesh_face[faces->corner_face[c]]];
+        if (twin < 0)
+            paint[faces->corner_edge[c]] *= here;
+        else if (c < twin)
+            paint[faces->corner_edge[c]] *= 0.5 * (here + density[patch->mesh_face[faces->corner_face[twin]]]);
+    }
+}
+
+/* Edges of other pieces of the set-up are passed over here: the slider checks that every edge is in some piece. */
+static void paint_edges(const ss_patch *patch, const skinslide_controls *controls, double *paint) {
+    for (int32_t i = 0; i < controls->edge_count; i++) {
+        int32_t a = ss_patch_vertex(patch, controls->edges[2 * i]), b = ss_patch_vertex(patch, controls->edges[2 * i + 1]);
+        int32_t edge = a < 0 || b < 0 ? -1 : ss_patch_edge(patch, a, b);
+        if (edge >= 0)
+            paint[edge] *= controls->edge_density[i];
+    }
+}
+
+void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double *paint) {
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        paint[e] = 1;
+    if (controls->vertex_density)
+        paint_vertices(patch, controls->vertex_density, paint);
+    if (controls->face_density)
+        paint_faces(patch, controls->face_density, paint);
+    paint_edges(patch, controls, paint);
+}
+
+/* ---- Weights ---- */
+
+static double clamped_share(double value, int32_t *clamped) {
+    *clamped += value < 0 || value > 1;
+    return value < 0 ? 0 : value > 1 ? 1 : value;
+}
+
+int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights) {
+    int32_t clamped = 0;
+    double envelope = clamped_share(controls->envelope, &clamped);
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        float weight = controls->weight ? controls->weight[patch->mesh_vertex[patch->free_vertex[i]]] : 1;
+        weights[i] = envelope * clamped_share(weight, &clamped);
+    }
+    return clamped;
+}
+
+bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits) {
+    bool any = false;
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        limits[i] = controls->max_distance ? controls->max_distance[patch->mesh_vertex[patch->free_vertex[i]]] : INFINITY;
+        any = any || !isinf(limits[i]);
+    }
+    return any;
+}

@@ -1,0 +1,51 @@
+/* How the triangles of a patch lie in a pose, or in a plane. */
+#include "surface.h"
+
+bool ss_posed_allocate(ss_memory *memory, const ss_patch *patch, ss_posed *pose) {
+    pose->patch = patch;
+    pose->point = ss_new(memory, patch->vertex_count, sizeof *pose->point);
+    pose->facet = SS_NEW(memory, ss_facet, patch->triangles.count);
+    return !memory->failed;
+}
+
+static void measure_facet(const double *a, const double *b, const double *c, ss_facet *facet) {
+    ss_subtract(b, a, facet->first);
+    ss_subtract(c, a, facet->second);
+    ss_cross(facet->first, facet->second, facet->normal);
+    double square = ss_dot(facet->normal, facet->normal);
+    facet->has_area = square > 0 && isfinite(1 / square);
+    facet->gram[0] = facet->has_area ? ss_dot(facet->second, facet->second) / square : 0;
+    facet->gram[1] = facet->has_area ? -ss_dot(facet->first, facet->second) / square : 0;
+    facet->gram[2] = facet->has_area ? ss_dot(facet->first, facet->first) / square : 0;
+    ss_normalise(facet->normal);
+}
+
+static void set_facets(ss_posed *pose) {
+    for (int32_t t = 0; t < pose->patch->triangles.count; t++) {
+        const int32_t *v = pose->patch->triangles.vertex[t];
+        measure_facet(pose->point[v[0]], pose->point[v[1]], pose->point[v[2]], &pose->facet[t]);
+    }
+}
+
+void ss_posed_set(ss_posed *pose, const float *points) {
+    ss_take_points(pose->patch, points, pose->point);
+    set_facets(pose);
+}
+
+void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]) {
+    for (int32_t v = 0; v < pose->patch->vertex_count; v++)
+        pose->point[v][0] = uv[v][0], pose->point[v][1] = uv[v][1], pose->point[v][2] = 0;
+    set_facets(pose);
+}
+
+void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]) {
+    const int32_t *v = pose->patch->triangles.vertex[place->triangle];
+    int corner = ss_place_corner(place);
+    const double *from = pose->point[v[corner < 0 ? 0 : corner]];
+    for (int k = 0; k < 3; k++)
+        out[k] = from[k];
+    if (corner >= 0)
+        return;
+    ss_add(place->weight[1], pose->facet[place->triangle].first, out);
+    ss_add(place->weight[2], pose->facet[place->triangle].second, out);
+}

@@ -1,0 +1,92 @@
+/* A patch as a surface to slide on: how its triangles lie, places on it, and ways over it. */
+#ifndef SKINSLIDE_SURFACE_H
+#define SKINSLIDE_SURFACE_H
+
+#include "patch.h"
+#include "vector.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- place.c ---- */
+
+#define SS_STAYS (-1)
+
+/* Where a vertex is. */
+typedef struct ss_place {
+    int32_t triangle; /* or SS_STAYS: the vertex keeps its own place */
+    double weight[3]; /* of the triangle's vertices: they sum to 1, and exactly 1 is the vertex itself */
+    double uv[2];     /* the same in a plane that the patch is laid out in */
+} ss_place;
+
+/* uv [vertex_count][2] is that plane everywhere. */
+ss_place ss_place_of_vertex(const ss_patch *patch, const double (*uv)[2], int32_t vertex);
+/* Keeps its own place. */
+ss_place ss_place_staying(const double own[2]);
+/* The point p of the plane in a triangle: outside of it by rounding at most, but where it has no area. */
+void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle, const double p[2], ss_place *out);
+/* Where the weights are in the plane. */
+void ss_place_in_plane(const ss_patch *patch, const double (*uv)[2], const ss_place *place, double out[2]);
+/* Ends a walk: sets uv, and the weights to what a place found at that point has. */
+void ss_place_settle(const ss_patch *patch, const double (*uv)[2], ss_place *place);
+/* Which vertex of its triangle the place is, or -1. */
+int ss_place_corner(const ss_place *place);
+
+/* ---- facets.c: triangles in a pose ---- */
+
+typedef struct ss_facet {
+    double first[3], second[3]; /* from its vertex 0 to 1 and 2 */
+    double gram[3];             /* the inverse of their products: 11, 12, 22 */
+    double normal[3];           /* of unit length */
+    bool has_area;
+} ss_facet;
+
+typedef struct ss_posed {
+    const ss_patch *patch;
+    double (*point)[3]; /* [vertex_count] */
+    ss_facet *facet;    /* [triangle_count] */
+} ss_posed;
+
+bool ss_posed_allocate(ss_memory *memory, const ss_patch *patch, ss_posed *pose);
+/* points is the whole mesh's. */
+void ss_posed_set(ss_posed *pose, const float *points);
+/* The plane as a pose: an embedding uv [vertex_count][2], to walk straight in. */
+void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]);
+void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]);
+
+/* ---- walk.c: triangle and weights change, uv does not until the place settles ---- */
+
+/* Walks straight in the plane to uv, or to the border. */
+void ss_walk(const ss_posed *plane, ss_place *place, const double uv[2]);
+/* The same, but no farther than limit measured in the pose. Returns how far. */
+double ss_walk_measured(const ss_posed *plane, const ss_posed *pose, ss_place *place, const double uv[2], double limit);
+/* For a place on the border: the direction in which faces go round it there, and a walk along it that far. */
+void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]);
+void ss_walk_border(const ss_posed *pose, ss_place *place, double distance);
+/* How far the place is along its loop from a vertex of it, the shorter way: less than 0 against the faces' way. */
+double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *place);
+
+/* ---- travel.c ---- */
+
+typedef struct ss_traveller ss_traveller; /* memory of one thread for one patch */
+
+/* How far along its way from its own place each free vertex goes, in their order. */
+typedef struct ss_allowance {
+    const double *shares; /* [free_count] of the way, NULL: all of it */
+    const double *limits; /* [free_count] at most, along the surface; NULL: no limit */
+} ss_allowance;
+
+/* Makes one where there is none yet. */
+skinslide_status ss_traveller_need(const ss_patch *patch, ss_traveller **traveller, skinslide_error *error);
+void ss_traveller_destroy(ss_traveller *traveller);
+/* Cuts the ways short. Each leads from the vertex's own place straight through the embedding uv [vertex_count][2], or along its
+ * free loop, to its place [free_count]. points is the whole mesh's. Returns how many ways a hole is in: those end at it. */
+int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*uv)[2], ss_allowance allowance,
+                  ss_place *places);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,253 @@
+/* Walks over a patch: straight in the plane that it is laid out in, or along its border in a pose. Straight means that where a
+ * walk crosses a side it goes on in the next triangle at the same angle to that side. It ends at the border of the patch, so a
+ * place never leaves it. */
+#include "surface.h"
+
+#define MOST_CROSSED 1000
+
+static void put(ss_place *place, int32_t triangle, const double weights[3]) {
+    place->triangle = triangle;
+    for (int k = 0; k < 3; k++)
+        place->weight[k] = weights[k];
+}
+
+/* ---- Setting out: a step as rates of the weights ---- */
+
+/* How fast the weights change along a vector, which is projected into the plane of the triangle. */
+static void rates_along(const ss_facet *facet, const double vector[3], double rates[3]) {
+    double first = ss_dot(facet->first, vector), second = ss_dot(facet->second, vector);
+    rates[1] = facet->gram[0] * first + facet->gram[1] * second;
+    rates[2] = facet->gram[1] * first + facet->gram[2] * second;
+    rates[0] = -rates[1] - rates[2];
+}
+
+static void vector_of(const ss_facet *facet, const double rates[3], double vector[3]) {
+    for (int k = 0; k < 3; k++)
+        vector[k] = rates[1] * facet->first[k] + rates[2] * facet->second[k];
+}
+
+/* Solves step = a p + b q; false where p and q turn right or make no angle. */
+static bool split(const double p[3], const double q[3], const double step[3], double out[2]) {
+    double area = p[0] * q[1] - p[1] * q[0];
+    out[0] = (step[0] * q[1] - step[1] * q[0]) / area;
+    out[1] = (p[0] * step[1] - p[1] * step[0]) / area;
+    return area > 0 && isfinite(out[0]) && isfinite(out[1]);
+}
+
+/* From a vertex: into the triangle that the step points into; where none is, the one that it nearly does. */
+static void leave_vertex(const ss_posed *plane, ss_place *place, const double step[3], double rates[3]) {
+    const ss_patch *patch = plane->patch;
+    int32_t vertex = patch->triangles.vertex[place->triangle][ss_place_corner(place)];
+    int32_t first = patch->triangles.vertex_triangle[vertex], t = first;
+    double best = -INFINITY;
+    do {
+        const int32_t *v = patch->triangles.vertex[t];
+        int k = ss_triangle_corner(patch, t, vertex), next = (k + 1) % 3, last = (k + 2) % 3;
+        double p[3], q[3], along[2];
+        ss_subtract(plane->point[v[next]], plane->point[vertex], p);
+        ss_subtract(plane->point[v[last]], plane->point[vertex], q);
+        if (split(p, q, step, along) && fmin(along[0], along[1]) > best) {
+            best = fmin(along[0], along[1]);
+            put(place, t, (double[3]){k == 0, k == 1, k == 2});
+            rates[next] = fmax(along[0], 0), rates[last] = fmax(along[1], 0), rates[k] = -rates[next] - rates[last];
+        }
+        t = patch->triangles.neighbour[t][last];
+    } while (best < 0 && t >= 0 && t != first);
+}
+
+static void leave(const ss_posed *plane, ss_place *place, const double step[3], double rates[3]) {
+    rates[0] = rates[1] = rates[2] = 0;
+    if (ss_place_corner(place) >= 0)
+        leave_vertex(plane, place, step, rates);
+    else
+        rates_along(&plane->facet[place->triangle], step, rates);
+}
+
+/* ---- Walking ---- */
+
+/* The part of the rates that can be gone before a weight is 0: 1 where none gets there; *corner is the weight. */
+static double reach(const ss_place *place, const double rates[3], int *corner) {
+    double most = 1;
+    *corner = -1;
+    for (int k = 0; k < 3; k++)
+        if (rates[k] < 0 && place->weight[k] < -rates[k] * most) {
+            most = place->weight[k] / -rates[k];
+            *corner = k;
+        }
+    return most;
+}
+
+static void advance(ss_place *place, double rates[3], double part, int corner) {
+    double second = fmin(1, fmax(0, place->weight[1] + part * rates[1]));
+    double third = fmin(1, fmax(0, place->weight[2] + part * rates[2])), sum = second + third;
+    second = corner == 1 ? 0 : second, third = corner == 2 ? 0 : third;
+    if (corner == 0 || second + third > 1)
+        second /= sum, third = 1 - second;
+    put(place, place->triangle, (double[3]){corner == 0 ? 0 : 1 - second - third, second, third});
+    for (int k = 0; k < 3; k++)
+        rates[k] *= 1 - part;
+}
+
+/* Over the side opposite a corner into the next triangle, at the same angle to it. */
+static void cross_side(const ss_posed *pose, ss_place *place, int corner, double rates[3]) {
+    const ss_patch *patch = pose->patch;
+    int32_t here = place->triangle, there = patch->triangles.neighbour[here][(corner + 1) % 3];
+    int32_t a = patch->triangles.vertex[here][(corner + 1) % 3], b = patch->triangles.vertex[here][(corner + 2) % 3];
+    double side[3], out[3], in[3], vector[3], weights[2] = {place->weight[(corner + 1) % 3], place->weight[(corner + 2) % 3]};
+    ss_subtract(pose->point[b], pose->point[a], side);
+    ss_normalise(side);
+    ss_cross(side, pose->facet[here].normal, out);
+    ss_cross(side, pose->facet[there].normal, in);
+    vector_of(&pose->facet[here], rates, vector);
+    double along = ss_dot(vector, side), over = ss_dot(vector, out);
+    for (int k = 0; k < 3; k++)
+        vector[k] = along * side[k] + over * in[k];
+    rates_along(&pose->facet[there], vector, rates);
+    place->triangle = there;
+    for (int k = 0; k < 3; k++) {
+        int32_t v = patch->triangles.vertex[there][k];
+        place->weight[k] = v == a ? weights[0] : v == b ? weights[1] : 0;
+    }
+}
+
+/* What a walk is measured with: the way in another pose, and how far it may go there. */
+typedef struct ss_meter {
+    const ss_posed *pose;
+    double walked, limit;
+} ss_meter;
+
+/* How much of a part of the rates the limit allows; adds its length. */
+static double measure(ss_meter *meter, int32_t triangle, const double rates[3], double part) {
+    double vector[3];
+    vector_of(&meter->pose->facet[triangle], rates, vector);
+    double length = part * ss_length(vector), allowed = meter->limit - meter->walked;
+    bool too_far = length > allowed;
+    meter->walked += too_far ? allowed : length;
+    return too_far ? part * (allowed / length) : part;
+}
+
+/* One straight walk. A facet without area ends it, and so does the border. */
+static void walk(const ss_posed *plane, ss_place *place, const double step[3], ss_meter *meter) {
+    double rates[3];
+    leave(plane, place, step, rates);
+    for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
+        int corner;
+        double whole = reach(place, rates, &corner), part = meter ? measure(meter, place->triangle, rates, whole) : whole;
+        advance(place, rates, part, part < whole ? -1 : corner);
+        if (corner < 0 || part < whole)
+            return;
+        int32_t there = plane->patch->triangles.neighbour[place->triangle][(corner + 1) % 3];
+        if (there < 0 || !plane->facet[there].has_area)
+            return;
+        cross_side(plane, place, corner, rates);
+    }
+}
+
+static void step_to(const ss_posed *plane, const ss_place *place, const double uv[2], double step[3]) {
+    double here[3];
+    ss_place_point(plane, place, here);
+    step[0] = uv[0] - here[0], step[1] = uv[1] - here[1], step[2] = 0;
+}
+
+void ss_walk(const ss_posed *plane, ss_place *place, const double uv[2]) {
+    double step[3];
+    step_to(plane, place, uv, step);
+    walk(plane, place, step, NULL);
+}
+
+double ss_walk_measured(const ss_posed *plane, const ss_posed *pose, ss_place *place, const double uv[2], double limit) {
+    double step[3];
+    ss_meter meter = {pose, 0, limit};
+    step_to(plane, place, uv, step);
+    walk(plane, place, step, &meter);
+    return meter.walked;
+}
+
+/* ---- Along the border ---- */
+
+/* The border side that the place is on, up to rounding: at a vertex the one that leaves it. */
+static int border_side(const ss_patch *patch, const ss_place *place) {
+    int nearest = 0;
+    double least = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        double off = place->weight[(k + 2) % 3];
+        if (patch->triangles.neighbour[place->triangle][k] < 0 && place->weight[k] > 0 && off < least)
+            nearest = k, least = off;
+    }
+    return nearest;
+}
+
+static double side_vector(const ss_posed *pose, int32_t triangle, int side, double out[3]) {
+    const int32_t *v = pose->patch->triangles.vertex[triangle];
+    ss_subtract(pose->point[v[(side + 1) % 3]], pose->point[v[side]], out);
+    return sqrt(ss_dot(out, out));
+}
+
+/* The border side that ends where one begins. */
+static void side_before(const ss_patch *patch, int32_t *triangle, int *side) {
+    int32_t vertex = patch->triangles.vertex[*triangle][*side], t = *triangle;
+    int incoming = (*side + 2) % 3;
+    while (patch->triangles.neighbour[t][incoming] >= 0) {
+        t = patch->triangles.neighbour[t][incoming];
+        incoming = (ss_triangle_corner(patch, t, vertex) + 2) % 3;
+    }
+    *triangle = t, *side = incoming;
+}
+
+static void side_after(const ss_patch *patch, int32_t *triangle, int *side) {
+    int32_t vertex = patch->triangles.vertex[*triangle][(*side + 1) % 3];
+    *triangle = patch->triangles.vertex_triangle[vertex];
+    *side = ss_triangle_corner(patch, *triangle, vertex);
+}
+
+void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]) {
+    int side = border_side(pose->patch, place);
+    side_vector(pose, place->triangle, side, out);
+    ss_normalise(out);
+    if (place->weight[side] != 1)
+        return;
+    int32_t triangle = place->triangle;
+    double before[3];
+    side_before(pose->patch, &triangle, &side);
+    side_vector(pose, triangle, side, before);
+    ss_normalise(before);
+    for (int k = 0; k < 3; k++)
+        out[k] += before[k];
+    ss_normalise(out);
+}
+
+void ss_walk_border(const ss_posed *pose, ss_place *place, double distance) {
+    const ss_patch *patch = pose->patch;
+    int32_t triangle = place->triangle;
+    int side = border_side(patch, place);
+    double vector[3], length = side_vector(pose, triangle, side, vector);
+    double along = place->weight[(side + 1) % 3] * length + distance;
+    for (int walked = 0; along < 0 && walked < 1000; walked++) {
+        side_before(patch, &triangle, &side);
+        along += length = side_vector(pose, triangle, side, vector);
+    }
+    for (int walked = 0; along >= length && walked < 1000; walked++) {
+        along -= length;
+        side_after(patch, &triangle, &side);
+        length = side_vector(pose, triangle, side, vector);
+    }
+    double share = length > 0 ? fmin(1, fmax(0, along / length)) : 0;
+    put(place, triangle, (double[3]){0, 0, 0});
+    place->weight[side] = 1 - share;
+    place->weight[(side + 1) % 3] = share;
+}
+
+double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *place) {
+    const ss_patch *patch = pose->patch;
+    int32_t triangle = patch->triangles.vertex_triangle[vertex];
+    int side = ss_triangle_corner(patch, triangle, vertex), goal = border_side(patch, place);
+    double walked = 0, there = 0, vector[3];
+    do {
+        double length = side_vector(pose, triangle, side, vector);
+        if (triangle == place->triangle && side == goal)
+            there = walked + place->weight[(side + 1) % 3] * length;
+        walked += length;
+        side_after(patch, &triangle, &side);
+    } while (patch->triangles.vertex[triangle][side] != vertex);
+    return there <= walked / 2 ? there : there - walked;
+}
