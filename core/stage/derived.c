@@ -102,13 +102,19 @@ static skinslide_status choose_layout(const ss_record *record, const char *inter
     return SKINSLIDE_OK;
 }
 
-static skinslide_status check_value(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_normals_layout layout,
+static skinslide_status check_shape(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_normals_layout layout,
                                     skinslide_error *error) {
     if (!ss_has_value(record))
         return ss_fail(error, SKINSLIDE_BAD_POINTS, "there is no value");
-    skinslide_status status = ss_check_positions(record, SKINSLIDE_BAD_POINTS, error);
+    skinslide_status status = ss_check_triples(record, SKINSLIDE_BAD_POINTS, error);
     return status ? status
                   : ss_check_length(record, length_of_mesh(mesh, layout), element_of(layout), SKINSLIDE_BAD_POINTS, error);
+}
+
+static skinslide_status check_value(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_normals_layout layout,
+                                    skinslide_error *error) {
+    skinslide_status status = check_shape(mesh, record, layout, error);
+    return status ? status : ss_check_indices(record, SKINSLIDE_BAD_POINTS, error);
 }
 
 /* ---- Rates of change ---- */
@@ -173,11 +179,15 @@ static skinslide_status judge(const skinslide_stage_derived *derived, int32_t ro
 }
 
 /* Normals that the primvar hides are read again where it has to be blocked. */
+static void block_hidden(skinslide_stage_derived *derived) {
+    block(derived, SS_ROW_NORMALS, "", inputs()[SS_ROW_NORMALS].shown.type_name);
+}
+
 static void hide(skinslide_stage_derived *derived) {
     derivation *primvar = &derived->derivations[0];
     primvar->output.hidden = property_name(derived, &inputs()[SS_ROW_NORMALS].shown, "");
     if (!primvar->output.pose_count)
-        block(derived, SS_ROW_NORMALS, "", inputs()[SS_ROW_NORMALS].shown.type_name);
+        block_hidden(derived);
 }
 
 static void take(skinslide_stage_derived *derived, int32_t row, const ss_record *record, const double *times,
@@ -210,6 +220,26 @@ skinslide_status skinslide_stage_derived_take(skinslide_stage_derived *derived, 
     skinslide_status status = ss_open(value, &record, error);
     if (!status && record.value.type != SKINSLIDE_VALUE_NONE)
         take(derived, row, &record, times, time_count);
+    return status ? status : derived->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived, const skinslide_stage_input *input,
+                                               const skinslide_value *value, skinslide_error *error) {
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_DERIVED, input);
+    if (!derived || row < 0)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "nothing derived, or no input of that");
+    ss_record record;
+    skinslide_error why;
+    skinslide_status status = ss_open(value, &record, error);
+    for (int32_t i = 0; !status && i < derived->count; i++) {
+        derivation *own = &derived->derivations[i];
+        if (own->row != row || !own->output.pose_count || !check_shape(derived->mesh, &record, own->layout, &why))
+            continue;
+        own->output.pose_count = 0;
+        own->output.reason = ss_copy_text(&derived->memory, why.message);
+        if (own->output.hidden)
+            block_hidden(derived);
+    }
     return status ? status : derived->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 

@@ -217,6 +217,8 @@ static skinslide_status prepare(search *own, const skinslide_stage_prim *prim, s
 }
 
 static void look(search *own) {
+    if (own->prim.uncomposed)
+        say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "USD could not compose this: %s", own->prim.uncomposed);
     list_patches(own);
     if (own->memory.failed)
         return;

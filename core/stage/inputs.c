@@ -59,7 +59,8 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
  * namespace, and paint is of several types, and under primvars:. */
 #define PRIMVAR(name, type, group, when, inherited)                                                                            \
     .shown = {name, type, NULL, NULL, group, "primvars:" SS_NAMESPACE, when, 1, inherited}
-#define SETTING(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
+#define SETTING(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0}
+#define INDICES(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
 #define CONTROL(declared) .shown = {declared, SKINSLIDE_STAGE_CONTROLS, SS_NAMESPACE, SKINSLIDE_STAGE_ANIMATED, 0, 0}
 #define PAINT(name)       PRIMVAR(name, "float[]", SKINSLIDE_STAGE_CONTROLS, SKINSLIDE_STAGE_ANIMATED, 1), .kind = SS_KIND_PAINT
 
@@ -69,8 +70,8 @@ static const ss_input patch_inputs[SS_PATCH_ROWS] = {
     [SS_ROW_HOLES] = {SETTING(SS_PATCH_HOLES), .kind = SS_KIND_CHOICE},
     [SS_ROW_RULE] = {SETTING(SS_PATCH_FORCE_DENSITY_RULE), .kind = SS_KIND_CHOICE},
     [SS_ROW_INTERPOLATION] = {SETTING(SS_PATCH_INTERPOLATION), .kind = SS_KIND_CHOICE},
-    [SS_ROW_CORNERS] = {SETTING(SS_PATCH_CORNERS), .kind = SS_KIND_CORNERS},
-    [SS_ROW_EDGES] = {SETTING(SS_PATCH_EDGES), .kind = SS_KIND_EDGES},
+    [SS_ROW_CORNERS] = {INDICES(SS_PATCH_CORNERS), .kind = SS_KIND_CORNERS},
+    [SS_ROW_EDGES] = {INDICES(SS_PATCH_EDGES), .kind = SS_KIND_EDGES},
     [SS_ROW_WEIGHT_CHANNEL] = {SETTING(SS_PATCH_WEIGHT_MAP_CHANNEL), .kind = SS_KIND_WORD},
     [SS_ROW_DENSITY_CHANNEL] = {SETTING(SS_PATCH_FORCE_DENSITY_MAP_CHANNEL), .kind = SS_KIND_WORD},
     [SS_ROW_ST] = {SETTING(SS_PATCH_MAP_ST), .kind = SS_KIND_WORD},

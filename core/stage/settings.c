@@ -32,9 +32,10 @@ static skinslide_status take_choice(const ss_input *input, const ss_record *reco
     int32_t found = token ? find_token(own->tokens, token) : -1;
     if (found < 0) {
         char allowed[160], shown[256];
+        const char *quote = ss_is_number(record) ? "'" : "";
         list_tokens(own->tokens, allowed, sizeof allowed);
-        return ss_fail(error, status, SS_NAMED " is %s; it must be one of %s", SS_NAME(record->value.name),
-                       ss_shown(record, shown), allowed);
+        return ss_fail(error, status, SS_NAMED " is %s%s%s; it must be one of %s", SS_NAME(record->value.name), quote,
+                       ss_shown(record, shown), quote, allowed);
     }
     taken->choice = found;
     return SKINSLIDE_OK;

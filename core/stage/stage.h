@@ -38,13 +38,15 @@ double ss_number(const ss_record *record, int64_t element, int32_t k);
 skinslide_status ss_check_integers(const ss_record *record, skinslide_status status, skinslide_error *error);
 skinslide_status ss_check_floats(const ss_record *record, skinslide_status status, skinslide_error *error);
 skinslide_status ss_check_positions(const ss_record *record, skinslide_status status, skinslide_error *error);
+/* The same but for indices, which may be many. */
+skinslide_status ss_check_triples(const ss_record *record, skinslide_status status, skinslide_error *error);
 skinslide_status ss_check_length(const ss_record *record, int64_t count, const char *of, skinslide_status status,
                                  skinslide_error *error);
 /* Copies a record that was checked: [length], and [length][width]. */
 void ss_copy_integers(const ss_record *record, int32_t *out);
 void ss_copy_floats(const ss_record *record, float *out);
 
-/* A value that is none of these, in a sentence: 'x' of text, a number, the name of another type. */
+/* A value in a sentence: 'x' of text, a number, [1, 2, ...], the name of another type. */
 const char *ss_shown(const ss_record *record, char text[256]);
 
 /* Names and paths of any length in a sentence of a limited one: the head of a name, the tail of a path.

@@ -162,10 +162,15 @@ skinslide_status ss_check_floats(const ss_record *record, skinslide_status statu
     return ss_check_indices(record, status, error);
 }
 
+skinslide_status ss_check_triples(const ss_record *record, skinslide_status status, skinslide_error *error) {
+    if (is_array_of(&record->value, is_real, 3))
+        return SKINSLIDE_OK;
+    return ss_fail(error, status, SS_NAMED " is not an array of points", SS_NAME(record->value.name));
+}
+
 skinslide_status ss_check_positions(const ss_record *record, skinslide_status status, skinslide_error *error) {
-    if (!is_array_of(&record->value, is_real, 3))
-        return ss_fail(error, status, SS_NAMED " is not an array of points", SS_NAME(record->value.name));
-    return ss_check_indices(record, status, error);
+    skinslide_status failed = ss_check_triples(record, status, error);
+    return failed ? failed : ss_check_indices(record, status, error);
 }
 
 skinslide_status ss_check_length(const ss_record *record, int64_t count, const char *of, skinslide_status status,
@@ -264,16 +269,28 @@ const char *ss_file_tail(const char *path) {
     return path;
 }
 
+/* "[1, 2, 3, 4, ...]" */
+static void list_numbers(const skinslide_value *value, char *text, size_t size) {
+    enum { MOST = 4 };
+    size_t length = (size_t)snprintf(text, size, "[");
+    for (int64_t i = 0; i < value->count && i < MOST && length < size; i++)
+        length += (size_t)snprintf(text + length, size - length, "%s%g", i ? ", " : "", number(value, i));
+    if (length < size)
+        snprintf(text + length, size - length, value->count > MOST ? ", ...]" : "]");
+}
+
 const char *ss_shown(const ss_record *record, char text[256]) {
     const skinslide_value *value = &record->value;
-    if (is_text(value->type) && !value->is_array) {
-        const char *said = value->data;
+    bool is_numbers = value->width == 1 && value->type >= SKINSLIDE_VALUE_BOOL && value->type <= SKINSLIDE_VALUE_DOUBLE;
+    const char *said = value->data;
+    if (is_text(value->type) && !value->is_array)
         snprintf(text, 256, "'" SS_NAMED "'", SS_NAME(said));
-    } else if (ss_is_number(record) && value->count == 1) {
+    else if (is_numbers && value->is_array)
+        list_numbers(value, text, 256);
+    else if (is_numbers)
         snprintf(text, 256, "%g", number(value, 0));
-    } else {
+    else
         snprintf(text, 256, SS_NAMED, SS_NAME(value->type_name));
-    }
     return text;
 }
 

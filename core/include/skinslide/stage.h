@@ -52,9 +52,9 @@ typedef enum skinslide_value_type {
     SKINSLIDE_VALUE_HALF, /* uint16_t, the bits of an IEEE 754 binary16 */
     SKINSLIDE_VALUE_FLOAT,
     SKINSLIDE_VALUE_DOUBLE,
-    SKINSLIDE_VALUE_TEXT,  /* a token or a string: data is the text itself, UTF-8 and ended by 0 */
-    SKINSLIDE_VALUE_ASSET, /* a path of a file as it was authored, as TEXT is given */
-    SKINSLIDE_VALUE_OTHER  /* a value of another kind: data is not read, and type_name says what it is */
+    SKINSLIDE_VALUE_TEXT, /* a token or a string: data is the text itself, UTF-8 and ended by 0 */
+    SKINSLIDE_VALUE_ASSET, /* the path of a file, given as TEXT is: one that no longer depends on the layer that authored it */
+    SKINSLIDE_VALUE_OTHER /* a value of another kind: data is not read, and type_name says what it is */
 } skinslide_value_type;
 
 /* One value of a property at one time. Start from SKINSLIDE_VALUE_DEFAULT: none. */
@@ -148,10 +148,11 @@ typedef struct skinslide_stage_prim {
     int32_t property_count;     /* of authored properties whose names begin with skinSlide: or primvars:skinSlide: */
     const char *const *schemas; /* [schema_count] their names, in order */
     const char *const *properties; /* [property_count] their names */
+    const char *uncomposed;        /* what USD says that it could not compose of it, in one line; or NULL */
 } skinslide_stage_prim;
 
 #define SKINSLIDE_STAGE_PRIM_DEFAULT                                                                                           \
-    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 typedef enum skinslide_severity { SKINSLIDE_SEVERITY_WARNING, SKINSLIDE_SEVERITY_ERROR } skinslide_severity;
 
@@ -344,7 +345,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_take_coordinates(skinsli
 /* A file that a texture is made of. */
 typedef struct skinslide_stage_need {
     const skinslide_stage_input *input; /* the texture's */
-    const char *path;                   /* as authored, with the tile's number where it says <UDIM> */
+    const char *path;                   /* that of the asset, with the tile's number where it says <UDIM> */
     int32_t tile;                       /* that number; 0 of a file without tiles */
     int64_t largest;                    /* bytes of a file; those of larger ones need not be read, which are refused */
 } skinslide_stage_need;
@@ -443,6 +444,13 @@ SKINSLIDE_API void skinslide_stage_derived_destroy(skinslide_stage_derived *deri
 SKINSLIDE_API skinslide_status skinslide_stage_derived_take(skinslide_stage_derived *derived,
                                                             const skinslide_stage_input *input, const skinslide_value *value,
                                                             const double *times, int64_t time_count, skinslide_error *error);
+
+/* Looks at a later sample of an input, once all inputs are taken: a type or a length that it cannot have blocks its output, at all
+ * times. What else keeps it from being recomputed skinslide_stage_derived_value says.
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
+                                                             const skinslide_stage_input *input, const skinslide_value *value,
+                                                             skinslide_error *error);
 
 /* An attribute to write beside the points. */
 typedef struct skinslide_stage_output {

@@ -211,7 +211,9 @@ static void bad_envelopes_are_named(void **state) {
     (void)state;
     scene s = set_up(NULL);
     expect(&s, "envelope", text_of("envelope", "x"), "envelope is 'x'; it must be a float");
-    expect(&s, "envelope", FLOATS("envelope", 1), "envelope is float[]; it must be a float");
+    expect(&s, "envelope", FLOATS("envelope", 1), "envelope is [1]; it must be a float");
+    expect(&s, "envelope", FLOATS("envelope", 1, 0.5f, 3, 4, 5), "envelope is [1, 0.5, 3, 4, ...]; it must be a float");
+    expect(&s, "envelope", other_of("envelope", "matrix4d"), "envelope is matrix4d; it must be a float");
     expect(&s, "envelope", NUMBER("envelope", NAN), "envelope is nan");
     tear_down(&s);
 }

@@ -143,6 +143,34 @@ static void why_normals_are_blocked(void **state) {
     }
 }
 
+/* A later sample that has another length, as the first could, blocks them at all times. */
+static void later_samples_are_looked_at(void **state) {
+    (void)state;
+    scene s = set_up();
+    const skinslide_stage_input *primvar = input_of(SKINSLIDE_STAGE_DERIVED, "primvars:", "normals");
+    const skinslide_stage_input *velocities = input_of(SKINSLIDE_STAGE_DERIVED, "", "velocities");
+    const int32_t far[VERTICES] = {99};
+    const skinslide_value indices = array_of("indices", SKINSLIDE_VALUE_INT32, 1, VERTICES, far);
+    const skinslide_value good = vectors("x", VERTICES), few = vectors("primvars:normals", 5), none = blocked_of("x");
+    const skinslide_value indexed = indexed_by(vectors("x", 1), &indices); /* which are not looked at yet */
+    take(&s, "primvars:", "normals", painted_as(vectors("primvars:normals", VERTICES), "vertex"), frames, 4);
+    take(&s, "", "normals", vectors("normals", VERTICES), frames, 4);
+    take(&s, "", "velocities", vectors("velocities", VERTICES), frames, 4);
+    assert_ok(skinslide_stage_derived_check(s.derived, primvar, &good, &error), &error);
+    assert_ok(skinslide_stage_derived_check(s.derived, primvar, &indexed, &error), &error);
+    assert_ok(skinslide_stage_derived_check(s.derived, velocities, &good, &error), &error);
+    expect(&s, 0, "primvars:normals", 1, NULL);
+    expect(&s, 1, "velocities", 2, NULL);
+    assert_ok(skinslide_stage_derived_check(s.derived, primvar, &few, &error), &error);
+    assert_ok(skinslide_stage_derived_check(s.derived, primvar, &few, &error), &error);
+    assert_ok(skinslide_stage_derived_check(s.derived, velocities, &none, &error), &error);
+    expect(&s, 0, "primvars:normals", 0, "primvars:normals has 5 values, but the mesh has 9 points");
+    expect(&s, 1, "velocities", 0, "there is no value");
+    expect(&s, 2, "normals", 0, NULL);
+    expect_no_more(&s, 3);
+    tear_down(&s);
+}
+
 /* As skinslide_normals makes them. */
 static void normals_are_recomputed(void **state) {
     (void)state;
@@ -279,6 +307,7 @@ int main(void) {
         cmocka_unit_test(primvars_win_and_lose_their_indices),
         cmocka_unit_test(bad_normals_are_blocked_with_what_they_hide),
         cmocka_unit_test(why_normals_are_blocked),
+        cmocka_unit_test(later_samples_are_looked_at),
         cmocka_unit_test(normals_are_recomputed),
         cmocka_unit_test(poses_that_a_value_takes),
         cmocka_unit_test(rates_are_recomputed),

@@ -197,6 +197,16 @@ static void many_and_long_names(void **state) {
     skinslide_stage_finding_destroy(finding);
 }
 
+static void what_could_not_be_composed_is_said(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+    prim.uncomposed = "Could not open asset @gone.usdc@";
+    skinslide_stage_finding *finding = find(&prim);
+    assert_true(finding->slides);
+    expect_problem(finding, 0, SKINSLIDE_SEVERITY_ERROR, NULL, "USD could not compose this: Could not open asset @gone.usdc@");
+    skinslide_stage_finding_destroy(finding);
+}
+
 static void facts_that_are_none(void **state) {
     (void)state;
     skinslide_stage_finding *finding = NULL;
@@ -222,11 +232,17 @@ static void nothing_to_slide(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(patches_in_their_order),       cmocka_unit_test(reasons_in_the_order_in_which_they_count),
-        cmocka_unit_test(skinned_samples_are_slid),     cmocka_unit_test(a_schema_without_a_name_is_an_error),
-        cmocka_unit_test(patches_that_are_not_applied), cmocka_unit_test(settings_that_are_none),
-        cmocka_unit_test(every_input_is_a_setting),     cmocka_unit_test(many_and_long_names),
-        cmocka_unit_test(facts_that_are_none),          cmocka_unit_test(nothing_to_slide),
+        cmocka_unit_test(patches_in_their_order),
+        cmocka_unit_test(reasons_in_the_order_in_which_they_count),
+        cmocka_unit_test(skinned_samples_are_slid),
+        cmocka_unit_test(a_schema_without_a_name_is_an_error),
+        cmocka_unit_test(patches_that_are_not_applied),
+        cmocka_unit_test(settings_that_are_none),
+        cmocka_unit_test(every_input_is_a_setting),
+        cmocka_unit_test(many_and_long_names),
+        cmocka_unit_test(what_could_not_be_composed_is_said),
+        cmocka_unit_test(facts_that_are_none),
+        cmocka_unit_test(nothing_to_slide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
