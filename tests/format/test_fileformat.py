@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, UsdUtils, UsdValidation, Vt
+from pxr import Sdf, Usd, UsdGeom, UsdUtils, UsdValidation
 
 import skinslide
 from layers import (
@@ -32,13 +32,11 @@ from repository import ROOT
 from stages import (
     FRAMES,
     MESH,
-    PATCH,
     add_mesh,
     add_patch,
     grid,
     patched_stage,
     save,
-    set_primvar,
     set_property,
     vectors,
 )
@@ -104,87 +102,7 @@ def test_listing_and_typing_through_the_layer_solves_nothing(path):
     assert solve_count() == before
 
 
-# ---- The same bytes as a bake ----
-
-
-def animate(mesh: UsdGeom.Mesh) -> None:
-    """Everything that a bake writes, and controls that vary beside the points."""
-    flat = vectors(np.tile([0, 0, 1], (36 * 4, 1)))
-    normals = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("normals", Sdf.ValueTypeNames.Normal3fArray, "faceVarying")
-    normals.Set(Vt.Vec3fArray([(0, 0, 1)]))
-    normals.SetIndices(Vt.IntArray(len(flat), 0))
-    for frame in FRAMES:
-        mesh.CreateVelocitiesAttr().Set(vectors(np.ones((49, 3))), frame)
-        mesh.CreateAccelerationsAttr().Set(vectors(np.zeros((49, 3))), frame)
-    set_property(mesh, "envelope", 0.25, 1001)
-    set_property(mesh, "envelope", 1.0, 1002.5)
-    weight = np.linspace(0, 1, 49, dtype=np.float32)
-    set_primvar(
-        mesh, f"skinSlide:{PATCH}:weight", Sdf.ValueTypeNames.FloatArray, "vertex", Vt.FloatArray.FromNumpy(weight)
-    )
-    density = np.linspace(1, 3, 36, dtype=np.float32)
-    for frame, scale in ((1001, 1), (1003, 2)):
-        value = Vt.FloatArray.FromNumpy(density**scale)
-        set_primvar(mesh, f"skinSlide:{PATCH}:forceDensity", Sdf.ValueTypeNames.FloatArray, "uniform", value, frame)
-
-
-def relax(mesh: UsdGeom.Mesh) -> None:
-    animate(mesh)
-    set_property(mesh, "forceDensityRule", "relaxed")
-    for frame, limit in ((1001, 0.05), (1003, 0.2)):
-        set_primvar(
-            mesh, f"skinSlide:{PATCH}:maxDistance", Sdf.ValueTypeNames.FloatArray, "vertex", [limit] * 49, frame
-        )
-
-
-@pytest.mark.parametrize("author", [animate, relax])
-def test_a_flatten_holds_what_a_bake_does(tmp_path, author):
-    path = make(tmp_path, author)
-    bake, flat = baked(path, tmp_path), open_mesh(path)[0].Flatten()
-    for name in ("points", "extent", "primvars:normals", "velocities", "accelerations"):
-        assert samples(bake, name).keys() == {1001.0, 1002.0, 1002.5, 1003.0}
-        assert same(samples(flat, name), samples(bake, name)), name
-    indices = flat.GetAttributeAtPath(f"{MESH}.primvars:normals:indices")
-    assert isinstance(indices.default, Sdf.ValueBlock)
-
-
-@pytest.mark.parametrize("interpolation", ["vertex", "uniform"])
-def test_normals_that_are_no_primvar_are_those_of_a_bake(tmp_path, interpolation):
-    count = {"vertex": 49, "uniform": 36}[interpolation]
-
-    def add_normals(mesh):
-        mesh.CreateNormalsAttr(vectors(np.tile([0, 0, 1], (count, 1))))
-        mesh.SetNormalsInterpolation(interpolation)
-
-    path = make(tmp_path, add_normals)
-    assert same(samples(open_mesh(path)[0].Flatten(), "normals"), samples(baked(path, tmp_path), "normals"))
-
-
-@pytest.mark.parametrize("scheme", ["catmullClark", "bilinear", None])
-def test_a_subdivision_surface_is_that_of_a_bake(tmp_path, scheme):
-    def subdivide(mesh):
-        if scheme:
-            mesh.GetSubdivisionSchemeAttr().Set(scheme)
-        else:
-            mesh.GetPrim().RemoveProperty("subdivisionScheme")
-        mesh.CreateCreaseIndicesAttr(Vt.IntArray([15, 16, 17]))
-        mesh.CreateCreaseLengthsAttr(Vt.IntArray([3]))
-        mesh.CreateCreaseSharpnessesAttr(Vt.FloatArray([2.5]))
-
-    path = make(tmp_path, subdivide)
-    (tmp_path / "flat").mkdir()
-    flat = make(tmp_path / "flat")
-    expected = samples(baked(path, tmp_path), "points")
-    assert same(samples(open_mesh(path)[0].Flatten(), "points"), expected)
-    assert not same(expected, samples(baked(flat, tmp_path / "flat"), "points"))
-
-
-def test_velocities_that_cannot_be_recomputed_are_blocked(tmp_path):
-    def add_velocities(mesh):
-        mesh.CreateVelocitiesAttr().Set(vectors(np.ones((49, 3))), 1001)
-
-    _stage, mesh = open_mesh(make(tmp_path, add_velocities))
-    assert mesh.GetVelocitiesAttr().Get(1001) is None
+# ---- What it holds, beside the bytes of a bake, which tests/stage compares ----
 
 
 def test_a_cache_without_samples_gives_a_default(tmp_path):

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Sdf, Tf, Ts, Usd, UsdGeom, Vt
+from pxr import Sdf, Tf, Usd
 
 import skinslide
 from layers import HEAD, make, open_mesh, points, refusal, said, solve_count, write
-from stages import FRAMES, MESH, PATCH, fin, grid, patched_stage, save, set_primvar, set_property, vectors
+from stages import FRAMES, MESH, PATCH, fin, grid, patched_stage, save, vectors
 
 FUZZER = Path(__file__).parent / "fuzz_fileformat.py"
 
@@ -155,122 +155,6 @@ def test_a_source_that_appears_is_picked_up(tmp_path):
     assert stage.GetRootLayer().GetNumTimeSamplesForPath(f"{MESH}.points") == 3
 
 
-def unset(name):
-    return lambda mesh: mesh.GetPrim().GetAttribute(name).Block()
-
-
-def bad(name, value):
-    return lambda mesh: set_property(mesh, name, value)
-
-
-def paint(name, type_name, interpolation, value):
-    return lambda mesh: set_primvar(
-        mesh, f"skinSlide:{PATCH}:{name}", getattr(Sdf.ValueTypeNames, type_name), interpolation, value
-    )
-
-
-def other_topology(mesh):
-    mesh.GetFaceVertexIndicesAttr().Set(mesh.GetFaceVertexIndicesAttr().Get(), 1001)
-    mesh.GetFaceVertexIndicesAttr().Set(Vt.IntArray([7] * 144), 1003)
-
-
-def no_rest(mesh):
-    mesh.GetPointsAttr().ClearDefault()
-
-
-@pytest.mark.parametrize(
-    ("edit", "message"),
-    [
-        (unset("faceVertexCounts"), "faceVertexCounts has no value"),
-        (lambda mesh: mesh.GetFaceVertexCountsAttr().Set(Vt.IntArray([4])), "faceVertexCounts add up to 4"),
-        (lambda mesh: mesh.GetFaceVertexIndicesAttr().Set(Vt.IntArray([99] * 144)), "face 0 has point 99"),
-        (other_topology, "faceVertexIndices changes at frame 1003"),
-        (lambda mesh: mesh.GetPrim().SetTypeName("Points"), "is a Points; SkinSlideAPI applies to Mesh only"),
-        (lambda mesh: mesh.GetPrim().SetSpecifier(Sdf.SpecifierOver), "is not defined"),
-        (no_rest, "has no rest points"),
-        (lambda mesh: mesh.GetPointsAttr().Set(vectors(np.zeros((3, 3)))), "points (default) has 3 values"),
-        (lambda mesh: mesh.GetPointsAttr().Set(vectors(np.full((49, 3), np.nan))), "points (default)[0] is (nan"),
-        (lambda mesh: mesh.GetSubdivisionSchemeAttr().Set("butterfly"), "subdivisionScheme is 'butterfly'"),
-        (bad("boundary", "round"), "boundary is 'round'; it must be one of auto, square, circle"),
-        (bad("corners", Vt.IntArray([1, 2])), "corners has 2 values; it must have 4"),
-        (bad("corners", Vt.IntArray([0, 6, 42, 99])), "corners has point 99"),
-        (bad("edges", Vt.IntArray([1])), "it must hold pairs of point indices"),
-        (bad("edges", Vt.IntArray([0, 1])), "edgeForceDensities has 0 values, but"),
-        (bad("envelope", float("nan")), "envelope is nan"),
-        (paint("patch", "BoolArray", "uniform", [True]), "patch has 1 values, but the mesh has 36 faces"),
-        (paint("patch", "BoolArray", "uniform", [False] * 36), "is above 0 on no face"),
-        (paint("patch", "StringArray", "uniform", ["a"]), "it must be bool[], int[] or float[]"),
-        (paint("patch", "BoolArray", "faceVarying", [True]), "it must be uniform (by face) or vertex"),
-        (unset(f"primvars:skinSlide:{PATCH}:patch"), "there is neither"),
-        (paint("weight", "FloatArray", "vertex", [0.5]), "weight has 1 values, but the mesh has 49 points"),
-        (paint("weight", "FloatArray", "vertex", [float("inf")] * 49), "it must be a number"),
-        (paint("weight", "FloatArray", "uniform", [0.5] * 36), "it must be vertex or constant"),
-        (paint("maxDistance", "FloatArray", "vertex", [-1.0] * 49), "is -1; it must be 0 or more"),
-        (paint("forceDensity", "FloatArray", "vertex", [0.0] * 49), "is 0; it must be finite and above 0"),
-        (paint("forceDensity", "IntArray", "vertex", [1] * 49), "it must be float[]"),
-    ],
-)
-def test_a_mesh_that_cannot_be_slid_is_named_and_left_as_it_is(tmp_path, edit, message):
-    path = make(tmp_path, edit)
-    found = messages_of(path)
-    assert message in found and MESH in found and "x.skinslide" in found
-    with said():
-        assert not Sdf.Layer.FindOrOpen(str(path)).GetAttributeAtPath(f"{MESH}.points")
-
-
-def test_nothing_to_slide_is_said(tmp_path):
-    assert "nothing to slide" in messages_of(
-        make(tmp_path, lambda mesh: mesh.GetPrim().RemoveAPI("SkinSlideAPI", PATCH))
-    )
-
-
-def test_a_prototype_of_a_point_instancer_is_left_as_it_is(tmp_path):
-    def instance(mesh):
-        instancer = UsdGeom.PointInstancer.Define(mesh.GetPrim().GetStage(), "/World/copies")
-        instancer.CreatePrototypesRel().AddTarget(mesh.GetPrim().GetParent().GetPath())
-
-    assert "is a prototype of the point instancer /World/copies" in messages_of(make(tmp_path, instance))
-
-
-def test_a_mesh_in_an_instance_is_left_as_it_is(tmp_path):
-    make(tmp_path)
-    path = tmp_path / "y.skinslide"
-    path.write_text(f'#usda 1.0\n({HEAD})\ndef "World" (references = @./cache.usda@; instanceable = true) {{}}\n')
-    assert "is inside an instance, whose points are shared; author instanceable = false on /World" in messages_of(path)
-
-
-def test_points_from_value_clips_point_at_the_bake(tmp_path):
-    def with_clips(mesh):
-        clips = Usd.ClipsAPI(mesh.GetPrim().GetStage().GetPrimAtPath("/World/char"))
-        clips.SetClipPrimPath("/World/char")
-        clips.SetClipAssetPaths([Sdf.AssetPath("./clip.usda")])
-        clips.SetClipActive([(0, 0)])
-        for frame in FRAMES:
-            mesh.GetPointsAttr().ClearAtTime(frame)
-
-    found = messages_of(make(tmp_path, with_clips))
-    assert "points come from value clips" in found and "bake the stage instead" in found
-
-
-def test_samples_that_beat_value_clips_are_slid(tmp_path):
-    def with_clips(mesh):
-        clips = Usd.ClipsAPI(mesh.GetPrim().GetStage().GetPrimAtPath("/World/char"))
-        clips.SetClipPrimPath("/World/char")
-        clips.SetClipAssetPaths([Sdf.AssetPath("./clip.usda")])
-        clips.SetClipActive([(0, 0)])
-
-    assert "value clips" not in messages_of(make(tmp_path, with_clips))
-
-
-def test_an_envelope_by_spline_points_at_the_bake(tmp_path):
-    def animate(mesh):
-        spline = Ts.Spline("float")
-        spline.SetKnot(Ts.Knot(typeName="float", time=1001, value=0.0))
-        mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(spline)
-
-    assert "is a spline" in messages_of(make(tmp_path, animate))
-
-
 # ---- Live ----
 
 
@@ -342,28 +226,6 @@ def test_a_frame_that_fails_gives_the_cache_and_one_message(tmp_path, value, mes
     assert "the points are those of the cache" in ours[0] and (
         "has 5" in ours[0] or "finite" in ours[0] or message in ours[0]
     )
-
-
-def test_controls_that_fail_at_a_frame_give_the_cache(tmp_path):
-    def animate(mesh):
-        for frame, factor in zip(FRAMES, (1.0, -1.0, 1.0), strict=True):
-            values = Vt.FloatArray([factor] * 49)
-            set_primvar(mesh, f"skinSlide:{PATCH}:forceDensity", Sdf.ValueTypeNames.FloatArray, "vertex", values, frame)
-
-    with said() as messages:
-        _stage, mesh = open_mesh(make(tmp_path, animate))
-        assert np.array_equal(points(mesh, 1002), grid().moved(1002))
-    assert any("frame 1002" in message and "above 0" in message for message in messages)
-
-
-def test_normals_of_a_wrong_length_are_left_and_named(tmp_path):
-    def add_normals(mesh):
-        mesh.CreateNormalsAttr(vectors([[0, 0, 1]] * 3))
-
-    with said() as messages:
-        _stage, mesh = open_mesh(make(tmp_path, add_normals))
-        assert len(mesh.GetNormalsAttr().Get(1002)) == 3
-    assert any("normals left as they are" in message for message in messages)
 
 
 def test_arguments_may_be_given_by_hand(tmp_path):

@@ -1,0 +1,126 @@
+"""Stages and arguments that the command refuses, and what it says; what readers say of a mesh is in tests/stage."""
+
+import json
+
+import numpy as np
+import pytest
+from pxr import Sdf
+
+import stages
+from skinslide.command.cli import main
+from stages import FRAMES, MESH, PATCH
+
+
+@pytest.mark.parametrize("name", [PATCH, "n" * 300, "\u00e9l\u00e8ve_" * 40])
+def test_a_bad_piece_names_its_patch(name, tmp_path, capfd):
+    stage, mesh = stages.patched_stage()
+    pinched = np.array([1, 2, 6, 8, 12, 13, 14])
+    stages.add_patch(mesh, np.append(pinched, stages.block(6, range(4, 6), range(4, 6))), name)
+    assert main(["check", str(stages.save(stage, tmp_path / "shot.usda")), "--json"]) == 3
+    (problem,) = [each for each in json.loads(capfd.readouterr().out)["problems"] if each["severity"] == "error"]
+    assert problem["patch"] == name and problem["message"].startswith("piece 1 of 2: ")
+
+
+def test_a_value_that_usd_cannot_read(tmp_path, capfd):
+    """The numbers of a sample in a crate file are overwritten."""
+    stage, mesh = stages.patched_stage(stages.grid(16, 16))
+    path = stages.save(stage, tmp_path / "shot.usdc")
+    sample = np.array(mesh.GetPointsAttr().Get(FRAMES[1])).tobytes()
+    damaged = bytearray(path.read_bytes())
+    at = damaged.index(sample)
+    damaged[at - 8 : at] = b"\xff" * 8  # the count of points before them
+    path.write_bytes(damaged)
+    for command in (["check", str(path)], ["bake", str(path), "-o", str(tmp_path / "out.usda")]):
+        assert main(command) == (3 if command[0] == "check" else 1)
+        said = "".join(capfd.readouterr())
+        assert f"error: {MESH}: frame 1002: points cannot be read: " in said and "Traceback" not in said
+
+
+def test_every_bad_patch_is_named(tmp_path, capfd):
+    stage, mesh = stages.patched_stage(stages.grid(3, 3), stages.pinched())
+    stages.add_patch(mesh, None, "wrist_L")
+    stages.add_patch(mesh, np.arange(9), "knee_L")
+    stages.set_property(mesh, "corners", [0, 3, 15, 5], patch="knee_L")
+    assert main(["check", str(stages.save(stage, tmp_path / "shot.usda"))]) == 3
+    said = capfd.readouterr().out
+    for patch in (PATCH, "wrist_L", "knee_L"):
+        assert f"error: {MESH}: patch {patch}: " in said
+
+
+def test_nothing_to_slide_says_how_to_start(tmp_path, capfd):
+    stage = stages.new_stage()
+    stages.add_mesh(stage, stages.grid())
+    assert main(["check", str(stages.save(stage, tmp_path / "shot.usda"))]) == 3
+    assert "skinslide setup" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(("name", "text"), [("gone.usda", None), ("text.usda", "words"), ("text.skinslide", "words")])
+def test_stage_that_does_not_open(name, text, tmp_path, capfd):
+    path = tmp_path / name
+    if text:
+        path.write_text(text)
+    for command in (["check", str(path)], ["bake", str(path), "-o", str(tmp_path / "out.usda")]):
+        assert main(command) == 1
+        assert f"error: cannot open {path}: " in capfd.readouterr().err
+
+
+def test_weight_out_of_range_is_clamped_and_told(tmp_path, capfd):
+    stage, mesh = stages.patched_stage()
+    weight = [1.0] * 12 + [1.5] + [1.0] * 36
+    stages.set_primvar(mesh, f"skinSlide:{PATCH}:weight", Sdf.ValueTypeNames.FloatArray, "vertex", weight)
+    path = stages.save(stage, tmp_path / "shot.usda")
+    assert main(["check", str(path)]) == 0
+    assert f"warning: {MESH}: patch {PATCH}: weight of vertex 12 is 1.5" in capfd.readouterr().out
+    assert main(["bake", str(path), "-o", str(tmp_path / "out.usda")]) == 0
+    assert "outside 0..1" in capfd.readouterr().out
+
+
+USAGE = {
+    "frames: empty": ["--frames", ""],
+    "frames: words": ["--frames", "all"],
+    "frames: zero step": ["--frames", "1:9x0"],
+    "lookup: no such device": ["--lookup", "egl", "--egl-device", "999"],
+    "lookup: device of no number": ["--egl-device", "first"],
+    "lookup: resolution above any device's": ["--lookup", "egl", "--egl-resolution", "1000000"],
+    "lookup: unknown": ["--lookup", "guess"],
+    "jobs: none": ["--jobs", "0"],
+    "limit: negative": ["--max-folded", "-1"],
+    "output: missing folder": ["-o", "gone/out.usda"],
+    "output: extension": ["-o", "out.abc"],
+    "output: input": ["-o", "shot.usda"],
+    "output: folder": ["-o", "folder.usda"],
+}
+
+
+@pytest.mark.parametrize("arguments", USAGE.values(), ids=USAGE.keys())
+def test_bad_usage(arguments, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    stage, _mesh = stages.patched_stage()
+    path = stages.save(stage, tmp_path / "shot.usda")
+    before = path.read_bytes()
+    (tmp_path / "folder.usda").mkdir()
+    output = [] if "-o" in arguments else ["-o", "out.usda"]
+    assert main(["bake", "shot.usda", *output, *arguments]) == 2
+    assert "error: " in capfd.readouterr().err
+    assert path.read_bytes() == before
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["folder.usda", "shot.usda"]
+
+
+def test_input_is_a_sublayer_of_the_stage(tmp_path, capfd):
+    stage, _mesh = stages.patched_stage()
+    cache = stages.save(stage, tmp_path / "cache.usda")
+    (tmp_path / "shot.usda").write_text("#usda 1.0\n(\n    subLayers = [@./cache.usda@]\n)\n")
+    before = cache.read_bytes()
+    assert main(["bake", str(tmp_path / "shot.usda"), "-o", str(cache)]) == 2
+    assert str(cache) in capfd.readouterr().err
+    assert cache.read_bytes() == before
+
+
+def test_read_only_folder(public_folder, capfd):
+    stage, _mesh = stages.patched_stage()
+    path = stages.save(stage, public_folder / "shot.usda")
+    folder = public_folder / "locked"
+    folder.mkdir(mode=0o555)
+    with stages.as_nobody():
+        assert main(["bake", str(path), "-o", str(folder / "out.usda")]) == 2
+    assert "not writable" in capfd.readouterr().err
