@@ -1,23 +1,22 @@
-"""The curves of a patch over its frames, as SVG: axes with numbers, a line a quantity, and marks for one frame.
+"""The curves of a patch over its frames: axes with numbers, a line a quantity, and marks for one frame.
 
-Everything is drawn here, so that a page shows it without a script; the script only moves the marks.
+Everything is placed here, in the units of an SVG: a page shows it without a script, which only moves the marks.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
+from functools import cached_property
+from itertools import accumulate, pairwise
+from typing import ClassVar
 
 import numpy as np
 
 from skinslide.problems import frame_text
 from skinslide.shot.report import PatchReport, milliseconds_text, stretch_text, time_text
 
-# Units of the viewBox; the plot lies within the margins.
-_WIDTH, _HEIGHT = 300, 140
-_LEFT, _RIGHT, _TOP, _BOTTOM = 38, 298, 8, 120
 _X_TICKS, _Y_TICKS = 5, 5  # at most
 
 
@@ -33,9 +32,68 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Chart:
+    """Quantities over the frames, ascending; None is the default time. Ticks are a place and a text each."""
+
+    width: ClassVar[int] = 300
+    height: ClassVar[int] = 140
+    left: ClassVar[int] = 38  # the plot lies within the margins
+    right: ClassVar[int] = 298
+    top: ClassVar[int] = 8
+    bottom: ClassVar[int] = 120
+
     title: str
     unit: str
     quantities: list[Quantity]
+    frames: Sequence[float | None]
+    columns: list[int]  # of its quantities in the table of all, behind that of frames
+
+    @cached_property
+    def x(self) -> list[float]:
+        """Where the frames are."""
+        return self._across([frame or 0 for frame in self.frames])
+
+    def y(self, quantity: Quantity) -> list[float]:
+        """Where its values are."""
+        return self._up(quantity.values)
+
+    def points(self, quantity: Quantity) -> str:
+        """Its line."""
+        return " ".join(f"{x:.2f},{y:.2f}" for x, y in zip(self.x, self.y(quantity), strict=True))
+
+    @property
+    def x_ticks(self) -> list[tuple[float, str]]:
+        ticks = self._frame_axis.ticks
+        texts = [time_text(None) if self.frames == [None] else frame_text(tick) for tick in ticks]
+        return list(zip(self._across(ticks), texts, strict=True))
+
+    @property
+    def y_ticks(self) -> list[tuple[float, str]]:
+        ticks = self._value_axis.ticks
+        texts = [_tick_text(tick, ticks[1]) for tick in ticks]
+        return list(zip(self._up(ticks), texts, strict=True))
+
+    @property
+    def described(self) -> str:
+        """In words: the most of each quantity and where."""
+        parts = []
+        for quantity in self.quantities:
+            most = int(np.argmax(quantity.values))
+            parts.append(f"{quantity.name} at most {quantity.texts[most]}, at frame {time_text(self.frames[most])}")
+        return f"{self.title}, {self.unit}: {'; '.join(parts)}"
+
+    @cached_property
+    def _frame_axis(self) -> _Axis:
+        return _Axis.of_frames(self.frames)
+
+    @cached_property
+    def _value_axis(self) -> _Axis:
+        return _Axis.of_values(self.quantities)
+
+    def _across(self, frames: Sequence[float]) -> list[float]:
+        return [self.left + share * (self.right - self.left) for share in self._frame_axis.shares(frames)]
+
+    def _up(self, values: Sequence[float] | np.ndarray) -> list[float]:
+        return [self.bottom - share * (self.bottom - self.top) for share in self._value_axis.shares(values)]
 
 
 def charts(patch: PatchReport) -> list[Chart]:
@@ -56,29 +114,15 @@ def charts(patch: PatchReport) -> list[Chart]:
         for stage, values in patch.milliseconds().items()
         if values.any()
     ]
-    return [
-        Chart("Stretch", "RMS log(length / rest length)", stretch),
-        Chart("Largest slide", "units of the mesh", [Quantity("slide", "after", slide, _aligned(slide))]),
-        Chart("Folds and clamps", "count", counts),
-        Chart("Time", "ms a frame", times),
+    drawn = [
+        ("Stretch", "RMS log(length / rest length)", stretch),
+        ("Largest slide", "units of the mesh", [Quantity("slide", "after", slide, _aligned(slide))]),
+        ("Folds and clamps", "count", counts),
+        ("Time", "ms a frame", times),
     ]
-
-
-def svg(chart: Chart, frames: Sequence[float | None]) -> str:
-    """A chart over the frames, ascending; None is the default time. The marks are at the first of them."""
-    across = _Axis.of_frames(frames)
-    up = _Axis.of_values(chart.quantities)
-    x = [_LEFT + share * (_RIGHT - _LEFT) for share in across.shares([frame or 0 for frame in frames])]
-    lines, marks = [], []
-    for quantity in chart.quantities:
-        y = [_BOTTOM - share * (_BOTTOM - _TOP) for share in up.shares(quantity.values)]
-        points = " ".join(f"{px:.2f},{py:.2f}" for px, py in zip(x, y, strict=True))
-        lines.append(f'<polyline class="{quantity.style}" points="{points}"/>')
-        marks.append(f'<circle class="{quantity.style}" cx="{x[0]:.2f}" cy="{y[0]:.2f}" r="3"/>')
-    cursor = f'<line class="cursor" x1="{x[0]:.2f}" x2="{x[0]:.2f}" y1="{_TOP}" y2="{_BOTTOM}"/>'
-    drawn = [*_y_axis(up), *_x_axis(across, frames), cursor, *lines, *marks]
-    label = escape(_described(chart, frames))
-    return f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{label}">{"".join(drawn)}</svg>'
+    ends = list(accumulate((len(quantities) for _, _, quantities in drawn), initial=1))
+    columns = [list(range(first, end)) for first, end in pairwise(ends)]
+    return [Chart(*each, patch.frames, own) for each, own in zip(drawn, columns, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -124,34 +168,9 @@ def _ticks(low: float, high: float, most: int) -> list[float]:
     return [i * step for i in range(first, last + 1)]
 
 
-def _y_axis(axis: _Axis) -> Iterator[str]:
-    for tick, share in zip(axis.ticks, axis.shares(axis.ticks), strict=True):
-        y = _BOTTOM - share * (_BOTTOM - _TOP)
-        line = f'<line x1="{_LEFT}" x2="{_RIGHT}" y1="{y:.2f}" y2="{y:.2f}"/>'
-        text = f'<text x="{_LEFT - 6}" y="{y + 3.5:.2f}">{_tick_text(tick, axis.ticks[1])}</text>'
-        yield f'<g class="y tick">{line}{text}</g>'
-
-
 def _tick_text(tick: float, step: float) -> str:
     """With the step's decimals, unless they are many."""
     return f"{tick:.{max(-math.floor(math.log10(step)), 0)}f}" if 1e-4 <= step < 1e5 else f"{tick:g}"
-
-
-def _x_axis(axis: _Axis, frames: Sequence[float | None]) -> Iterator[str]:
-    for tick, share in zip(axis.ticks, axis.shares(axis.ticks), strict=True):
-        x = _LEFT + share * (_RIGHT - _LEFT)
-        line = f'<line x1="{x:.2f}" x2="{x:.2f}" y1="{_BOTTOM}" y2="{_BOTTOM + 4}"/>'
-        text = f'<text x="{x:.2f}" y="{_HEIGHT - 5}">{time_text(None) if frames == [None] else frame_text(tick)}</text>'
-        yield f'<g class="x tick">{line}{text}</g>'
-
-
-def _described(chart: Chart, frames: Sequence[float | None]) -> str:
-    """A chart in words: the most of each quantity and where."""
-    parts = []
-    for quantity in chart.quantities:
-        most = int(np.argmax(quantity.values))
-        parts.append(f"{quantity.name} at most {quantity.texts[most]}, at frame {time_text(frames[most])}")
-    return f"{chart.title}, {chart.unit}: {'; '.join(parts)}"
 
 
 def _aligned(values: np.ndarray) -> list[str]:
