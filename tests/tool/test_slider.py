@@ -214,6 +214,17 @@ def test_workspaces_go_before_their_slider(counts, indices, rest):
     gc.collect()
 
 
+def test_a_slider_in_a_circle_is_collected(counts, indices, rest):
+    """The collector then finalizes what it finds in an order of its own; the core wants workspaces to go first."""
+    for _ in range(20):
+        circle = [Slider(counts, indices, rest, [PatchSetup("sheet", np.arange(FACES))])]
+        circle.append(circle)
+        circle[0].slide(rest)
+        circle[0].circle = circle
+        del circle
+        gc.collect()
+
+
 def test_normals(counts, indices, rest, sheet):
     cached = np.tile(np.float32([0, 0, 1]), (VERTICES, 1))
     same = slider.normals(counts, indices, rest, rest, cached, "vertex")

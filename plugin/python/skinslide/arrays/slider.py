@@ -105,9 +105,11 @@ class Slider:
             native.fill_setup(setup, patch, self._sizes)
         out = ffi.new("skinslide_slider **")
         call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, len(patches), out)
-        self._slider = ffi.gc(out[0], lib.skinslide_slider_destroy)
+        self._idle: list[Any] = []
+        # One finalizer for all, since the collector of cycles calls several in any order, and workspaces must go first.
+        self._slider = ffi.gc(out[0], lambda slider, idle=self._idle: _destroy(slider, idle))
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider)))
-        self._idle = [self._new_workspace()]
+        self._idle.append(self._new_workspace())
         self._lock = threading.Lock()
 
     def slide(
@@ -196,8 +198,7 @@ class Slider:
     def _new_workspace(self) -> Any:
         out = ffi.new("skinslide_workspace **")
         call(lib.skinslide_workspace_create, self._slider, self._lookup, out)
-        # The default argument keeps the slider until the workspace is gone, as the core asks.
-        return ffi.gc(out[0], lambda workspace, slider=self._slider: lib.skinslide_workspace_destroy(workspace))
+        return out[0]
 
     def _take_workspace(self) -> Any:
         with self._lock:
@@ -208,6 +209,12 @@ class Slider:
     def _give_back(self, workspace: Any) -> None:
         with self._lock:
             self._idle.append(workspace)
+
+
+def _destroy(slider: Any, workspaces: Sequence[Any]) -> None:
+    for workspace in workspaces:
+        lib.skinslide_workspace_destroy(workspace)
+    lib.skinslide_slider_destroy(slider)
 
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
