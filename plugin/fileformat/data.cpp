@@ -31,10 +31,10 @@ SdfAttributeSpecHandle declare(const SdfLayerRefPtr &layer, const SdfPath &prim,
 
 } // namespace
 
-DataRefPtr Data::create(const std::vector<std::shared_ptr<SlidMesh>> &meshes, const SdfLayerRefPtr &shown,
+DataRefPtr Data::create(const std::vector<std::shared_ptr<LiveMesh>> &meshes, const SdfLayerRefPtr &shown,
                         const std::function<SdfAbstractDataConstPtr(const SdfLayer &)> &contentOf) {
     DataRefPtr data = TfCreateRefPtr(new Data);
-    for (const std::shared_ptr<SlidMesh> &mesh : meshes)
+    for (const std::shared_ptr<LiveMesh> &mesh : meshes)
         data->addMesh(mesh, shown);
     data->CopyFrom(contentOf(*get_pointer(shown)));
     return data;
@@ -48,8 +48,8 @@ void Data::add(const SdfPath &prim, const TfToken &name, const TfToken &type, co
     _computed[prim.AppendProperty(name)] = {times, std::move(at)};
 }
 
-void Data::addMesh(const std::shared_ptr<SlidMesh> &mesh, const SdfLayerRefPtr &shown) {
-    const Source &source = mesh->source();
+void Data::addMesh(const std::shared_ptr<LiveMesh> &mesh, const SdfLayerRefPtr &shown) {
+    const PatchedMesh &source = mesh->source();
     auto compute = [&](const TfToken &name, const char *type, const std::vector<double> &times, Compute at) {
         add(source.path, name, TfToken(type), times, std::move(at), shown);
     };

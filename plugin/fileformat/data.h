@@ -2,7 +2,7 @@
 #ifndef SKINSLIDE_FORMAT_DATA_H
 #define SKINSLIDE_FORMAT_DATA_H
 
-#include "slidMesh.h"
+#include "liveMesh.h"
 
 #include "pxr/usd/sdf/data.h"
 
@@ -19,7 +19,7 @@ class Data : public SdfData {
   public:
     // Authors what is declared of the computed attributes into `shown`, an anonymous layer with the text; take() then copies
     // it. `content` is the data of that layer.
-    static DataRefPtr create(const std::vector<std::shared_ptr<SlidMesh>> &meshes, const SdfLayerRefPtr &shown,
+    static DataRefPtr create(const std::vector<std::shared_ptr<LiveMesh>> &meshes, const SdfLayerRefPtr &shown,
                              const std::function<SdfAbstractDataConstPtr(const SdfLayer &)> &contentOf);
 
     // Resolved paths of every file that the values depend on.
@@ -60,7 +60,7 @@ class Data : public SdfData {
     static VtValue fieldValue(const Computed &attribute);
     static bool hasSample(const Computed &attribute, double time);
 
-    void addMesh(const std::shared_ptr<SlidMesh> &mesh, const SdfLayerRefPtr &shown);
+    void addMesh(const std::shared_ptr<LiveMesh> &mesh, const SdfLayerRefPtr &shown);
     void add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at,
              const SdfLayerRefPtr &shown);
 

@@ -1,10 +1,10 @@
 #include "fileFormat.h"
 
+#include "cycle.h"
 #include "data.h"
 #include "fault.h"
-#include "layers.h"
 #include "names.h"
-#include "reading.h"
+#include "sources.h"
 
 #include "pxr/base/tf/diagnostic.h"
 #include "pxr/base/tf/pathUtils.h"
@@ -82,7 +82,7 @@ void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath,
     Reading reading(resolvedPath);
     ArResolverContextBinder bound(contextFor(resolvedPath));
     SdfLayerRefPtr shown = readText(resolvedPath), anchored = anchoredCopy(shown, resolvedPath);
-    std::vector<std::shared_ptr<SlidMesh>> meshes;
+    std::vector<std::shared_ptr<LiveMesh>> meshes;
     Sources sources;
     std::vector<SdfLayerRefPtr> nested;
     if (!metadataOnly) {
@@ -97,8 +97,8 @@ void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath,
     if (!metadataOnly && params.live) {
         Composition composition(anchored, resolvedPath);
         std::string name = TfGetBaseName(resolvedPath);
-        for (const std::shared_ptr<const Source> &source : readSources(composition, params, &problems)) {
-            meshes.push_back(std::make_shared<SlidMesh>(source, params, name));
+        for (const std::shared_ptr<const PatchedMesh> &source : readMeshes(composition, params, &problems)) {
+            meshes.push_back(std::make_shared<LiveMesh>(source, params, name));
             for (const Patch &patch : source->patches)
                 sources.paths.merge(patch.files());
         }

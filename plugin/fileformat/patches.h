@@ -2,8 +2,8 @@
 #ifndef SKINSLIDE_FORMAT_PATCHES_H
 #define SKINSLIDE_FORMAT_PATCHES_H
 
-#include "maps.h"
 #include "params.h"
+#include "textures.h"
 #include "values.h"
 
 #include "skinslide/skinslide.h"
@@ -73,7 +73,7 @@ class Patch {
     int _boundary, _holes, _rule, _interpolation;
     double _liveEnvelope;
     Primvar _weight, _maxDistance, _density;
-    Map _weightMap, _densityMap;
+    Texture _weightMap, _densityMap;
     Attribute _envelope, _edgeDensity;
 };
 

@@ -1,6 +1,6 @@
 // The meshes that a composed layer slides, read as `skinslide bake` reads them from a stage.
-#ifndef SKINSLIDE_FORMAT_SOURCE_H
-#define SKINSLIDE_FORMAT_SOURCE_H
+#ifndef SKINSLIDE_FORMAT_MESHES_H
+#define SKINSLIDE_FORMAT_MESHES_H
 
 #include "patches.h"
 #include "subdivision.h"
@@ -16,7 +16,7 @@ struct Rate {
 };
 
 // One mesh with its patches: immutable, and free of the composition it was read from. Times are the layer's.
-struct Source {
+struct PatchedMesh {
     SdfPath path;
     Topology topology;
     Subdivision subdivision; // none where no patch needs it
@@ -38,8 +38,8 @@ struct Source {
 };
 
 // Every mesh that can be slid. `problems` says of every other why not, each a line that begins with the prim.
-std::vector<std::shared_ptr<const Source>> readSources(Composition &composition, const Params &params,
-                                                       std::vector<std::string> *problems);
+std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composition, const Params &params,
+                                                           std::vector<std::string> *problems);
 
 } // namespace skinslide
 

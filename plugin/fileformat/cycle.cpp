@@ -1,4 +1,4 @@
-#include "reading.h"
+#include "cycle.h"
 
 #include "fault.h"
 

@@ -1,6 +1,6 @@
 // Which .skinslide files the running thread is reading: reading one opens those that it leads to, which are read in turn.
-#ifndef SKINSLIDE_FORMAT_READING_H
-#define SKINSLIDE_FORMAT_READING_H
+#ifndef SKINSLIDE_FORMAT_CYCLE_H
+#define SKINSLIDE_FORMAT_CYCLE_H
 
 #include <cstddef>
 #include <string>

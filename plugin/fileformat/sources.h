@@ -1,6 +1,6 @@
 // The text of a .skinslide file, and the layers that it leads to.
-#ifndef SKINSLIDE_FORMAT_LAYERS_H
-#define SKINSLIDE_FORMAT_LAYERS_H
+#ifndef SKINSLIDE_FORMAT_SOURCES_H
+#define SKINSLIDE_FORMAT_SOURCES_H
 
 #include "pxr/pxr.h"
 

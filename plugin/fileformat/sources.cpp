@@ -1,7 +1,7 @@
-#include "layers.h"
+#include "sources.h"
 
+#include "cycle.h"
 #include "fault.h"
-#include "reading.h"
 
 #include "pxr/base/tf/errorMark.h"
 #include "pxr/base/tf/pathUtils.h"

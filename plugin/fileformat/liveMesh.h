@@ -1,24 +1,24 @@
 // A mesh that is slid when a frame of it is asked for, and what follows from its points. Any number of threads may ask.
-#ifndef SKINSLIDE_FORMAT_SLID_MESH_H
-#define SKINSLIDE_FORMAT_SLID_MESH_H
+#ifndef SKINSLIDE_FORMAT_LIVE_MESH_H
+#define SKINSLIDE_FORMAT_LIVE_MESH_H
 
 #include "frameCache.h"
-#include "source.h"
+#include "meshes.h"
 
 #include <mutex>
 #include <set>
 
 namespace skinslide {
 
-class SlidMesh {
+class LiveMesh {
   public:
     // layerName  for messages
-    SlidMesh(std::shared_ptr<const Source> source, const Params &params, std::string layerName);
-    ~SlidMesh();
-    SlidMesh(const SlidMesh &) = delete;
-    SlidMesh &operator=(const SlidMesh &) = delete;
+    LiveMesh(std::shared_ptr<const PatchedMesh> source, const Params &params, std::string layerName);
+    ~LiveMesh();
+    LiveMesh(const LiveMesh &) = delete;
+    LiveMesh &operator=(const LiveMesh &) = delete;
 
-    const Source &source() const {
+    const PatchedMesh &source() const {
         return *_source;
     }
     // Each gives the value at a time of the layer, Attribute::defaultTime where the mesh has no samples. Where something fails
@@ -47,7 +47,7 @@ class SlidMesh {
     std::vector<double> samplesAround(double time, size_t count) const;
     void say(double time, const std::string &message);
 
-    const std::shared_ptr<const Source> _source;
+    const std::shared_ptr<const PatchedMesh> _source;
     const std::string _lookup, _layerName;
     std::once_flag _built;
     skinslide_slider *_slider = nullptr;

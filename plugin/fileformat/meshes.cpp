@@ -1,4 +1,4 @@
-#include "source.h"
+#include "meshes.h"
 
 #include "fault.h"
 #include "names.h"
@@ -10,7 +10,7 @@
 
 namespace skinslide {
 
-bool Source::controlsVary() const {
+bool PatchedMesh::controlsVary() const {
     return std::any_of(patches.begin(), patches.end(), [](const Patch &patch) { return patch.varies(); });
 }
 
@@ -203,7 +203,7 @@ VtVec3fArray readRest(const Prim &prim, const Attribute &points, size_t vertexCo
 }
 
 // primvars:normals win over normals; a constant does not follow from points.
-void readNormals(const Prim &prim, Source *source) {
+void readNormals(const Prim &prim, PatchedMesh *source) {
     Primvar primvar(prim, names().normalsPrimvar);
     bool isPrimvar = primvar.authored();
     source->normals = isPrimvar ? primvar : Primvar(prim, names().normals);
@@ -215,7 +215,7 @@ void readNormals(const Prim &prim, Source *source) {
 }
 
 // Stale velocities would give wrong motion blur: those that cannot be recomputed are blocked.
-void readRates(const Prim &prim, Source *source) {
+void readRates(const Prim &prim, PatchedMesh *source) {
     size_t sampleCount = 2;
     for (const TfToken &name : {names().velocities, names().accelerations}) {
         Attribute attribute = prim.attribute(name);
@@ -243,9 +243,9 @@ std::vector<Patch> readPatches(Composition &composition, const Found &found, con
 }
 
 // Throws Fault, or adds problems and returns null.
-std::shared_ptr<const Source> readSource(Composition &composition, const Found &found, const Params &params,
-                                         std::vector<std::string> *problems) {
-    auto source = std::make_shared<Source>();
+std::shared_ptr<const PatchedMesh> readSource(Composition &composition, const Found &found, const Params &params,
+                                              std::vector<std::string> *problems) {
+    auto source = std::make_shared<PatchedMesh>();
     const Prim &prim = found.prim;
     source->path = prim.path();
     source->points = prim.attribute(names().points);
@@ -276,9 +276,9 @@ std::shared_ptr<const Source> readSource(Composition &composition, const Found &
 
 } // namespace
 
-std::vector<std::shared_ptr<const Source>> readSources(Composition &composition, const Params &params,
-                                                       std::vector<std::string> *problems) {
-    std::vector<std::shared_ptr<const Source>> sources;
+std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composition, const Params &params,
+                                                           std::vector<std::string> *problems) {
+    std::vector<std::shared_ptr<const PatchedMesh>> sources;
     Search search(composition);
     auto say = [&](const Found &found, const std::string &message) {
         problems->push_back(found.prim.path().GetString() + ": " + message);
@@ -293,7 +293,7 @@ std::vector<std::shared_ptr<const Source>> readSources(Composition &composition,
                 say(found, "is slid already, by " + other + "; set it up there, or reference the cache itself");
         } else {
             try {
-                if (std::shared_ptr<const Source> source = readSource(composition, found, params, problems))
+                if (std::shared_ptr<const PatchedMesh> source = readSource(composition, found, params, problems))
                     sources.push_back(source);
             } catch (const Fault &bad) {
                 say(found, bad.what());

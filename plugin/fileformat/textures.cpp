@@ -1,9 +1,9 @@
-#include "maps.h"
+#include "textures.h"
 
 #include "fault.h"
-#include "layers.h"
 #include "names.h"
 #include "patches.h"
+#include "sources.h"
 
 #include "pxr/usd/ar/asset.h"
 #include "pxr/usd/ar/resolver.h"
@@ -29,7 +29,7 @@ std::string word(const Prim &mesh, const TfToken &name, const char *fallback) {
 
 } // namespace
 
-struct Map::Corners {
+struct Texture::Corners {
     skinslide_mesh mesh; // without points
     const std::vector<int32_t> &faces;
     std::vector<float> st;
@@ -39,18 +39,18 @@ struct Map::Corners {
     }
 };
 
-Map::Map(const Composition &composition, const Prim &mesh, const std::string &patch, const std::string &control)
-    : _map(mesh.attribute(names().property(patch, (control + "Map").c_str()))),
+Texture::Texture(const Composition &composition, const Prim &mesh, const std::string &patch, const std::string &control)
+    : _map(mesh.attribute(names().property(patch, (control + "Texture").c_str()))),
       _channel(word(mesh, names().property(patch, (control + "MapChannel").c_str()), "")),
       _setting(names().property(patch, "mapSt")), _resolvedPath(composition.resolvedPath()), _root(composition.root()) {
     _st = Primvar(mesh, TfToken(names().primvars + word(mesh, TfToken(_setting), "st")));
 }
 
-bool Map::varies() const {
+bool Texture::varies() const {
     return _map.authored() && (_map.varies() || _st.varies());
 }
 
-std::vector<double> Map::times() const {
+std::vector<double> Texture::times() const {
     std::vector<double> times;
     if (!_map.authored())
         return times;
@@ -63,7 +63,7 @@ std::vector<double> Map::times() const {
 
 // ---- Values ----
 
-void Map::settle(const Topology &topology, const std::vector<int32_t> &faces) {
+void Texture::settle(const Topology &topology, const std::vector<int32_t> &faces) {
     for (double time : times()) {
         std::string later = path(time);
         if (!later.empty() && later.find(udim) == std::string::npos)
@@ -77,14 +77,14 @@ void Map::settle(const Topology &topology, const std::vector<int32_t> &faces) {
         _still = std::make_shared<const std::vector<float>>(std::move(values));
 }
 
-std::vector<float> Map::at(double time, const Topology &topology, const std::vector<int32_t> &faces) const {
+std::vector<float> Texture::at(double time, const Topology &topology, const std::vector<int32_t> &faces) const {
     if (_still)
         return *_still;
     std::string found = path(time);
     return found.empty() ? std::vector<float>() : sample(found, corners(time, topology, faces), nullptr);
 }
 
-std::vector<float> Map::sample(const std::string &path, const Corners &corners, Files *files) const {
+std::vector<float> Texture::sample(const std::string &path, const Corners &corners, Files *files) const {
     std::vector<Image> images;
     std::vector<skinslide_texture_tile> used;
     for (int32_t number : tiles(corners, path)) {
@@ -101,7 +101,7 @@ std::vector<float> Map::sample(const std::string &path, const Corners &corners, 
 }
 
 // The tiles of a UDIM that the faces lie in; 0 for a file of its own.
-std::vector<int32_t> Map::tiles(const Corners &corners, const std::string &path) const {
+std::vector<int32_t> Texture::tiles(const Corners &corners, const std::string &path) const {
     if (path.find(udim) == std::string::npos)
         return {0};
     std::vector<int32_t> numbers(corners.mesh.index_count);
@@ -117,7 +117,7 @@ std::vector<int32_t> Map::tiles(const Corners &corners, const std::string &path)
 // ---- The file ----
 
 // Asset paths are relative to the layer that authors them; the root is an anonymous copy of the file.
-std::string Map::path(double time) const {
+std::string Texture::path(double time) const {
     VtValue value = _map.at(time);
     if (value.IsEmpty())
         return "";
@@ -130,7 +130,7 @@ std::string Map::path(double time) const {
                                  : SdfComputeAssetPathRelativeToLayer(_map.layer(), asset);
 }
 
-Map::Image Map::read(const std::string &path, Files *files) const {
+Texture::Image Texture::read(const std::string &path, Files *files) const {
     ArResolvedPath resolved = ArGetResolver().Resolve(path);
     if (files)
         files->insert((resolved ? resolved : ArGetResolver().ResolveForNewAsset(path)).GetPathString());
@@ -152,7 +152,7 @@ Map::Image Map::read(const std::string &path, Files *files) const {
 
 // ---- Texture coordinates ----
 
-Map::Corners Map::corners(double time, const Topology &topology, const std::vector<int32_t> &faces) const {
+Texture::Corners Texture::corners(double time, const Topology &topology, const std::vector<int32_t> &faces) const {
     std::string what = _st.name();
     if (!_st.authored())
         throw fault("has a map, but the mesh has no %s; name one in %s", what.c_str(), _setting.c_str());

@@ -1,4 +1,4 @@
-#include "slidMesh.h"
+#include "liveMesh.h"
 
 #include "environment.h"
 #include "fault.h"
@@ -60,11 +60,11 @@ VtValue asDeclared(const VtValue &value) {
 
 } // namespace
 
-SlidMesh::SlidMesh(std::shared_ptr<const Source> source, const Params &params, std::string layerName)
+LiveMesh::LiveMesh(std::shared_ptr<const PatchedMesh> source, const Params &params, std::string layerName)
     : _source(std::move(source)), _lookup(params.lookup), _layerName(std::move(layerName)) {
 }
 
-SlidMesh::~SlidMesh() {
+LiveMesh::~LiveMesh() {
     FrameCache::shared().drop(this);
     for (skinslide_workspace *workspace : _idle)
         skinslide_workspace_destroy(workspace);
@@ -72,7 +72,7 @@ SlidMesh::~SlidMesh() {
 }
 
 // One message for a time, whatever is asked for there; one in all where the set-up is what fails.
-void SlidMesh::say(double time, const std::string &message) {
+void LiveMesh::say(double time, const std::string &message) {
     {
         std::lock_guard<std::mutex> lock(_mutex);
         if (!_said.insert(_problem.empty() ? frameText(time) : "").second)
@@ -83,7 +83,7 @@ void SlidMesh::say(double time, const std::string &message) {
 
 // ---- The slider ----
 
-skinslide_mesh SlidMesh::nativeMesh() const {
+skinslide_mesh LiveMesh::nativeMesh() const {
     const Topology &topology = _source->topology;
     skinslide_mesh mesh = {};
     mesh.vertex_count = static_cast<int32_t>(topology.vertexCount);
@@ -95,7 +95,7 @@ skinslide_mesh SlidMesh::nativeMesh() const {
     return mesh;
 }
 
-void SlidMesh::build() {
+void LiveMesh::build() {
     std::vector<Controls> controls;
     std::vector<skinslide_patch_setup> setups;
     controls.reserve(_source->patches.size());
@@ -116,13 +116,13 @@ void SlidMesh::build() {
 }
 
 // For good: what keeps one frame from being solved here keeps all of them. Throws Fault.
-void SlidMesh::giveUp(const std::string &problem) {
+void LiveMesh::giveUp(const std::string &problem) {
     std::lock_guard<std::mutex> lock(_mutex);
     _problem = problem;
     throw Fault(problem);
 }
 
-skinslide_workspace_options SlidMesh::workspaceOptions() {
+skinslide_workspace_options LiveMesh::workspaceOptions() {
     skinslide_workspace_options options = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
     auto found = std::find(lookupTokens.begin(), lookupTokens.end(), _lookup);
     options.lookup = static_cast<skinslide_lookup>(found - lookupTokens.begin());
@@ -135,14 +135,14 @@ skinslide_workspace_options SlidMesh::workspaceOptions() {
 }
 
 // Built when the first frame is asked for. Throws Fault where it cannot be.
-const skinslide_slider *SlidMesh::slider() {
+const skinslide_slider *LiveMesh::slider() {
     std::call_once(_built, [this] { build(); });
     if (!_slider)
         throw Fault(_problem);
     return _slider;
 }
 
-skinslide_workspace *SlidMesh::takeWorkspace() {
+skinslide_workspace *LiveMesh::takeWorkspace() {
     const skinslide_slider *slider = this->slider();
     {
         std::lock_guard<std::mutex> lock(_mutex);
@@ -160,14 +160,14 @@ skinslide_workspace *SlidMesh::takeWorkspace() {
     return workspace;
 }
 
-void SlidMesh::giveBack(skinslide_workspace *workspace) {
+void LiveMesh::giveBack(skinslide_workspace *workspace) {
     std::lock_guard<std::mutex> lock(_mutex);
     _idle.push_back(workspace);
 }
 
 // ---- Frames ----
 
-VtVec3fArray SlidMesh::cachedPoints(double time) const {
+VtVec3fArray LiveMesh::cachedPoints(double time) const {
     VtVec3fArray points = positions(_source->points.at(time), "points");
     if (points.empty())
         throw Fault("points has no value");
@@ -177,7 +177,7 @@ VtVec3fArray SlidMesh::cachedPoints(double time) const {
     return points;
 }
 
-VtVec3fArray SlidMesh::slide(double time) {
+VtVec3fArray LiveMesh::slide(double time) {
     VtVec3fArray cached = cachedPoints(time), slid(cached.size());
     std::vector<Controls> controls;
     std::vector<skinslide_controls> native;
@@ -201,7 +201,7 @@ VtVec3fArray SlidMesh::slide(double time) {
     return slid;
 }
 
-Frame SlidMesh::solve(double time) {
+Frame LiveMesh::solve(double time) {
     try {
         return {VtValue(slide(time)), true};
     } catch (const std::exception &bad) {
@@ -210,18 +210,18 @@ Frame SlidMesh::solve(double time) {
     }
 }
 
-std::shared_ptr<const Frame> SlidMesh::frame(double time) {
+std::shared_ptr<const Frame> LiveMesh::frame(double time) {
     // A thread that waits for a frame, or solves one, lets others run Python; and one that waited with the lock would keep the
     // one that solves from taking it back.
     PythonReleased released;
     return FrameCache::shared().get(this, time, [&] { return solve(time); });
 }
 
-VtValue SlidMesh::points(double time) {
+VtValue LiveMesh::points(double time) {
     return frame(time)->points;
 }
 
-VtValue SlidMesh::extent(double time) {
+VtValue LiveMesh::extent(double time) {
     std::shared_ptr<const Frame> found = frame(time);
     if (!found->points.IsHolding<VtVec3fArray>())
         return VtValue(SdfValueBlock());
@@ -232,7 +232,7 @@ VtValue SlidMesh::extent(double time) {
 }
 
 // The points of a time before and after; false where they could not be solved.
-bool SlidMesh::pose(double time, Pose *pose) {
+bool LiveMesh::pose(double time, Pose *pose) {
     std::shared_ptr<const Frame> found = frame(time);
     if (!found->slid)
         return false;
@@ -262,7 +262,7 @@ size_t countFor(skinslide_normals_layout layout, const Topology &topology) {
 
 } // namespace
 
-VtValue SlidMesh::normals(double time) {
+VtValue LiveMesh::normals(double time) {
     VtValue cached;
     try {
         cached = _source->normals.flattened(time);
@@ -287,7 +287,7 @@ VtValue SlidMesh::normals(double time) {
 
 // The times for a first (2) or second (3) difference: the authored ones next to `time` on either side, with it between them
 // for a second difference; at an end of the cache it and those nearest to it.
-std::vector<double> SlidMesh::samplesAround(double time, size_t count) const {
+std::vector<double> LiveMesh::samplesAround(double time, size_t count) const {
     const std::vector<double> &times = _source->pointsTimes;
     std::vector<double> before(times.begin(), std::lower_bound(times.begin(), times.end(), time - sameTime));
     std::vector<double> after(std::upper_bound(times.begin(), times.end(), time + sameTime), times.end());
@@ -304,7 +304,7 @@ std::vector<double> SlidMesh::samplesAround(double time, size_t count) const {
     return around;
 }
 
-VtValue SlidMesh::rate(const Rate &rate, double time) {
+VtValue LiveMesh::rate(const Rate &rate, double time) {
     VtValue cached = rate.attribute.at(time);
     try {
         std::vector<Pose> poses;

@@ -1,6 +1,6 @@
 // The maps of a patch: OpenEXR images, sampled at a primvar of the mesh by the core.
-#ifndef SKINSLIDE_FORMAT_MAPS_H
-#define SKINSLIDE_FORMAT_MAPS_H
+#ifndef SKINSLIDE_FORMAT_TEXTURES_H
+#define SKINSLIDE_FORMAT_TEXTURES_H
 
 #include "values.h"
 
@@ -14,10 +14,10 @@ namespace skinslide {
 struct Topology;
 
 // The map of one control of a patch, weight or forceDensity, over time.
-class Map {
+class Texture {
   public:
     // Throws Fault.
-    Map(const Composition &composition, const Prim &mesh, const std::string &patch, const std::string &control);
+    Texture(const Composition &composition, const Prim &mesh, const std::string &patch, const std::string &control);
 
     const std::string &name() const {
         return _map.name();
