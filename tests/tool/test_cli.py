@@ -1,8 +1,10 @@
 """The command as a whole: help, versions, exit codes, one JSON document, interruptions."""
 
+import inspect
 import json
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,7 @@ import skinslide
 import stages
 from skinslide import parse_frames
 from skinslide.command import cli
+from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
 from stages import FRAMES, MESH, PATCH
 
 
@@ -99,6 +102,20 @@ def test_a_closed_pipe_is_no_traceback(shot):
 
 
 # ---- Arguments ----
+
+
+@pytest.mark.parametrize("function", [skinslide.bake, skinslide.bake_to_file, skinslide.preview, skinslide.maps])
+def test_functions_have_the_defaults_of_the_options(function):
+    tables = [SlideOptions, *([LayerOptions] if function.__name__.startswith("bake") else [])]
+    parameters = inspect.signature(function).parameters
+    for option in (option for table in tables for option in fields(table)):
+        assert parameters[option.name].default == option.default, option.name
+
+
+@pytest.mark.parametrize(("product", "table"), [(skinslide.Pictures, PictureOptions), (skinslide.Maps, MapOptions)])
+def test_products_tell_their_options(product, table):
+    for option in fields(table):
+        assert f"    {option.name}: " in product.__doc__ and "%(" not in product.__doc__
 
 
 @pytest.mark.parametrize("spec", ["-5:5x5", "-5--4", "-.5,3"])
