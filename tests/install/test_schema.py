@@ -48,6 +48,12 @@ def test_the_tables_of_the_core_are_what_the_schema_says(tmp_path):
     assert made.read_text() == committed.read_text(), "run python tables.py in schema/"
 
 
+def test_the_classes_for_python_are_what_the_schema_says(tmp_path):
+    subprocess.run([sys.executable, SCHEMA / "methods.py", tmp_path / "api.py"], check=True)
+    committed = ROOT / "plugin" / "python" / "skinslide" / "author" / "api.py"
+    assert (tmp_path / "api.py").read_text() == committed.read_text(), "run python methods.py in schema/"
+
+
 def read_by_the_core() -> dict[str, tuple[str, bool]]:
     """The type of each property that the core reads in the schema's namespace, and whether it may vary, by name."""
     found = {}

@@ -236,7 +236,9 @@ def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.
         got = " x ".join(map(str, source.shape)) or "a single value"
         raise SliderError("BAD_ARGUMENT", f"{what}: the shape is {got}; it must be {wanted}")
     # Casts of the same kind lose digits at most, but for integers that do not fit.
-    fits = source.size == 0 or (np.can_cast(source.dtype, dtype, "same_kind") and source.dtype != np.bool_)
+    fits = source.size == 0 or (
+        np.can_cast(source.dtype, dtype, "same_kind") and (source.dtype == np.bool_) == (dtype == np.bool_)
+    )
     with np.errstate(over="ignore"):
         result = np.ascontiguousarray(source, dtype) if fits else source
     if not fits or (dtype == np.int32 and not np.array_equal(result, source)):

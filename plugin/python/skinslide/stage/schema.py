@@ -65,6 +65,12 @@ def property_name(patch: str, name: str) -> str:
     return f"{NAMESPACE}:{patch}:{name}"
 
 
+def is_of_patch(name: str, patch: str) -> bool:
+    """Whether a property of a mesh is one of a patch."""
+    space, _, _own = name.removeprefix("primvars:").removesuffix(":indices").rpartition(":")
+    return space == f"{NAMESPACE}:{patch}"
+
+
 def primvar(prim: Usd.Prim, patch: str, name: str) -> UsdGeom.Primvar:
     """The primvar of a patch; invalid where there is none."""
     return UsdGeom.PrimvarsAPI(prim).GetPrimvar(property_name(patch, name))
@@ -96,9 +102,12 @@ def token(prim: Usd.Prim, patch: str, name: str) -> str:
 
 def declared(name: str) -> Sdf.AttributeSpec:
     """The schema's own declaration of a property of a patch."""
-    return _schema_layer().GetAttributeAtPath(
-        f"/{SCHEMA}.{Usd.SchemaRegistry.MakeMultipleApplyNameTemplate(NAMESPACE, name)}"
-    )
+    return declaration(SCHEMA, Usd.SchemaRegistry.MakeMultipleApplyNameTemplate(NAMESPACE, name))
+
+
+def declaration(schema: str, name: str) -> Sdf.AttributeSpec:
+    """The declaration of a property of one of the schemas, by its name there."""
+    return _schema_layer().GetAttributeAtPath(f"/{schema}.{name}")
 
 
 def declared_names() -> list[str]:

@@ -1,0 +1,632 @@
+"""The schemas of skinslide, as pxr has those of its own. Made by schema/methods.py of schema/schema.usda."""
+
+from __future__ import annotations
+
+import os
+from typing import Literal
+
+import numpy.typing as npt
+from pxr import Sdf, Usd, UsdGeom
+
+from skinslide.author.applied import AppliedPatch, AppliedSchema
+
+
+class SkinSlideAPI(AppliedPatch):
+    """A patch of a mesh whose skin slides over the deformed surface, so that texture keeps its rest spacing.
+
+    The instance name is the patch's name: SkinSlideAPI:elbow_L. A mesh may carry many patches, and patches may
+    overlap.
+
+    What is painted on patch NAME lives in primvars, which the schema of a patch cannot declare:
+    - primvars:skinSlide:NAME:patch: the faces. bool[], int[] or float[]; uniform: faces of value above 0; vertex:
+      faces whose points are all above 0. Where it is absent, the GeomSubset child called NAME (elementType face)
+      gives them. Faces that fall into several pieces are several patches with the same settings.
+    - primvars:skinSlide:NAME:weight: how far each point slides, 0 to 1. float, vertex or constant; may be animated.
+      Absent: 1. With interpolation limit it scales the slide of limit points: a point of weight 0 still follows its
+      neighbours so that its limit point stays.
+    - primvars:skinSlide:NAME:maxDistance: how far each point may slide along the surface, in the mesh's units.
+      float, 0 or more, vertex or constant; may be animated. Absent: no limit.
+    - primvars:skinSlide:NAME:forceDensity: how hard edges pull. float above 0; vertex (an edge takes the mean of its
+      ends), uniform (the mean of its faces) or constant; may be animated. Only ratios matter. Absent: 1.
+
+    A bake with --diagnostics writes what it did to each point of the mesh beside the points:
+    primvars:skinSlide:stretch, the RMS of log(length / rest length) over the edges of patches at the point, and
+    primvars:skinSlide:slide, how far it slid, in the mesh's units. Both are float, vertex, and read by nothing here.
+
+    The rest pose, in which nothing slides, is the mesh's. First found: skinSlide:restPoints (point3f[]),
+    primvars:rest, primvars:pref, primvars:Pref, primvars:__Pref, the default value of points.
+    """
+
+    SCHEMA = "SkinSlideAPI"
+    NAMESPACE = "skinSlide"
+    APPLIES_TO = ("Mesh",)
+
+    def GetEnvelopeAttr(self) -> Usd.Attribute:
+        """Scales the slide of the whole patch: 0 leaves the cache as it is, 1 slides fully.
+
+        Values outside 0 to 1 are clamped.
+
+        Returns:
+            The attribute skinSlide:NAME:envelope, float; not valid where there is none.
+        """
+        return self._attribute("envelope")
+
+    def CreateEnvelopeAttr(self, defaultValue: float | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:NAME:envelope in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("envelope", defaultValue, writeSparsely)
+
+    def GetCornersAttr(self) -> Usd.Attribute:
+        """Four point indices on the outer boundary of the patch, in any order.
+
+        They go to the corners of the square in which the patch is laid out. Absent: none.
+
+        Returns:
+            The attribute skinSlide:NAME:corners, int[], uniform; not valid where there is none.
+        """
+        return self._attribute("corners")
+
+    def CreateCornersAttr(
+        self, defaultValue: npt.ArrayLike | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:corners in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, int[], uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("corners", defaultValue, writeSparsely)
+
+    def GetBoundaryAttr(self) -> Usd.Attribute:
+        """The outline in which the patch is laid out.
+
+        auto: the square where corners are given, else the circle. square without corners: its corners are the
+        sharpest point of the boundary and those nearest to the quarters from there.
+
+        Returns:
+            The attribute skinSlide:NAME:boundary, token, uniform; not valid where there is none.
+        """
+        return self._attribute("boundary")
+
+    def CreateBoundaryAttr(
+        self, defaultValue: Literal["auto", "square", "circle"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:boundary in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("boundary", defaultValue, writeSparsely)
+
+    def GetHolesAttr(self) -> Usd.Attribute:
+        """What happens at the rims of holes in the patch, such as eyes, nostrils and mouth.
+
+        pinned: rims stay on the cached points. free: rims slide too, and faces near them may fold, which is counted.
+
+        Returns:
+            The attribute skinSlide:NAME:holes, token, uniform; not valid where there is none.
+        """
+        return self._attribute("holes")
+
+    def CreateHolesAttr(
+        self, defaultValue: Literal["pinned", "free"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:holes in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("holes", defaultValue, writeSparsely)
+
+    def GetForceDensityRuleAttr(self) -> Usd.Attribute:
+        """Where skin slides to.
+
+        unit and fast balance the pull of edges in a flat layout of the patch; an edge of length l pulls with 1/l, or
+        with the largest l*l of the patch less l*l. relaxed: to where every edge is as near its rest length as the
+        deformed surface allows; force density is then how much an edge counts, and corners and boundary count for
+        nothing.
+
+        Returns:
+            The attribute skinSlide:NAME:forceDensityRule, token, uniform; not valid where there is none.
+        """
+        return self._attribute("forceDensityRule")
+
+    def CreateForceDensityRuleAttr(
+        self, defaultValue: Literal["unit", "fast", "relaxed"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:forceDensityRule in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("forceDensityRule", defaultValue, writeSparsely)
+
+    def GetInterpolationAttr(self) -> Usd.Attribute:
+        """How a place within a face becomes a point on the deformed surface.
+
+        linear: in the triangles that share the face's first point. meanValue: by mean value coordinates in the
+        polygon. limit: on the subdivision limit surface. auto: limit where the mesh renders as a subdivision
+        surface, else linear.
+
+        Returns:
+            The attribute skinSlide:NAME:interpolation, token, uniform; not valid where there is none.
+        """
+        return self._attribute("interpolation")
+
+    def CreateInterpolationAttr(
+        self, defaultValue: Literal["auto", "linear", "meanValue", "limit"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:interpolation in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("interpolation", defaultValue, writeSparsely)
+
+    def GetEdgesAttr(self) -> Usd.Attribute:
+        """Pairs of point indices, each an edge of the patch whose force density edgeForceDensities scales.
+
+        Absent: none.
+
+        Returns:
+            The attribute skinSlide:NAME:edges, int[], uniform; not valid where there is none.
+        """
+        return self._attribute("edges")
+
+    def CreateEdgesAttr(self, defaultValue: npt.ArrayLike | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:NAME:edges in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, int[], uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("edges", defaultValue, writeSparsely)
+
+    def GetEdgeForceDensitiesAttr(self) -> Usd.Attribute:
+        """One factor above 0 for each pair in edges; it multiplies the painted force density.
+
+        Only ratios matter. Absent: none.
+
+        Returns:
+            The attribute skinSlide:NAME:edgeForceDensities, float[]; not valid where there is none.
+        """
+        return self._attribute("edgeForceDensities")
+
+    def CreateEdgeForceDensitiesAttr(
+        self, defaultValue: npt.ArrayLike | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:edgeForceDensities in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float[]; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("edgeForceDensities", defaultValue, writeSparsely)
+
+    def GetForceDensityMapAttr(self) -> Usd.Attribute:
+        """An OpenEXR image, one file or a UDIM (body.<UDIM>.exr).
+
+        Its values multiply the painted force density by point. Sampled bilinearly at mapSt; a point takes the mean
+        over its corners in the patch. Values must be above 0. May be animated. Absent: none.
+
+        Returns:
+            The attribute skinSlide:NAME:forceDensityMap, asset; not valid where there is none.
+        """
+        return self._attribute("forceDensityMap")
+
+    def CreateForceDensityMapAttr(
+        self, defaultValue: Sdf.AssetPath | str | os.PathLike[str] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:forceDensityMap in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, asset; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("forceDensityMap", defaultValue, writeSparsely)
+
+    def GetForceDensityMapChannelAttr(self) -> Usd.Attribute:
+        """The channel of forceDensityMap to use: its name, or PART.NAME in a file of several parts.
+
+        Absent: R, else Y, else the first but A.
+
+        Returns:
+            The attribute skinSlide:NAME:forceDensityMapChannel, token, uniform; not valid where there is none.
+        """
+        return self._attribute("forceDensityMapChannel")
+
+    def CreateForceDensityMapChannelAttr(
+        self, defaultValue: str | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:forceDensityMapChannel in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("forceDensityMapChannel", defaultValue, writeSparsely)
+
+    def GetWeightMapAttr(self) -> Usd.Attribute:
+        """An OpenEXR image, one file or a UDIM (body.<UDIM>.exr): its values multiply the painted weight by point.
+
+        Sampled as forceDensityMap is. May be animated. Absent: none.
+
+        Returns:
+            The attribute skinSlide:NAME:weightMap, asset; not valid where there is none.
+        """
+        return self._attribute("weightMap")
+
+    def CreateWeightMapAttr(
+        self, defaultValue: Sdf.AssetPath | str | os.PathLike[str] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:weightMap in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, asset; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("weightMap", defaultValue, writeSparsely)
+
+    def GetWeightMapChannelAttr(self) -> Usd.Attribute:
+        """The channel of weightMap to use: its name, or PART.NAME in a file of several parts.
+
+        Absent: R, else Y, else the first but A.
+
+        Returns:
+            The attribute skinSlide:NAME:weightMapChannel, token, uniform; not valid where there is none.
+        """
+        return self._attribute("weightMapChannel")
+
+    def CreateWeightMapChannelAttr(self, defaultValue: str | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:NAME:weightMapChannel in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("weightMapChannel", defaultValue, writeSparsely)
+
+    def GetMapStAttr(self) -> Usd.Attribute:
+        """The primvar with the texture coordinates at which both maps are sampled.
+
+        Two floats each; faceVarying, vertex or varying. Beyond 0 to 1 an image goes on as its attribute wrapmodes
+        says, else clamped.
+
+        Returns:
+            The attribute skinSlide:NAME:mapSt, token, uniform; not valid where there is none.
+        """
+        return self._attribute("mapSt")
+
+    def CreateMapStAttr(self, defaultValue: str | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:NAME:mapSt in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("mapSt", defaultValue, writeSparsely)
+
+    def GetPatchPrimvar(self) -> UsdGeom.Primvar:
+        """The faces.
+
+        bool[], int[] or float[]; uniform: faces of value above 0; vertex: faces whose points are all above 0. Where
+        it is absent, the GeomSubset child called NAME (elementType face) gives them. Faces that fall into several
+        pieces are several patches with the same settings.
+
+        Returns:
+            The primvar primvars:skinSlide:NAME:patch; not valid where there is none.
+        """
+        return self._primvar("patch")
+
+    def CreatePatchPrimvar(
+        self, interpolation: str = "uniform", defaultValue: npt.ArrayLike | None = None
+    ) -> UsdGeom.Primvar:
+        """Authors primvars:skinSlide:NAME:patch in the edit target.
+
+        Args:
+            interpolation: What each value is of.
+            defaultValue: The values at no time, bool[], and not indexed; None: none.
+
+        Returns:
+            The primvar.
+
+        Raises:
+            UsageError: The values are of another kind.
+        """
+        return self._create_primvar("patch", "bool[]", interpolation, defaultValue)
+
+    def GetWeightPrimvar(self) -> UsdGeom.Primvar:
+        """How far each point slides, 0 to 1.
+
+        float, vertex or constant; may be animated. Absent: 1. With interpolation limit it scales the slide of limit
+        points: a point of weight 0 still follows its neighbours so that its limit point stays.
+
+        Returns:
+            The primvar primvars:skinSlide:NAME:weight; not valid where there is none.
+        """
+        return self._primvar("weight")
+
+    def CreateWeightPrimvar(
+        self, interpolation: str = "vertex", defaultValue: npt.ArrayLike | None = None
+    ) -> UsdGeom.Primvar:
+        """Authors primvars:skinSlide:NAME:weight in the edit target.
+
+        Args:
+            interpolation: What each value is of.
+            defaultValue: The values at no time, float[], and not indexed; None: none.
+
+        Returns:
+            The primvar.
+
+        Raises:
+            UsageError: The values are of another kind.
+        """
+        return self._create_primvar("weight", "float[]", interpolation, defaultValue)
+
+    def GetMaxDistancePrimvar(self) -> UsdGeom.Primvar:
+        """How far each point may slide along the surface, in the mesh's units.
+
+        float, 0 or more, vertex or constant; may be animated. Absent: no limit.
+
+        Returns:
+            The primvar primvars:skinSlide:NAME:maxDistance; not valid where there is none.
+        """
+        return self._primvar("maxDistance")
+
+    def CreateMaxDistancePrimvar(
+        self, interpolation: str = "vertex", defaultValue: npt.ArrayLike | None = None
+    ) -> UsdGeom.Primvar:
+        """Authors primvars:skinSlide:NAME:maxDistance in the edit target.
+
+        Args:
+            interpolation: What each value is of.
+            defaultValue: The values at no time, float[], and not indexed; None: none.
+
+        Returns:
+            The primvar.
+
+        Raises:
+            UsageError: The values are of another kind.
+        """
+        return self._create_primvar("maxDistance", "float[]", interpolation, defaultValue)
+
+    def GetForceDensityPrimvar(self) -> UsdGeom.Primvar:
+        """How hard edges pull.
+
+        float above 0; vertex (an edge takes the mean of its ends), uniform (the mean of its faces) or constant; may
+        be animated. Only ratios matter. Absent: 1.
+
+        Returns:
+            The primvar primvars:skinSlide:NAME:forceDensity; not valid where there is none.
+        """
+        return self._primvar("forceDensity")
+
+    def CreateForceDensityPrimvar(
+        self, interpolation: str = "vertex", defaultValue: npt.ArrayLike | None = None
+    ) -> UsdGeom.Primvar:
+        """Authors primvars:skinSlide:NAME:forceDensity in the edit target.
+
+        Args:
+            interpolation: What each value is of.
+            defaultValue: The values at no time, float[], and not indexed; None: none.
+
+        Returns:
+            The primvar.
+
+        Raises:
+            UsageError: The values are of another kind.
+        """
+        return self._create_primvar("forceDensity", "float[]", interpolation, defaultValue)
+
+
+class SkinSlideMeshAPI(AppliedSchema):
+    """What all patches of a mesh share.
+
+    It counts on every mesh with patches, whether this is applied or not.
+    """
+
+    SCHEMA = "SkinSlideMeshAPI"
+    NAMESPACE = "skinSlide"
+    APPLIES_TO = ("Mesh",)
+
+    def GetRestPointsAttr(self) -> Usd.Attribute:
+        """The rest pose, in which nothing slides: as many points as the mesh has.
+
+        Absent: the first found of primvars:rest, primvars:pref, primvars:Pref, primvars:__Pref and the default value
+        of points.
+
+        Returns:
+            The attribute skinSlide:restPoints, point3f[], uniform; not valid where there is none.
+        """
+        return self._attribute("restPoints")
+
+    def CreateRestPointsAttr(
+        self, defaultValue: npt.ArrayLike | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:restPoints in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, point3f[], uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("restPoints", defaultValue, writeSparsely)
+
+
+class SkinSlideLiveAPI(AppliedSchema):
+    """What a shot sets for all patches of a .skinslide file, on the prim that payloads it.
+
+    It counts on every such prim, whether this is applied or not.
+    """
+
+    SCHEMA = "SkinSlideLiveAPI"
+    NAMESPACE = "skinSlide:live"
+    APPLIES_TO = ()
+
+    def GetEnvelopeAttr(self) -> Usd.Attribute:
+        """Multiplies the envelope of each patch.
+
+        Returns:
+            The attribute skinSlide:live:envelope, float, uniform; not valid where there is none.
+        """
+        return self._attribute("envelope")
+
+    def CreateEnvelopeAttr(self, defaultValue: float | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:live:envelope in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("envelope", defaultValue, writeSparsely)
+
+    def GetInterpolationAttr(self) -> Usd.Attribute:
+        """Stands in place of the interpolation of each patch.
+
+        Absent: each has its own.
+
+        Returns:
+            The attribute skinSlide:live:interpolation, token, uniform; not valid where there is none.
+        """
+        return self._attribute("interpolation")
+
+    def CreateInterpolationAttr(
+        self, defaultValue: Literal["auto", "linear", "meanValue", "limit"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:live:interpolation in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("interpolation", defaultValue, writeSparsely)
+
+    def GetLookupAttr(self) -> Usd.Attribute:
+        """How rest points are looked up in the plane; where they are found is the same.
+
+        auto: egl where there is a graphics device, else exact.
+
+        Returns:
+            The attribute skinSlide:live:lookup, token, uniform; not valid where there is none.
+        """
+        return self._attribute("lookup")
+
+    def CreateLookupAttr(
+        self, defaultValue: Literal["auto", "egl", "exact"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:live:lookup in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("lookup", defaultValue, writeSparsely)
