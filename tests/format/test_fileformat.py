@@ -230,7 +230,7 @@ def test_exported_it_is_a_layer_like_any_other(path, tmp_path, expected):
 def test_set_up_by_the_tool_it_opens_as_it_is(tmp_path):
     stage = patched_stage(grid())[0]
     cache, path = save(stage, tmp_path / "cache.usda"), tmp_path / "made.skinslide"
-    skinslide.setup(cache, path, MESH, "more", faces="0-20")
+    skinslide.setup_to_file(cache, path, MESH, "more", faces="0-20")
     expected = samples(baked(path, tmp_path), "points")
     assert bends(expected) and same(samples(Sdf.Layer.FindOrOpen(str(path)), "points"), expected)
 

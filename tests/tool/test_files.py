@@ -8,7 +8,7 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom
 
 import stages
-from skinslide import StageError, UsageError, bake_to_file, setup
+from skinslide import StageError, UsageError, bake_to_file, setup_to_file
 from skinslide.command.cli import main
 from stages import FRAMES, MESH
 
@@ -25,7 +25,7 @@ def refused(shot: Path, output: Path, message: str = "the stage reads this file"
     with pytest.raises(UsageError, match=message):
         bake_to_file(shot, output)
     with pytest.raises(UsageError, match=message):
-        setup(shot, output, MESH, "another", faces="0-3", force=True)
+        setup_to_file(shot, output, MESH, "another", faces="0-3", force=True)
     assert before == (output.read_bytes() if os.path.isfile(output) else None)
 
 
@@ -111,10 +111,11 @@ def test_an_input_that_appears_while_it_is_read(shot, tmp_path, monkeypatch):
 
 
 def test_a_set_up_that_is_in_the_way(shot, tmp_path):
-    setup(shot, tmp_path / "patches.usda", MESH, "more", faces="0-3")
+    setup_to_file(shot, tmp_path / "patches.usda", MESH, "more", faces="0-3")
     (tmp_path / "top.usda").write_text("#usda 1.0\n(\n    subLayers = [@./patches.usda@]\n)\n")
     refused(tmp_path / "top.usda", tmp_path / "patches.usda")
-    setup(shot, tmp_path / "patches.usda", MESH, "again", faces="0-3")  # which the stage it sits on does not read
+    # The stage that it sits on does not read it.
+    setup_to_file(shot, tmp_path / "patches.usda", MESH, "again", faces="0-3")
 
 
 # ---- What is no place for a file ----
@@ -182,7 +183,7 @@ def test_bytes_are_on_the_disk_before_the_name_is(shot, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "fsync", lambda number: (calls.append("fsync"), fsync(number)))
     monkeypatch.setattr(os, "replace", lambda *names: (calls.append("replace"), replace(*names)))
     bake_to_file(shot, tmp_path / "out.usda")
-    setup(shot, tmp_path / "patches.skinslide", MESH, "more", faces="0-3")
+    setup_to_file(shot, tmp_path / "patches.skinslide", MESH, "more", faces="0-3")
     assert calls == ["fsync", "replace"] * 2
 
 
@@ -191,7 +192,7 @@ def test_a_set_up_keeps_the_mode(shot, tmp_path, extension):
     output = tmp_path / f"patches.{extension}"
     output.touch()
     output.chmod(0o640)
-    setup(shot, output, MESH, "more", faces="0-3", force=True)
+    setup_to_file(shot, output, MESH, "more", faces="0-3", force=True)
     assert output.stat().st_mode & 0o777 == 0o640
 
 
@@ -238,5 +239,5 @@ def test_a_set_up_over_what_is_no_layer(shot, tmp_path, output):
     content = {"words": b"words", "bytes": b"\xff\xfe\x00", "empty": b"", "image": b"PXR-USDC\x00\x00\x00"}
     (tmp_path / output).write_bytes(content[output.split(".")[0]])
     with pytest.raises(UsageError, match="--force replaces it"):
-        setup(shot, tmp_path / output, MESH, "more", faces="0-3")
-    setup(shot, tmp_path / output, MESH, "more", faces="0-3", force=True)
+        setup_to_file(shot, tmp_path / output, MESH, "more", faces="0-3")
+    setup_to_file(shot, tmp_path / output, MESH, "more", faces="0-3", force=True)

@@ -7,7 +7,7 @@ import pytest
 from pxr import Gf, Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
-from skinslide import PatchSetup, StageProblems, UsageError, check, mirror
+from skinslide import PatchSetup, StageProblems, UsageError, check, mirror_to_file
 from skinslide.arrays.geometry import mirror_faces
 from skinslide.arrays.images import encode_exr
 from skinslide.author.mirror import other_side
@@ -78,7 +78,7 @@ def read(path) -> dict[str, Read]:
 def mirrored(stage: Usd.Stage, folder, **options) -> Read:
     """The patch on the other side."""
     path = stages.save(stage, folder / "shot.usda")
-    report = mirror(path, folder / "both.skinslide", MESH, LEFT, **options)
+    report = mirror_to_file(path, folder / "both.skinslide", MESH, LEFT, **options)
     assert not report.failed
     patches = read(folder / "both.skinslide")
     assert list(patches) == [RIGHT, LEFT]
@@ -122,8 +122,8 @@ def test_there_and_back_is_the_same(tmp_path):
     prop(mesh, "edges", [10, 11])
     prop(mesh, "edgeForceDensities", [2.0])
     path = stages.save(stage, tmp_path / "shot.usda")
-    mirror(path, tmp_path / "both.usda", MESH, LEFT)
-    mirror(tmp_path / "both.usda", tmp_path / "back.usda", MESH, RIGHT, to="again")
+    mirror_to_file(path, tmp_path / "both.usda", MESH, LEFT)
+    mirror_to_file(tmp_path / "both.usda", tmp_path / "back.usda", MESH, RIGHT, to="again")
     patches = read(tmp_path / "back.usda")
     first, again = patches[LEFT][0], patches["again"][0]
     assert first.faces.tolist() == again.faces.tolist()
@@ -216,7 +216,7 @@ def test_what_was_there_before_is_replaced(tmp_path):
         prop(mesh, name, value, RIGHT)
     prop(mesh, "weightMap", Sdf.AssetPath("./gone.exr"), RIGHT)
     path = stages.save(stage, tmp_path / "shot.usda")
-    mirror(path, tmp_path / "both.usda", MESH, LEFT)
+    mirror_to_file(path, tmp_path / "both.usda", MESH, LEFT)
     patch = read(tmp_path / "both.usda")[RIGHT][0]
     assert patch.faces.tolist() == sorted(ACROSS_FACES.tolist()) and patch.boundary == "auto"
     controls = patch.controls
@@ -229,9 +229,9 @@ def test_again_into_the_same_layer(tmp_path):
     primvar(mesh, "weight", "vertex", np.full(63, 0.5))
     path = stages.save(stage, tmp_path / "shot.usda")
     output = tmp_path / "both.skinslide"
-    mirror(path, output, MESH, LEFT)
+    mirror_to_file(path, output, MESH, LEFT)
     once = output.read_text()
-    mirror(path, output, MESH, LEFT)
+    mirror_to_file(path, output, MESH, LEFT)
     assert output.read_text() == once
     assert list(read(output)) == [RIGHT, LEFT]
 
@@ -245,7 +245,7 @@ def test_both_sides_slide_alike(tmp_path):
     primvar(mesh, "forceDensity", "vertex", 1 + VERTEX_ROW)
     prop(mesh, "interpolation", "meanValue")  # linear cuts a quad from its first point, which is no matter of symmetry
     path = stages.save(stage, tmp_path / "shot.usda")
-    mirror(path, tmp_path / "both.usda", MESH, LEFT)
+    mirror_to_file(path, tmp_path / "both.usda", MESH, LEFT)
     assert main(["bake", str(tmp_path / "both.usda"), "-o", str(tmp_path / "slid.usda"), "--quiet"]) == 0
     layer = Sdf.Layer.FindOrOpen(str(tmp_path / "slid.usda"))
     slid = np.array(layer.QueryTimeSample(f"{MESH}.points", FRAMES[2]))
@@ -360,7 +360,7 @@ def test_faults(spoil, options, message, tmp_path):
     spoil(mesh)
     path = stages.save(stage, tmp_path / "shot.usda")
     with pytest.raises(StageProblems) as raised:
-        mirror(path, tmp_path / "both.usda", MESH, LEFT, **options)
+        mirror_to_file(path, tmp_path / "both.usda", MESH, LEFT, **options)
     (problem,) = raised.value.problems
     assert message in problem.message and problem.prim == MESH and problem.patch in (LEFT, RIGHT)
     assert not (tmp_path / "both.usda").exists()
@@ -384,5 +384,5 @@ def test_bad_usage(change, tmp_path):
     path = stages.save(stage, tmp_path / "shot.usda")
     options = {"output": "both.usda", "patch": LEFT, **change}
     with pytest.raises(UsageError):
-        mirror(path, tmp_path / options.pop("output"), MESH, options.pop("patch"), **options)
+        mirror_to_file(path, tmp_path / options.pop("output"), MESH, options.pop("patch"), **options)
     assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]

@@ -5,7 +5,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
 import stages
-from skinslide import Controls, PatchSetup, Slider, StageProblems, UsageError, paint, setup
+from skinslide import Controls, PatchSetup, Slider, StageProblems, UsageError, paint_to_file, setup_to_file
 from skinslide.command.cli import main
 from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage
@@ -59,7 +59,7 @@ def edit(path, change) -> None:
 @pytest.mark.parametrize("extension", ["skinslide", "usda", "usdc", "usd"])
 def test_edges_of_a_subset(extension, shot, tmp_path):
     output = tmp_path / f"painted.{extension}"
-    report = paint(shot, output, MESH, PATCH, 3, subset="seam")
+    report = paint_to_file(shot, output, MESH, PATCH, 3, subset="seam")
     assert painted(output) == {(8, 9): 3, (9, 10): 3, (10, 11): 3}
     assert (report.painted, report.left_out, report.total) == (3, 1, 3)
     assert f"{PATCH}: 3 edges painted 3, 1 left out that are not of the patch; 3 painted in all" in report.text()
@@ -70,11 +70,11 @@ def test_edges_of_a_subset(extension, shot, tmp_path):
 def test_edges_between_painted_points(shot, tmp_path):
     """Both ends count: points of columns 3 and 4, in rows 0 to 4 of the patch."""
     output = tmp_path / "painted.usda"
-    paint(shot, output, MESH, PATCH, 0.5, primvar="ramp", threshold=3)
+    paint_to_file(shot, output, MESH, PATCH, 0.5, primvar="ramp", threshold=3)
     rows = [7 * row for row in range(5)]
     expected = [(row + 3, row + 4) for row in rows] + [(r + c, r + c + 7) for r in rows[:-1] for c in (3, 4)]
     assert painted(output) == dict.fromkeys(expected, 0.5)
-    paint(shot, output, MESH, PATCH, 2, primvar="ramp", threshold=3.5, clear=True)
+    paint_to_file(shot, output, MESH, PATCH, 2, primvar="ramp", threshold=3.5, clear=True)
     assert set(painted(output)) == {(row + 4, row + 11) for row in rows[:-1]}
 
 
@@ -89,7 +89,7 @@ def test_edges_between_painted_points(shot, tmp_path):
 )
 def test_edges_near_a_curve(distance, direction, expected, shot, tmp_path):
     """A side of a quad is 1/6: edges across have their middles 1/12 from the curve, and more where the sheet bends."""
-    paint(shot, tmp_path / "painted.usda", MESH, PATCH, 4, curve=CURVE, distance=distance, direction=direction)
+    paint_to_file(shot, tmp_path / "painted.usda", MESH, PATCH, 4, curve=CURVE, distance=distance, direction=direction)
     assert painted(tmp_path / "painted.usda") == dict.fromkeys(expected, 4)
 
 
@@ -108,11 +108,12 @@ def test_a_smooth_closed_curve(shot, tmp_path):
         curve.CreatePointsAttr(stages.vectors(circle))
 
     edit(shot, draw)
-    paint(shot, tmp_path / "painted.usda", MESH, PATCH, 4, curve=f"{MESH}/circle", distance=0.06, direction="along")
+    ring = f"{MESH}/circle"
+    paint_to_file(shot, tmp_path / "painted.usda", MESH, PATCH, 4, curve=ring, distance=0.06, direction="along")
     # The spokes from the middle cross the circle, and have their own middles 1/12 away.
     spokes = {(9, 16), (15, 16), (16, 17), (16, 23)}
     assert not spokes & set(painted(tmp_path / "painted.usda"))
-    paint(shot, tmp_path / "across.usda", MESH, PATCH, 4, curve=f"{MESH}/circle", distance=0.09, direction="across")
+    paint_to_file(shot, tmp_path / "across.usda", MESH, PATCH, 4, curve=ring, distance=0.09, direction="across")
     assert spokes <= set(painted(tmp_path / "across.usda"))
 
 
@@ -128,12 +129,12 @@ def test_edges_of_faces_by_hand():
 
 def test_paint_over_paint(shot, tmp_path):
     output = tmp_path / "painted.skinslide"
-    paint(shot, output, MESH, PATCH, 3, subset="seam")
-    report = paint(shot, output, MESH, PATCH, 0.5, curve=CURVE, distance=0.09, direction="across")
+    paint_to_file(shot, output, MESH, PATCH, 3, subset="seam")
+    report = paint_to_file(shot, output, MESH, PATCH, 0.5, curve=CURVE, distance=0.09, direction="across")
     assert painted(output)[(9, 10)] == 3 and painted(output)[(9, 16)] == 0.5 and report.total == 13
-    paint(shot, output, MESH, PATCH, 2, subset="seam")
+    paint_to_file(shot, output, MESH, PATCH, 2, subset="seam")
     assert painted(output)[(9, 10)] == 2 and painted(output)[(9, 16)] == 0.5
-    paint(shot, output, MESH, PATCH, 7, subset="seam", clear=True)
+    paint_to_file(shot, output, MESH, PATCH, 7, subset="seam", clear=True)
     assert painted(output) == {(8, 9): 7, (9, 10): 7, (10, 11): 7}
 
 
@@ -143,7 +144,7 @@ def test_paint_of_the_stage_below_is_kept(shot, tmp_path):
         stages.set_property(mesh, "edgeForceDensities", [5.0, 6.0])
 
     edit(shot, change)
-    paint(shot, tmp_path / "painted.usda", MESH, PATCH, 3, subset="seam")
+    paint_to_file(shot, tmp_path / "painted.usda", MESH, PATCH, 3, subset="seam")
     assert painted(tmp_path / "painted.usda") == {(16, 17): 6, (8, 9): 3, (9, 10): 3, (10, 11): 3}
     assert painted(shot) == {(9, 8): 5, (16, 17): 6}
 
@@ -151,13 +152,13 @@ def test_paint_of_the_stage_below_is_kept(shot, tmp_path):
 def test_a_patch_that_setup_made(shot, tmp_path):
     """The layer of the set-up takes the paint."""
     output = tmp_path / "shot.skinslide"
-    setup(shot, output, MESH, "wrist_L", faces="30-35")
-    paint(shot, output, MESH, "wrist_L", 2, primvar="ramp", threshold=0)
+    setup_to_file(shot, output, MESH, "wrist_L", faces="30-35")
+    paint_to_file(shot, output, MESH, "wrist_L", 2, primvar="ramp", threshold=0)
     assert len(painted(output, "wrist_L")) == 19 and painted(output) == {}
 
 
 def test_it_is_what_a_bake_slides_by(shot, tmp_path):
-    paint(shot, tmp_path / "painted.usda", MESH, PATCH, 30, subset="seam")
+    paint_to_file(shot, tmp_path / "painted.usda", MESH, PATCH, 30, subset="seam")
     assert main(["bake", str(tmp_path / "painted.usda"), "-o", str(tmp_path / "slid.usda"), "--quiet"]) == 0
     layer = Sdf.Layer.FindOrOpen(str(tmp_path / "slid.usda"))
     slid = np.array(layer.QueryTimeSample(f"{MESH}.points", stages.FRAMES[2]))
@@ -277,7 +278,7 @@ def test_faults(spoil, choice, message, shot, tmp_path):
     edit(shot, spoil)
     edit(shot, choice.pop("spoil", unchanged))
     with pytest.raises(StageProblems) as raised:
-        paint(shot, tmp_path / "painted.usda", MESH, choice.pop("patch"), 2, **choice)
+        paint_to_file(shot, tmp_path / "painted.usda", MESH, choice.pop("patch"), 2, **choice)
     (problem,) = raised.value.problems
     assert message in problem.message and problem.prim == MESH and problem.patch in (PATCH, "knee_L")
     assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]
@@ -285,7 +286,7 @@ def test_faults(spoil, choice, message, shot, tmp_path):
 
 def test_clearing_what_is_animated(shot, tmp_path):
     edit(shot, animate)
-    paint(shot, tmp_path / "painted.usda", MESH, PATCH, 2, subset="seam", clear=True)
+    paint_to_file(shot, tmp_path / "painted.usda", MESH, PATCH, 2, subset="seam", clear=True)
     assert painted(tmp_path / "painted.usda") == {(8, 9): 2, (9, 10): 2, (10, 11): 2}
 
 
@@ -309,15 +310,15 @@ USAGE = {
 @pytest.mark.parametrize("choice", USAGE.values(), ids=USAGE.keys())
 def test_bad_usage(choice, shot, tmp_path):
     with pytest.raises(UsageError):
-        paint(shot, tmp_path / "painted.usda", MESH, PATCH, **{"value": 2, **choice})
+        paint_to_file(shot, tmp_path / "painted.usda", MESH, PATCH, **{"value": 2, **choice})
     assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]
 
 
 def test_the_rules_of_setup_for_the_output(shot, tmp_path):
     (tmp_path / "other.usda").write_text("#usda 1.0\n")
     with pytest.raises(UsageError, match="--force"):
-        paint(shot, tmp_path / "other.usda", MESH, PATCH, 2, subset="seam")
+        paint_to_file(shot, tmp_path / "other.usda", MESH, PATCH, 2, subset="seam")
     with pytest.raises(UsageError, match="the stage reads this file"):
-        paint(shot, shot, MESH, PATCH, 2, subset="seam")
-    paint(shot, tmp_path / "other.usda", MESH, PATCH, 2, subset="seam", force=True)
+        paint_to_file(shot, shot, MESH, PATCH, 2, subset="seam")
+    paint_to_file(shot, tmp_path / "other.usda", MESH, PATCH, 2, subset="seam", force=True)
     assert len(painted(tmp_path / "other.usda")) == 3

@@ -5,7 +5,7 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom
 
 import stages
-from skinslide.author.setup import parse_faces, setup
+from skinslide.author.setup import parse_faces, setup_to_file
 from skinslide.command.cli import main
 from skinslide.problems import StageProblems, UsageError
 from skinslide.stage.mesh import read_meshes
@@ -35,7 +35,7 @@ def patches(path) -> dict[str, list[int]]:
 @pytest.mark.parametrize("extension", ["skinslide", "usda", "usdc", "usd"])
 def test_writes_a_layer_on_the_stage(extension, cache, tmp_path):
     output = tmp_path / f"shot.{extension}"
-    report = setup(cache, output, MESH, "elbow_L", faces="0-2,6-8")
+    report = setup_to_file(cache, output, MESH, "elbow_L", faces="0-2,6-8")
     assert not report.failed
     assert patches(output) == {"elbow_L": [0, 1, 2, 6, 7, 8]}
     stage = open_stage(output)
@@ -48,7 +48,7 @@ def test_writes_a_layer_on_the_stage(extension, cache, tmp_path):
 
 
 def test_the_path_to_the_stage_is_relative(cache, tmp_path):
-    setup(cache, tmp_path / "shot.skinslide", MESH, "elbow_L", faces="0-2")
+    setup_to_file(cache, tmp_path / "shot.skinslide", MESH, "elbow_L", faces="0-2")
     text = (tmp_path / "shot.skinslide").read_text()
     assert text.startswith("#usda 1.0") and "@./publish/cache.usda@" in text
     (tmp_path / "moved").mkdir()
@@ -58,28 +58,28 @@ def test_the_path_to_the_stage_is_relative(cache, tmp_path):
 
 
 def test_faces_of_a_subset(cache, tmp_path):
-    setup(cache, tmp_path / "shot.usda", MESH, "elbow_L", subset="elbow")
+    setup_to_file(cache, tmp_path / "shot.usda", MESH, "elbow_L", subset="elbow")
     assert patches(tmp_path / "shot.usda") == {"elbow_L": [7, 8, 13, 14]}
 
 
 def test_a_subset_of_the_patch_s_name_stays_the_source(cache, tmp_path):
-    setup(cache, tmp_path / "shot.usda", MESH, "elbow", subset="elbow")
+    setup_to_file(cache, tmp_path / "shot.usda", MESH, "elbow", subset="elbow")
     assert patches(tmp_path / "shot.usda") == {"elbow": [7, 8, 13, 14]}
     assert "primvars" not in (tmp_path / "shot.usda").read_text()
 
 
 def test_faces_of_a_primvar(cache, tmp_path):
-    setup(cache, tmp_path / "shot.usda", MESH, "elbow_L", primvar="mask")
+    setup_to_file(cache, tmp_path / "shot.usda", MESH, "elbow_L", primvar="mask")
     assert patches(tmp_path / "shot.usda") == {"elbow_L": [0, 1, 2, 3, 4, 5]}
 
 
 def test_again_adds_and_replaces(cache, tmp_path):
     output = tmp_path / "shot.skinslide"
-    setup(cache, output, MESH, "elbow_L", faces="0-2")
+    setup_to_file(cache, output, MESH, "elbow_L", faces="0-2")
     text = output.read_text().replace('over "World"', 'over "World" (\n    kind = "assembly"\n)', 1)
     output.write_text(text)
-    setup(cache, output, MESH, "wrist_L", faces="30-32")
-    setup(cache, output, MESH, "elbow_L", faces="1")
+    setup_to_file(cache, output, MESH, "wrist_L", faces="30-32")
+    setup_to_file(cache, output, MESH, "elbow_L", faces="1")
     assert patches(output) == {"elbow_L": [1], "wrist_L": [30, 31, 32]}
     assert open_stage(output).GetPrimAtPath("/World").GetMetadata("kind") == "assembly"
 
@@ -88,15 +88,15 @@ def test_another_file_is_replaced_only_by_force(cache, tmp_path):
     for output, text in ((tmp_path / "notes.usda", "#usda 1.0\n"), (tmp_path / "words.usda", "words")):
         output.write_text(text)
         with pytest.raises(UsageError, match="--force"):
-            setup(cache, output, MESH, "elbow_L", faces="0-2")
+            setup_to_file(cache, output, MESH, "elbow_L", faces="0-2")
         assert output.read_text() == text
-        setup(cache, output, MESH, "elbow_L", faces="0-2", force=True)
+        setup_to_file(cache, output, MESH, "elbow_L", faces="0-2", force=True)
         assert patches(output) == {"elbow_L": [0, 1, 2]}
 
 
 def test_bakes(cache, tmp_path):
     output = tmp_path / "shot.skinslide"
-    setup(cache, output, MESH, "elbow_L", faces="0-35")
+    setup_to_file(cache, output, MESH, "elbow_L", faces="0-35")
     assert main(["bake", str(output), "-o", str(tmp_path / "slid.usda"), "--quiet"]) == 0
     layer = Sdf.Layer.FindOrOpen(str(tmp_path / "slid.usda"))
     assert layer.timeCodesPerSecond == 30
@@ -122,7 +122,7 @@ def test_a_patch_that_could_not_be_slid_is_not_written(choice, message, cache, t
     if message is None:
         choice, message = dict(faces=",".join(map(str, pinched_faces()))), "touches itself"
     with pytest.raises(StageProblems, match=message.replace("[", r"\[")) as raised:
-        setup(cache, output, MESH, "elbow_L", **choice)
+        setup_to_file(cache, output, MESH, "elbow_L", **choice)
     assert all(problem.prim == MESH and problem.patch == "elbow_L" for problem in raised.value.problems)
     assert not output.exists()
 
@@ -136,7 +136,7 @@ def pinched_faces() -> np.ndarray:
 @pytest.mark.parametrize("prim", ["/World/gone", "/World/char"])
 def test_prim_that_is_no_mesh(prim, cache, tmp_path):
     with pytest.raises(StageProblems, match=prim):
-        setup(cache, tmp_path / "shot.usda", prim, "elbow_L", faces="0")
+        setup_to_file(cache, tmp_path / "shot.usda", prim, "elbow_L", faces="0")
 
 
 USAGE = {
@@ -165,7 +165,7 @@ def test_bad_usage(change, cache, tmp_path, monkeypatch, capfd):
 
 
 def test_a_set_up_cannot_sit_on_a_set_up(cache, tmp_path, capfd):
-    setup(cache, tmp_path / "shot.skinslide", MESH, "elbow_L", faces="0-2")
+    setup_to_file(cache, tmp_path / "shot.skinslide", MESH, "elbow_L", faces="0-2")
     options = ["--prim", MESH, "--patch", "two", "--faces", "3"]
     assert main(["setup", str(tmp_path / "shot.skinslide"), "-o", str(tmp_path / "more.skinslide"), *options]) == 2
     assert "give the stage that it sits on" in capfd.readouterr().err

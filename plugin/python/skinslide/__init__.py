@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
     from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
     from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
-    from skinslide.author.mirror import mirror
-    from skinslide.author.paint import PaintReport, paint
-    from skinslide.author.setup import setup
+    from skinslide.author.api import SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI
+    from skinslide.author.mirror import mirror, mirror_to_file
+    from skinslide.author.paint import PaintReport, paint, paint_to_file
+    from skinslide.author.setup import setup, setup_to_file
     from skinslide.picture.maps import Maps, MapsReport, maps
     from skinslide.picture.preview import Pictures, PreviewReport, preview
     from skinslide.problems import (
@@ -67,6 +68,9 @@ __all__ = [
     "Pictures",
     "PreviewReport",
     "Problem",
+    "SkinSlideAPI",
+    "SkinSlideLiveAPI",
+    "SkinSlideMeshAPI",
     "Slider",
     "SliderError",
     "StageError",
@@ -81,11 +85,14 @@ __all__ = [
     "cmake_dir",
     "maps",
     "mirror",
+    "mirror_to_file",
     "paint",
+    "paint_to_file",
     "parse_frames",
     "plugin_dir",
     "preview",
     "setup",
+    "setup_to_file",
     "stitch",
 ]
 
@@ -94,9 +101,10 @@ _HOMES = {
     "arrays.native": ("Controls", "Lookup", "PatchSetup", "Subdivision"),
     "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult"),
     "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
-    "author.mirror": ("mirror",),
-    "author.paint": ("PaintReport", "paint"),
-    "author.setup": ("setup",),
+    "author.api": ("SkinSlideAPI", "SkinSlideLiveAPI", "SkinSlideMeshAPI"),
+    "author.mirror": ("mirror", "mirror_to_file"),
+    "author.paint": ("PaintReport", "paint", "paint_to_file"),
+    "author.setup": ("setup", "setup_to_file"),
     "picture.maps": ("Maps", "MapsReport", "maps"),
     "picture.preview": ("Pictures", "PreviewReport", "preview"),
     "problems": (

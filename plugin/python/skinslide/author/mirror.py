@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, TypedDict, TypeVar, Unpack
 
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.geometry import AXES, Mirrored, mirror_faces
-from skinslide.author.layer import SetupLayer, check_patch_name
+from skinslide.author.api import SkinSlideAPI
+from skinslide.author.edit import EditedMesh, edited
+from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.shot.check import CheckReport
 from skinslide.stage import controls, schema
 from skinslide.stage.faces import read_faces
+from skinslide.stage.given import PrimLike, StageLike, StrPath
 from skinslide.stage.rest import read_rest
 from skinslide.stage.textures import read_texture
 from skinslide.stage.topology import Topology
@@ -35,43 +39,92 @@ _OF_ONE_SIDE = {
 }
 
 
+class Reflection(TypedDict, total=False):
+    """The keywords of `mirror`."""
+
+    to: str | None
+    axis: str
+    plane: float
+    tolerance: float | None
+
+
 def mirror(
-    stage_path: str | os.PathLike,
-    output_path: str | os.PathLike,
-    prim: str,
+    stage: Usd.Stage,
+    prim: PrimLike,
     patch: str,
     *,
     to: str | None = None,
     axis: str = "x",
     plane: float = 0.0,
     tolerance: float | None = None,
-    force: bool = False,
 ) -> CheckReport:
-    """Copies a patch's set-up to the other side, in a layer that sublayers the stage, as `setup` writes one.
+    """Copies a patch's set-up to the other side of a symmetric mesh, in the stage's edit target.
 
-    to         the new patch's name; None: the other side's, such as elbow_R for elbow_L
-    axis       the mesh is symmetric at rest about the plane where this coordinate is `plane`
-    tolerance  how far a point may be from its counterpart's mirror image; None: 1e-4 of the mesh's largest extent
-    force      as in `setup`
     Faces, corners, paint and settings are copied, with their animation. Maps are sampled and become paint, since the
     other side's texture coordinates may be anywhere. What the new patch had before is replaced.
-    Raises UsageError, StageError, and StageProblems where points or faces have no counterpart; nothing is written then.
+
+    Args:
+        stage: The stage.
+        prim: The mesh.
+        patch: The patch's name.
+        to: The new patch's name; None: the other side's, such as elbow_R for elbow_L.
+        axis: x, y or z: the mesh is symmetric at rest about the plane where this coordinate is `plane`.
+        plane: That coordinate, in the mesh's units.
+        tolerance: How far a point may be from its counterpart's mirror image, in the mesh's units; None: 1e-4 of its
+            largest extent.
+
+    Returns:
+        What `check` says of the mesh.
+
+    Raises:
+        TypeError: Something else than a stage or a prim.
+        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is authored
+            then.
     """
     to = other_side(patch) if to is None else to
     _check_arguments(patch, to, axis, plane, tolerance)
-    layer = SetupLayer.start(stage_path, output_path, prim, force)
-    stage = layer.composed()
-    mesh, topology = layer.read_mesh(stage, patch)
-    try:
-        if patch not in schema.patch_names(mesh):
+    with edited(stage, prim, to, source=patch) as mesh:
+        if patch not in schema.patch_names(mesh.prim):
             raise Fault("there is no such patch on the mesh")
-        faces = read_faces(mesh, patch, topology)
-        across = _across(mesh, topology, faces, axis, plane, tolerance)
-        layer.apply(to)
-        _Copy(layer, mesh, topology, patch, to, faces, across).run()
-    except Fault as fault:
-        raise layer.problems(patch, str(fault)) from fault
-    return layer.finish(to)
+        faces = read_faces(mesh.prim, patch, mesh.topology)
+        across = _across(mesh.prim, mesh.topology, faces, axis, plane, tolerance)
+        _Copy(mesh, patch, faces, across).run()
+        return mesh.checked()
+
+
+def mirror_to_file(
+    stage: StageLike,
+    output: StrPath,
+    prim: PrimLike,
+    patch: str,
+    *,
+    force: bool = False,
+    **reflection: Unpack[Reflection],
+) -> CheckReport:
+    """Mirrors as `mirror` does, in a layer that sublayers the stage.
+
+    Args:
+        stage: The stage, or its path; never written.
+        output: The layer, as `setup_to_file` has it.
+        prim: The mesh.
+        patch: The patch's name.
+        force: Replaces any layer at `output`.
+        **reflection: As for `mirror`.
+
+    Returns:
+        What `check` says of the mesh.
+
+    Raises:
+        TypeError: Something else than a stage or a prim.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or the layer not be written.
+        StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is written
+            then.
+    """
+    with layer_on(stage, output, force) as layered:
+        report = mirror(layered, prim, patch, **reflection)
+    return replace(report, stage=str(output))
 
 
 def other_side(patch: str) -> str:
@@ -82,7 +135,6 @@ def other_side(patch: str) -> str:
 
 
 def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: float | None) -> None:
-    check_patch_name(to)
     if to == patch:
         raise UsageError(f"{patch} cannot be mirrored to itself")
     if axis not in AXES:
@@ -105,35 +157,26 @@ def _across(
         raise Fault(f"the mesh is not symmetric here: {error}") from error
 
 
+T = TypeVar("T")
+
+
 class _Copy:
     """Writes what one patch has as another's."""
 
-    def __init__(
-        self,
-        layer: SetupLayer,
-        mesh: Usd.Prim,
-        topology: Topology,
-        patch: str,
-        to: str,
-        faces: np.ndarray,
-        across: Mirrored,
-    ):
-        self._layer, self._mesh, self._topology, self._patch, self._to = layer, mesh, topology, patch, to
+    def __init__(self, mesh: EditedMesh, patch: str, faces: np.ndarray, across: Mirrored):
+        self._mesh, self._topology = mesh.prim, mesh.topology
+        self._patch, self._name = patch, mesh.patch
         self._faces, self._across = faces, across
 
     def run(self) -> None:
-        types, tokens = Sdf.ValueTypeNames, UsdGeom.Tokens
-        patch = np.isin(np.arange(self._topology.face_count), self._across.faces)
-        self._unindexed("patch")
-        name = schema.property_name(self._to, "patch")
-        self._layer.primvar(name, types.BoolArray, tokens.uniform, Vt.BoolArray.FromNumpy(patch))
+        SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(self._across.faces)
         self._paint()
         corners = controls.corners(self._mesh, self._patch, self._topology.vertex_count)
         self._points("corners", corners)
         self._points("edges", controls.edge_density(self._mesh, self._patch).first.get("edges"))
         for name in schema.declared_names():
             if name in _OF_ONE_SIDE - {"corners", "edges"}:
-                self._block(schema.property_name(self._to, name))
+                self._block(self._new(name))
             elif name not in _OF_ONE_SIDE:
                 self._setting(name)
 
@@ -151,30 +194,29 @@ class _Copy:
         kinds = {"vertex_density": UsdGeom.Tokens.vertex, "face_density": UsdGeom.Tokens.uniform}
         if len(density.first) > 1:
             raise Fault("force density is painted by face and has a map; paint it by point to mirror it")
-        argument = next(iter(density.first), None)
+        argument = next(iter(density.first), "")
         self._primvar("forceDensity", density, lambda values: values[argument], kinds.get(argument))
 
-    def _by_vertex_or_none(self, name: str, reading: Reading) -> None:
+    def _by_vertex_or_none(self, name: str, reading: Reading[Any]) -> None:
         self._primvar(name, reading, lambda values: values, None if reading.first is None else UsdGeom.Tokens.vertex)
 
-    def _primvar(self, name: str, reading: Reading, values_of: Callable, interpolation: str | None) -> None:
+    def _primvar(
+        self, name: str, reading: Reading[T], values_of: Callable[[T], np.ndarray], interpolation: str | None
+    ) -> None:
         """Writes what a reading gives at each of its times; None: nothing."""
-        primvar = schema.property_name(self._to, name)
-        self._unindexed(name)
+        full = f"primvars:{self._new(name)}"
+        self._block(f"{full}:indices")
         if interpolation is None:
-            self._block(f"primvars:{primvar}")
+            self._block(full)
             return
-        attr = self._layer.attribute(f"primvars:{primvar}", Sdf.ValueTypeNames.FloatArray)
-        attr.SetInfo("interpolation", interpolation)
+        self._mesh.RemoveProperty(full)
+        primvars = UsdGeom.PrimvarsAPI(self._mesh)
+        primvar = primvars.CreatePrimvar(full, Sdf.ValueTypeNames.FloatArray, interpolation)
         move = self._by_vertex if interpolation == UsdGeom.Tokens.vertex else self._by_face
         fallback = 1.0 if name == "forceDensity" else 0.0
-        for time in reading.times(None) if reading.varies else [None]:
-            value = reading.first if time is None else reading.at(Usd.TimeCode(time))
-            moved = Vt.FloatArray.FromNumpy(move(values_of(value), fallback))
-            if time is None:
-                attr.default = moved
-            else:
-                self._layer.layer.SetTimeSample(attr.path, time, moved)
+        for time in map(Usd.TimeCode, reading.times(None)) if reading.varies else [Usd.TimeCode.Default()]:
+            value = reading.at(time)
+            primvar.Set(Vt.FloatArray.FromNumpy(move(values_of(value), fallback)), time)
 
     def _by_vertex(self, values: np.ndarray, fallback: float) -> np.ndarray:
         moved, inside = np.full(len(values), fallback, np.float32), self._across.vertices >= 0
@@ -190,38 +232,41 @@ class _Copy:
 
     def _points(self, name: str, points: np.ndarray | None) -> None:
         """Corners, or edges: indices of points of the patch."""
-        full = schema.property_name(self._to, name)
         if points is None:
-            self._block(full)
+            self._block(self._new(name))
             return
         count, vertices = len(self._across.vertices), points.ravel()
         for vertex in vertices:
             if not 0 <= vertex < count or self._across.vertices[vertex] < 0:
                 raise Fault(f"{schema.property_name(self._patch, name)} has point {vertex}, which is not of the patch")
-        attr = self._layer.attribute(full, Sdf.ValueTypeNames.IntArray, Sdf.VariabilityUniform)
-        attr.default = Vt.IntArray.FromNumpy(self._across.vertices[vertices])
+        self._anew(name).Set(Vt.IntArray.FromNumpy(self._across.vertices[vertices]))
 
     def _setting(self, name: str) -> None:
         """A value that does not depend on the side, with its samples or its spline."""
-        full, source = schema.property_name(self._to, name), schema.attribute(self._mesh, self._patch, name)
+        source = schema.attribute(self._mesh, self._patch, name)
         if not source or not source.HasAuthoredValue():
-            self._block(full)
+            self._block(self._new(name))
             return
-        declared = schema.declared(name)
-        attr = self._layer.attribute(full, declared.typeName, declared.variability)
+        attribute, default = self._anew(name), source.Get()
         if source.HasSpline():
-            attr.SetInfo("spline", source.GetSpline())
-        default = source.Get()
+            attribute.SetSpline(source.GetSpline())
         if default is not None:
-            attr.default = default
+            attribute.Set(default)
         for time in source.GetTimeSamples():
-            self._layer.layer.SetTimeSample(attr.path, time, source.Get(time))
+            attribute.Set(source.Get(time), time)
 
-    def _unindexed(self, name: str) -> None:
-        self._block(f"primvars:{schema.property_name(self._to, name)}:indices")
+    def _new(self, name: str) -> str:
+        return schema.property_name(self._name, name)
+
+    def _anew(self, name: str) -> Usd.Attribute:
+        """An attribute of the new patch, without what the edit target said of it before."""
+        declared = schema.declared(name)
+        self._mesh.RemoveProperty(self._new(name))
+        return self._mesh.CreateAttribute(self._new(name), declared.typeName, False, declared.variability)
 
     def _block(self, name: str) -> None:
         """Leaves the new patch without a value that it had before."""
+        self._mesh.RemoveProperty(name)
         before = self._mesh.GetAttribute(name)
         if before and before.HasAuthoredValue():
-            self._layer.attribute(name, before.GetTypeName(), before.GetVariability()).default = Sdf.ValueBlock()
+            before.Block()

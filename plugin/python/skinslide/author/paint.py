@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-import os
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from typing import Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
-from pxr import Gf, Sdf, Usd, UsdGeom, Vt
+import numpy.typing as npt
+from pxr import Gf, Sdf, Usd, UsdGeom
 
 from skinslide.arrays.geometry import Curves, edges_near
-from skinslide.author.layer import SetupLayer
+from skinslide.author.api import SkinSlideAPI
+from skinslide.author.edit import edited
+from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.shot.check import CheckReport
 from skinslide.stage import controls, schema
 from skinslide.stage.faces import read_faces
+from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path
 from skinslide.stage.rest import read_rest
 from skinslide.stage.topology import Topology
 from skinslide.stage.values import FIRST, check_length, flattened, integers, positions, unchanging
@@ -23,7 +29,16 @@ DIRECTIONS = ("any", "along", "across")
 
 @dataclass(frozen=True)
 class PaintReport:
-    """Edges painted now, chosen but left out since they are not of the patch, painted in all; and what `check` says."""
+    """What was painted.
+
+    Attributes:
+        patch: The patch's name.
+        value: The factor.
+        painted: How many edges were painted now.
+        left_out: How many more were chosen, but are not of the patch.
+        total: How many are painted by edge in all.
+        check: What `check` says of the mesh.
+    """
 
     patch: str
     value: float
@@ -32,10 +47,12 @@ class PaintReport:
     total: int
     check: CheckReport
 
-    def as_dict(self) -> dict:
+    def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
         return asdict(self)
 
     def text(self) -> str:
+        """What `check` says, and a line of what was painted."""
         out = f", {self.left_out} left out that are not of the patch" if self.left_out else ""
         done = f"{self.patch}: {self.painted} edges painted {self.value:g}{out}; {self.total} painted in all"
         return f"{self.check.text()}\n{done}"
@@ -49,81 +66,164 @@ class _Surface:
     topology: Topology
     edges: np.ndarray
 
-    def split(self, chosen: np.ndarray) -> tuple[np.ndarray, int]:
-        """Those of some edges (n, 2) that are the patch's, and how many are not."""
-        inside = _rows_in(chosen, self.edges)
-        return chosen[inside], int(np.count_nonzero(~inside))
+
+class EdgeChoice(TypedDict, total=False):
+    """The keywords of `paint`."""
+
+    edges: npt.ArrayLike | None
+    subset: str | None
+    primvar: str | None
+    threshold: float
+    curve: PrimLike | None
+    distance: float | None
+    direction: str
+    clear: bool
 
 
 def paint(
-    stage_path: str | os.PathLike,
-    output_path: str | os.PathLike,
-    prim: str,
+    stage: Usd.Stage,
+    prim: PrimLike,
     patch: str,
     value: float,
     *,
+    edges: npt.ArrayLike | None = None,
     subset: str | None = None,
     primvar: str | None = None,
     threshold: float = 0.5,
-    curve: str | None = None,
+    curve: PrimLike | None = None,
     distance: float | None = None,
     direction: str = "any",
     clear: bool = False,
-    force: bool = False,
 ) -> PaintReport:
-    """Gives edges of a patch a force density, in a layer that sublayers the stage, as `setup` writes one.
+    """Gives edges of a patch a force density, in the stage's edit target.
 
-    value      the factor, above 0; it replaces what an edge was painted by edge before
-    subset     the name of a GeomSubset under the mesh, of elementType edge; or else
-    primvar    the name of a vertex primvar of the mesh: edges with at least `threshold` at both ends; or else
-    curve      the path of a BasisCurves prim drawn on the mesh at rest: edges whose middle is within `distance`, in the
-               mesh's units, and that run "along" the curve there (at 45 degrees or less), "across" it, or "any" way
-    clear      forgets what was painted by edge before
-    force      as in `setup`
-    Raises UsageError, StageError, and StageProblems where there is nothing to paint; nothing is written then.
+    One of edges, subset, primvar and curve says which edges.
+
+    Args:
+        stage: The stage.
+        prim: The mesh.
+        patch: The patch's name.
+        value: The factor, above 0; it replaces what an edge was painted by edge before.
+        edges: Point indices (k, 2), a pair an edge of the mesh.
+        subset: The name of a GeomSubset under the mesh, of elementType edge.
+        primvar: The name of a vertex primvar of the mesh: edges with at least `threshold` at both ends.
+        threshold: With `primvar`.
+        curve: A BasisCurves prim drawn on the mesh at rest: edges whose middle is within `distance` of it, and that
+            run in `direction` there.
+        distance: With `curve`, in the mesh's units.
+        direction: With `curve`: "along", at 45 degrees or less to it; "across", at more; or "any".
+        clear: Forgets what was painted by edge before.
+
+    Returns:
+        How many edges were painted, and what `check` says of the mesh.
+
+    Raises:
+        TypeError: Something else than a stage or a prim.
+        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        StageProblems: There is no such patch, or nothing to paint. Nothing is authored then.
     """
-    _check_arguments(value, subset, primvar, threshold, curve, distance, direction)
-    layer = SetupLayer.start(stage_path, output_path, prim, force)
-    stage = layer.composed()
-    mesh, topology = layer.read_mesh(stage, patch)
-    try:
-        if patch not in schema.patch_names(mesh):
-            raise Fault(f"there is no such patch on the mesh; {_patches_there(mesh)}")
-        surface = _Surface(mesh, topology, topology.edges_of(read_faces(mesh, patch, topology)))
-        if subset is not None:
-            chosen, left_out = surface.split(_subset_edges(surface, subset))
-        elif primvar is not None:
-            chosen, left_out = _primvar_edges(surface, primvar, threshold), 0
-        else:
-            chosen, left_out = _curve_edges(surface, curve, distance, direction), 0
+    what, choose = _choice(edges, subset, primvar, threshold, curve, distance, direction)
+    _check_value(value)
+    with edited(stage, prim, patch) as mesh:
+        if patch not in schema.patch_names(mesh.prim):
+            raise Fault(f"there is no such patch on the mesh; {_patches_there(mesh.prim)}")
+        own = mesh.topology.edges_of(read_faces(mesh.prim, patch, mesh.topology))
+        chosen, left_out = _split(choose(_Surface(mesh.prim, mesh.topology, own)), own)
         if not len(chosen):
-            raise Fault(f"{subset or primvar or curve} chooses no edge of the patch")
-        painted, factors = _before(mesh, patch, clear)
-    except Fault as fault:
-        raise layer.problems(patch, str(fault)) from fault
-    kept = ~_rows_in(painted, chosen)
-    painted = np.concatenate([painted[kept], chosen])
-    factors = np.concatenate([factors[kept], np.full(len(chosen), value, np.float32)])
-    _author(layer, patch, painted, factors)
-    return PaintReport(patch, value, len(chosen), left_out, len(painted), layer.finish(patch))
+            raise Fault(f"{what} chooses no edge of the patch")
+        painted, factors = _before(mesh.prim, patch, clear)
+        kept = ~_rows_in(painted, chosen)
+        painted = np.concatenate([painted[kept], chosen])
+        factors = np.concatenate([factors[kept], np.full(len(chosen), value, np.float32)])
+        SkinSlideAPI(mesh.prim, patch).SetEdges(painted, factors)
+        return PaintReport(patch, value, len(chosen), left_out, len(painted), mesh.checked())
 
 
-def _check_arguments(value, subset, primvar, threshold, curve, distance, direction) -> None:
-    if sum(source is not None for source in (subset, primvar, curve)) != 1:
-        raise UsageError("one of subset, primvar and curve is needed")
+def paint_to_file(
+    stage: StageLike,
+    output: StrPath,
+    prim: PrimLike,
+    patch: str,
+    value: float,
+    *,
+    force: bool = False,
+    **choice: Unpack[EdgeChoice],
+) -> PaintReport:
+    """Paints as `paint` does, in a layer that sublayers the stage.
+
+    Args:
+        stage: The stage, or its path; never written.
+        output: The layer, as `setup_to_file` has it.
+        prim: The mesh.
+        patch: The patch's name.
+        value: The factor, above 0.
+        force: Replaces any layer at `output`.
+        **choice: As for `paint`.
+
+    Returns:
+        How many edges were painted, and what `check` says of the mesh.
+
+    Raises:
+        TypeError: Something else than a stage or a prim.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or the layer not be written.
+        StageProblems: There is no such patch, or nothing to paint. Nothing is written then.
+    """
+    with layer_on(stage, output, force) as layered:
+        report = paint(layered, prim, patch, value, **choice)
+    return replace(report, check=replace(report.check, stage=str(output)))
+
+
+def _choice(
+    edges: npt.ArrayLike | None,
+    subset: str | None,
+    primvar: str | None,
+    threshold: float,
+    curve: PrimLike | None,
+    distance: float | None,
+    direction: str,
+) -> tuple[str, Callable[[_Surface], np.ndarray]]:
+    """What chooses edges of a mesh, (n, 2), and how it is called. Raises UsageError."""
+    if not np.isfinite(threshold):
+        raise UsageError(f"threshold {threshold:g} must be finite")
+    near = _near(curve, distance, direction)
+    choices: list[tuple[str, Callable[[_Surface], np.ndarray]]] = []
+    if edges is not None:
+        pairs = given_array("edges", edges, np.int32, (-1, 2))
+        choices.append(("edges", lambda surface: _edges_of_mesh(surface, pairs, "edges")))
+    if subset is not None:
+        choices.append((subset, partial(_subset_edges, name=subset)))
+    if primvar is not None:
+        choices.append((primvar, partial(_primvar_edges, name=primvar, threshold=threshold)))
+    if near is not None:
+        choices.append((near.curve, partial(_curve_edges, near=near)))
+    if len(choices) != 1:
+        raise UsageError("one of edges, subset, primvar and curve is needed")
+    return choices[0]
+
+
+class _Near(NamedTuple):
+    curve: str
+    distance: float
+    direction: str
+
+
+def _near(curve: PrimLike | None, distance: float | None, direction: str) -> _Near | None:
+    if direction not in DIRECTIONS:
+        raise UsageError(f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}")
+    if curve is None:
+        if distance is not None or direction != "any":
+            raise UsageError("distance and direction go with a curve")
+        return None
+    if distance is None or not (np.isfinite(distance) and distance >= 0):
+        raise UsageError("a curve needs a distance of 0 or more, in the mesh's units")
+    return _Near(str(given_path("curve", curve)), distance, direction)
+
+
+def _check_value(value: float) -> None:
     with np.errstate(over="ignore"):
         if not (np.isfinite(np.float32(value)) and np.float32(value) > 0):
             raise UsageError(f"value {value:g} must be finite and above 0")
-    if not np.isfinite(threshold):
-        raise UsageError(f"threshold {threshold:g} must be finite")
-    if curve is None and (distance is not None or direction != "any"):
-        raise UsageError("distance and direction go with a curve")
-    if curve is not None and (distance is None or not (np.isfinite(distance) and distance >= 0)):
-        raise UsageError("a curve needs a distance of 0 or more, in the mesh's units")
-    if direction not in DIRECTIONS:
-        raise UsageError(f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}")
-    if curve is not None and not (Sdf.Path.IsValidPathString(curve) and Sdf.Path(curve).IsAbsolutePath()):
-        raise UsageError(f"{curve!r} is not the path of a prim, such as /World/lines")
 
 
 def _patches_there(mesh: Usd.Prim) -> str:
@@ -137,7 +237,21 @@ def _rows_in(edges: np.ndarray, others: np.ndarray) -> np.ndarray:
     return np.array([tuple(edge) in known for edge in np.sort(edges, axis=1).tolist()], dtype=bool)
 
 
+def _split(chosen: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, int]:
+    """Those of some edges (n, 2) that are the patch's own, and how many are not."""
+    inside = _rows_in(chosen, own)
+    return chosen[inside], int(np.count_nonzero(~inside))
+
+
 # ---- Which edges ----
+
+
+def _edges_of_mesh(surface: _Surface, pairs: np.ndarray, what: str) -> np.ndarray:
+    edges = np.unique(np.sort(pairs, axis=1), axis=0)
+    known = _rows_in(edges, surface.topology.edges_of(np.arange(surface.topology.face_count)))
+    for a, b in edges[~known][:1]:
+        raise Fault(f"{what} has {a}-{b}, which is no edge of the mesh")
+    return edges
 
 
 def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
@@ -152,11 +266,7 @@ def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
     indices = integers([] if value is None else value, f"{path}.indices")
     if len(indices) % 2:
         raise Fault(f"{path}.indices has {len(indices)} values; it must hold pairs of point indices")
-    edges = np.unique(np.sort(indices.reshape(-1, 2), axis=1), axis=0)
-    known = _rows_in(edges, surface.topology.edges_of(np.arange(surface.topology.face_count)))
-    for a, b in edges[~known][:1]:
-        raise Fault(f"the GeomSubset {path} has {a}-{b}, which is no edge of the mesh")
-    return edges
+    return _edges_of_mesh(surface, indices.reshape(-1, 2), f"the GeomSubset {path}")
 
 
 def _primvar_edges(surface: _Surface, name: str, threshold: float) -> np.ndarray:
@@ -177,12 +287,13 @@ def _primvar_edges(surface: _Surface, name: str, threshold: float) -> np.ndarray
     return surface.edges[(values >= threshold)[surface.edges].all(axis=1)]
 
 
-def _curve_edges(surface: _Surface, path: str, distance: float, direction: str) -> np.ndarray:
+def _curve_edges(surface: _Surface, near: _Near) -> np.ndarray:
     rest, _ = read_rest(surface.prim, surface.topology.vertex_count)
+    curves = _read_curves(surface.prim, near.curve)
     try:
-        return surface.edges[edges_near(rest, surface.edges, _read_curves(surface.prim, path), distance, direction)]
+        return surface.edges[edges_near(rest, surface.edges, curves, near.distance, near.direction)]
     except SliderError as error:
-        raise Fault(f"{path}: {error}") from error
+        raise Fault(f"{near.curve}: {error}") from error
 
 
 def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
@@ -215,10 +326,3 @@ def _before(mesh: Usd.Prim, patch: str, clear: bool) -> tuple[np.ndarray, np.nda
         name = schema.property_name(patch, "edgeForceDensities")
         raise Fault(f"{name} is animated, and cannot be painted on; clear it first")
     return (reading.first["edges"], reading.first["edge_density"]) if reading.first else nothing
-
-
-def _author(layer: SetupLayer, patch: str, edges: np.ndarray, factors: np.ndarray) -> None:
-    name, factors_name = (schema.property_name(patch, each) for each in ("edges", "edgeForceDensities"))
-    pairs = layer.attribute(name, Sdf.ValueTypeNames.IntArray, Sdf.VariabilityUniform)
-    pairs.default = Vt.IntArray.FromNumpy(np.ascontiguousarray(edges, np.int32).ravel())
-    layer.attribute(factors_name, Sdf.ValueTypeNames.FloatArray).default = Vt.FloatArray.FromNumpy(factors)

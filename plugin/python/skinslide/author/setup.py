@@ -1,59 +1,114 @@
-"""Writes the set-up of a patch into a layer that sits on a stage."""
+"""Makes a patch of some faces of a mesh."""
 
 from __future__ import annotations
 
-import os
 import re
+from dataclasses import replace
+from typing import TypedDict, Unpack
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, Vt
+import numpy.typing as npt
+from pxr import Sdf, Usd, UsdGeom
 
-from skinslide.author.layer import SetupLayer, check_patch_name
+from skinslide.author.api import SkinSlideAPI
+from skinslide.author.edit import edited
+from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.stage import schema
 from skinslide.stage.faces import primvar_faces, subset_faces
+from skinslide.stage.given import PrimLike, StageLike, StrPath, given_faces
 from skinslide.stage.topology import Topology
 
 _RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
 
+class FaceChoice(TypedDict, total=False):
+    """The keywords of `setup`."""
+
+    faces: npt.ArrayLike | str | None
+    subset: str | None
+    primvar: str | None
+
+
 def setup(
-    stage_path: str | os.PathLike,
-    output_path: str | os.PathLike,
-    prim: str,
+    stage: Usd.Stage,
+    prim: PrimLike,
     patch: str,
     *,
-    faces: str | None = None,
+    faces: npt.ArrayLike | str | None = None,
     subset: str | None = None,
     primvar: str | None = None,
-    force: bool = False,
 ) -> CheckReport:
-    """Writes a layer that sublayers the stage and applies a patch to a mesh. Returns what `check` says of that mesh.
+    """Makes a patch of some faces of a mesh, in the stage's edit target; one that is there has other faces then.
 
-    faces    a spec such as "0-120,140"; or else
-    subset   the name of a GeomSubset under the mesh; or else
-    primvar  the name of a primvar of the mesh, read as the primvar of a patch is
-    force    replaces any layer at output_path; without it, one that already sits on the stage gains the patch, and
-             another is an error
-    Raises UsageError, StageError, and StageProblems where the patch could not be slid; nothing is written then.
+    One of faces, subset and primvar says which faces.
+
+    Args:
+        stage: The stage.
+        prim: The mesh.
+        patch: The patch's name, such as elbow_L.
+        faces: Indices (n,), a bool for each face of the mesh (F,), or a spec such as "0-120,140".
+        subset: The name of a GeomSubset under the mesh.
+        primvar: The name of a primvar of the mesh, read as the primvar of a patch is.
+
+    Returns:
+        What `check` says of the mesh.
+
+    Raises:
+        TypeError: Something else than a stage or a prim.
+        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        StageProblems: The patch could not be slid. Nothing is authored then.
     """
     if sum(source is not None for source in (faces, subset, primvar)) != 1:
         raise UsageError("one of faces, subset and primvar is needed")
-    check_patch_name(patch)
-    layer = SetupLayer.start(stage_path, output_path, prim, force)
-    stage = layer.composed()
-    mesh, topology = layer.read_mesh(stage, patch)
-    try:
-        chosen = _choose(mesh, topology, patch, faces, subset, primvar)
-    except Fault as fault:
-        raise layer.problems(patch, str(fault)) from fault
-    layer.apply(patch)
-    if chosen is not None:
-        values = Vt.BoolArray.FromNumpy(np.isin(np.arange(topology.face_count), chosen))
-        name = schema.property_name(patch, "patch")
-        layer.primvar(name, Sdf.ValueTypeNames.BoolArray, UsdGeom.Tokens.uniform, values)
-    return layer.finish(patch)
+    ranges = parse_faces(faces) if isinstance(faces, str) else None
+    with edited(stage, prim, patch) as mesh:
+        applied = SkinSlideAPI.Apply(mesh.prim, patch)
+        if ranges is not None:
+            chosen = _expand(ranges, mesh.topology.face_count)
+        elif faces is not None:
+            chosen = given_faces("faces", faces, mesh.topology.face_count)
+        elif subset is not None:
+            chosen = _of_subset(applied, subset, mesh.topology)
+        else:
+            chosen = _of_primvar(applied, primvar, mesh.topology)
+        if chosen is not None:
+            applied.SetFaces(chosen)
+        return mesh.checked()
+
+
+def setup_to_file(
+    stage: StageLike,
+    output: StrPath,
+    prim: PrimLike,
+    patch: str,
+    *,
+    force: bool = False,
+    **choice: Unpack[FaceChoice],
+) -> CheckReport:
+    """Makes a patch as `setup` does, in a layer that sublayers the stage.
+
+    Args:
+        stage: The stage, or its path; never written.
+        output: The layer: .skinslide, .usda, .usdc or .usd, written whole or not at all. One that sits on the stage
+            already gains the patch.
+        prim: The mesh.
+        patch: The patch's name, such as elbow_L.
+        force: Replaces any layer at `output`, where without it one that does not sit on the stage is an error.
+        **choice: As for `setup`.
+
+    Returns:
+        What `check` says of the mesh.
+
+    Raises:
+        TypeError: Something else than a stage or a prim.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or the layer not be written.
+        StageProblems: The patch could not be slid. Nothing is written then.
+    """
+    with layer_on(stage, output, force) as layered:
+        report = setup(layered, prim, patch, **choice)
+    return replace(report, stage=str(output))
 
 
 def parse_faces(spec: str) -> list[tuple[int, int]]:
@@ -70,28 +125,29 @@ def parse_faces(spec: str) -> list[tuple[int, int]]:
     return ranges
 
 
-def _choose(
-    prim: Usd.Prim, topology: Topology, patch: str, faces: str | None, subset: str | None, primvar: str | None
-) -> np.ndarray | None:
-    """The faces to write, or None where the patch finds them by itself."""
-    own = schema.primvar(prim, patch, "patch")
-    if faces is not None:
-        return _expand(parse_faces(faces), topology.face_count)
-    if subset is not None:
-        child = prim.GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None
-        if not child:
-            raise Fault(f"there is no GeomSubset {subset} under the mesh")
-        found = subset_faces(child, topology)
-        return None if subset == patch and not (own and own.HasAuthoredValue()) else found
-    source = UsdGeom.PrimvarsAPI(prim).GetPrimvar(primvar)
-    if not source:
-        raise Fault(f"there is no primvar {primvar} on the mesh")
-    found = primvar_faces(source, topology)
-    return None if own and source.GetName() == own.GetName() else found
-
-
 def _expand(ranges: list[tuple[int, int]], face_count: int) -> np.ndarray:
     for _, last in ranges:
         if last >= face_count:
             raise Fault(f"there is no face {last}: the mesh has {face_count} faces")
     return np.unique(np.concatenate([np.arange(first, last + 1) for first, last in ranges]))
+
+
+def _of_subset(patch: SkinSlideAPI, subset: str, topology: Topology) -> np.ndarray | None:
+    """The faces of a GeomSubset; None where the patch finds them by itself."""
+    child, own = (
+        patch.GetPrim().GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None,
+        patch.GetPatchPrimvar(),
+    )
+    if not child:
+        raise Fault(f"there is no GeomSubset {subset} under the mesh")
+    found = subset_faces(child, topology)
+    return None if subset == patch.GetName() and not (own and own.HasAuthoredValue()) else found
+
+
+def _of_primvar(patch: SkinSlideAPI, primvar: str, topology: Topology) -> np.ndarray | None:
+    """The faces that a primvar chooses; None where it is the patch's own."""
+    source, own = UsdGeom.PrimvarsAPI(patch.GetPrim()).GetPrimvar(primvar), patch.GetPatchPrimvar()
+    if not source:
+        raise Fault(f"there is no primvar {primvar} on the mesh")
+    found = primvar_faces(source, topology)
+    return None if own and source.GetName() == own.GetName() else found

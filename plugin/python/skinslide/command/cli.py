@@ -182,8 +182,8 @@ _COMMANDS: dict[str, tuple[Callable[..., Result], str, str]] = {
     "check": (_check, "shot.check", "check"),
     "preview": (_preview, "picture.preview", "preview"),
     "maps": (_maps, "picture.maps", "maps"),
-    "setup": (_author, "author.setup", "setup"),
-    "paint": (_author, "author.paint", "paint"),
-    "mirror": (_author, "author.mirror", "mirror"),
+    "setup": (_author, "author.setup", "setup_to_file"),
+    "paint": (_author, "author.paint", "paint_to_file"),
+    "mirror": (_author, "author.mirror", "mirror_to_file"),
     "stitch": (_stitch, "write.stitch", "stitch"),
 }

@@ -14,7 +14,7 @@ from pathlib import Path
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import Lookup
-from skinslide.problems import FrameProblem, Problem, StageProblems, UsageError
+from skinslide.problems import FrameProblem, Problem, StageProblems
 from skinslide.shot.derived import Derived
 from skinslide.shot.loop import slide
 from skinslide.shot.options import Frames, LayerOptions, Names, SlideOptions
@@ -26,6 +26,7 @@ from skinslide.stage.schema import SLIDE, STRETCH
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
 from skinslide.write.place import check_not_input, check_output
+from skinslide.write.target import check_target, spec_path
 
 # Primvars, each with the field of skinslide.arrays.slider.Diagnostics that it holds.
 DIAGNOSTICS = {STRETCH: "stretch_after", SLIDE: "slide"}
@@ -82,10 +83,7 @@ def bake(
     """
     options = SlideOptions(prims, frames, lookup, jobs)
     wanted = LayerOptions(max_folded, max_clamped, diagnostics)
-    target = stage.GetEditTarget().GetLayer()
-    if not target.permissionToEdit or stage.IsLayerMuted(target.identifier):
-        fault = "not editable" if not target.permissionToEdit else "muted"
-        raise UsageError(f"the edit target {target.identifier} is {fault}")
+    check_target(stage)
     with replacing_earlier_bake(stage, options.prims) as earlier:
         report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *also], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))
@@ -134,8 +132,8 @@ class _Baking(Making):
         path = planned.mesh.prim.GetPath()
         if self.options.diagnostics:
             _check_primvars(planned.mesh.prim)
-        if self._target and not self._target.MapToSpecPath(path):
-            raise UsageError(f"the edit target {self._target.GetLayer().identifier} cannot hold opinions on {path}")
+        if self._target:
+            spec_path(self._target, path)
         return _MeshBake(planned, self)
 
     @contextmanager

@@ -16,6 +16,7 @@ from pxr import Sdf, Usd
 
 from skinslide.stage import schema
 from skinslide.stage.marks import MARK, VALUES, has_values, is_marked, mark
+from skinslide.write.target import Before, remove
 
 
 class EarlierBake:
@@ -23,15 +24,13 @@ class EarlierBake:
 
     def __init__(self, target: Usd.EditTarget):
         self._target, self._layer = target, target.GetLayer()
-        # Attributes as they were, by path; None where there was none.
-        self._before: dict[Sdf.Path, Sdf.AttributeSpec | None] = {}
-        self._store = Sdf.Layer.CreateAnonymous(".usda")
+        self._before = Before(self._layer)
 
     def set_aside(self, prims: Sequence[str] | None) -> None:
         """Gives the attributes that are marked, everywhere or at and below `prims`, the values they had before."""
         with Sdf.ChangeBlock():
             for path in self._marked(prims):
-                self._keep(path)
+                self._before.keep(path)
                 self._revert(path)
 
     def replace(self, attribute: Sdf.Path, samples: bool) -> None:
@@ -41,12 +40,12 @@ class EarlierBake:
         samples    whether samples will be authored; the default value, which may be the rest pose, then stays
         """
         path = self._target.MapToSpecPath(attribute)
-        self._keep(path)
+        self._before.keep(path)
         spec = self._layer.GetAttributeAtPath(path)
         if not spec:
             return
         if has_values(spec):
-            self._keep(_cached(path))
+            self._before.keep(_cached(path))
             Sdf.CopySpec(self._layer, path, self._layer, _cached(path))
         _clear(spec, VALUES[1:] if samples else VALUES)
 
@@ -55,12 +54,7 @@ class EarlierBake:
 
     def bring_back(self) -> None:
         """Undoes everything."""
-        with Sdf.CleanupEnabler(), Sdf.ChangeBlock():
-            for path, before in self._before.items():
-                if before:
-                    Sdf.CopySpec(self._store, before.path, self._layer, path)
-                else:
-                    self._remove(path)
+        self._before.bring_back()
 
     def tidy(self) -> None:
         """Removes what the new bake did not need again."""
@@ -69,9 +63,9 @@ class EarlierBake:
                 spec = self._layer.GetAttributeAtPath(path)
                 if not spec or is_marked(spec):
                     continue
-                self._remove(_cached(path))
+                remove(self._layer, _cached(path))
                 if spec.hasOnlyRequiredFields:
-                    self._remove(path)
+                    remove(self._layer, path)
 
     def _marked(self, prims: Sequence[str] | None) -> list[Sdf.Path]:
         found: list[Sdf.Path] = []
@@ -90,19 +84,10 @@ class EarlierBake:
         valid = Sdf.Path.IsValidPathString(prim) and Sdf.Path(prim).IsAbsoluteRootOrPrimPath()
         return self._target.MapToSpecPath(Sdf.Path(prim)) if valid else Sdf.Path()
 
-    def _keep(self, path: Sdf.Path) -> None:
-        if path in self._before:
-            return
-        self._before[path] = None
-        if self._layer.GetAttributeAtPath(path):
-            place = Sdf.CreatePrimInLayer(self._store, "/before").path.AppendProperty(f"at{len(self._before)}")
-            Sdf.CopySpec(self._layer, path, self._store, place)
-            self._before[path] = self._store.GetAttributeAtPath(place)
-
     def _revert(self, path: Sdf.Path) -> None:
         spec = self._layer.GetAttributeAtPath(path)
         if self._layer.GetAttributeAtPath(_cached(path)):
-            self._keep(_cached(path))
+            self._before.keep(_cached(path))
             Sdf.CopySpec(self._layer, _cached(path), self._layer, path)
             return
         _clear(spec, (*VALUES, "interpolation") if spec.name in (schema.STRETCH, schema.SLIDE) else VALUES)
@@ -112,11 +97,6 @@ class EarlierBake:
             spec.SetInfo("customData", data)
         else:
             spec.ClearInfo("customData")
-
-    def _remove(self, path: Sdf.Path) -> None:
-        spec = self._layer.GetAttributeAtPath(path)
-        if spec:
-            spec.owner.RemoveProperty(spec)
 
 
 @contextmanager
@@ -130,6 +110,17 @@ def replacing_earlier_bake(stage: Usd.Stage, prims: Sequence[str] | None) -> Ite
     except BaseException:
         earlier.bring_back()
         raise
+
+
+@contextmanager
+def without_earlier_bake(stage: Usd.Stage, prims: Sequence[str] | None) -> Iterator[None]:
+    """The stage as if it had never been baked into its edit target, for as long as the block lasts."""
+    earlier = EarlierBake(stage.GetEditTarget())
+    try:
+        earlier.set_aside(prims)
+        yield
+    finally:
+        earlier.bring_back()
 
 
 def _cached(path: Sdf.Path) -> Sdf.Path:

@@ -1,0 +1,74 @@
+"""A mesh of which a patch is authored into the edit target of its stage: whole and fit to be slid, or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+from pxr import Usd, UsdGeom
+
+from skinslide.problems import Fault, Problem, StageProblems, errors
+from skinslide.shot.check import CheckReport, check
+from skinslide.stage import schema
+from skinslide.stage.given import PrimLike, given_path
+from skinslide.stage.marks import has_values
+from skinslide.stage.mesh import read_points
+from skinslide.stage.topology import Topology, read_topology
+from skinslide.stage.values import FIRST
+from skinslide.write.earlier import without_earlier_bake
+from skinslide.write.target import check_target, whole_or_not_at_all
+
+
+@dataclass(frozen=True)
+class EditedMesh:
+    """A mesh, and the patch that is authored."""
+
+    prim: Usd.Prim
+    topology: Topology
+    patch: str
+
+    def checked(self) -> CheckReport:
+        """What `check` says of the mesh. Raises StageProblems where the patch cannot be slid."""
+        stage, path = self.prim.GetStage(), str(self.prim.GetPath())
+        with without_earlier_bake(stage, [path]):
+            report = check(stage, [path])
+        bad = [problem for problem in errors(report.problems) if problem.patch in (self.patch, None)]
+        if bad:
+            raise StageProblems(bad)
+        return replace(report, problems=[*report.problems, *self._hidden()])
+
+    def _hidden(self) -> Iterator[Problem]:
+        """Warns of what a stronger layer than the edit target has another opinion on."""
+        target = self.prim.GetStage().GetEditTarget().GetLayer()
+        for each in self.prim.GetAuthoredProperties():
+            layers = [spec.layer for spec in each.GetPropertyStack() if has_values(spec)]
+            if schema.is_of_patch(each.GetName(), self.patch) and target in layers[1:]:
+                message = f"{each.GetName()} is hidden by that in {layers[0].identifier}, which is stronger"
+                yield Problem("warning", str(self.prim.GetPath()), self.patch, None, message)
+
+
+@contextmanager
+def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = None) -> Iterator[EditedMesh]:
+    """The mesh, for as long as the block authors its patch.
+
+    source  the patch that is read for it, of which faults are said; None: the patch itself
+    Raises TypeError, UsageError, StageProblems for a Fault too; nothing is authored then.
+    """
+    if not isinstance(stage, Usd.Stage):
+        raise TypeError(f"stage is {stage!r}; it must be a Usd.Stage, or see the function that writes a file")
+    path = given_path("prim", prim)
+    check_target(stage)
+    try:
+        with whole_or_not_at_all(stage.GetEditTarget(), path, lambda name: schema.is_of_patch(name, patch)):
+            yield EditedMesh(*_mesh(stage.GetPrimAtPath(path)), patch)
+    except Fault as fault:
+        raise StageProblems([Problem("error", str(path), source or patch, None, str(fault))]) from fault
+
+
+def _mesh(prim: Usd.Prim) -> tuple[Usd.Prim, Topology]:
+    if not prim:
+        raise Fault("there is no such prim")
+    if not prim.IsA(UsdGeom.Mesh):
+        raise Fault(f"is a {prim.GetTypeName() or 'prim without a type'}, not a Mesh")
+    return prim, read_topology(UsdGeom.Mesh(prim), len(read_points(prim, FIRST)))
