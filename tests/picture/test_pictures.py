@@ -8,7 +8,17 @@ import pytest
 
 import stages
 from skinslide import SliderError, Subdivision
-from skinslide.arrays.canvas import Camera, Canvas, Scale, Shape, Tessellation, Viewport, false_colour, frame_faces
+from skinslide.arrays.canvas import (
+    Camera,
+    Canvas,
+    Outline,
+    Scale,
+    Shape,
+    Tessellation,
+    Viewport,
+    false_colour,
+    frame_faces,
+)
 
 SIZE = 6  # quads a side
 FACES = SIZE**2
@@ -119,6 +129,14 @@ def test_nothing_is_kept_of_what_is_given(shape, sheet, camera):
         array[:] = 0
     gc.collect()
     assert np.array_equal(picture(made, sheet, camera), before)
+
+
+def test_outlines_go_before_their_tessellation(shape, sheet):
+    for _ in range(50):
+        made = Outline(Tessellation(shape, sheet, None, ALL), ALL[:4])
+        made.cycle = made
+        del made
+    gc.collect()
 
 
 def test_threads_share_a_tessellation(tessellation, sheet, camera):

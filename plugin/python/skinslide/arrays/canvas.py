@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -80,8 +81,13 @@ class Outline:
         native, out = Arguments(), ffi.new("skinslide_outline **")
         chosen = native.pointer(faces, np.int32, (-1,), "faces")
         call(lib.skinslide_outline_create, tessellation.handle, chosen, len(faces), out)
-        # The default argument keeps the tessellation until the outline is gone, as the core asks.
-        self.handle = ffi.gc(out[0], lambda outline, mesh=tessellation: lib.skinslide_outline_destroy(outline))
+        self.handle = out[0]
+        weakref.finalize(self, _destroy, self.handle, tessellation)
+
+
+def _destroy(outline: Any, _tessellation: Tessellation) -> None:
+    """The tessellation lives until then, as the core asks, and in a cycle of garbage too."""
+    lib.skinslide_outline_destroy(outline)
 
 
 class Scale(NamedTuple):

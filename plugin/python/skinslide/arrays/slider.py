@@ -6,6 +6,7 @@ The manual is `skinslide.h`. Arrays of other types are converted where that lose
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -105,11 +106,12 @@ class Slider:
             native.fill_setup(setup, patch, self._sizes)
         out = ffi.new("skinslide_slider **")
         call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, len(patches), out)
-        self._idle: list[Any] = []
-        # One finalizer for all, since the collector of cycles calls several in any order, and workspaces must go first.
-        self._slider = ffi.gc(out[0], lambda slider, idle=self._idle: _destroy(slider, idle))
+        self._slider: Any = out[0]
+        self._workspaces: list[Any] = []
+        # Not ffi.gc: in a circle of garbage its destructor may have lost what it refers to.
+        weakref.finalize(self, _destroy, self._slider, self._workspaces)
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider)))
-        self._idle.append(self._new_workspace())
+        self._idle = [self._new_workspace()]
         self._lock = threading.Lock()
 
     def slide(
@@ -198,6 +200,7 @@ class Slider:
     def _new_workspace(self) -> Any:
         out = ffi.new("skinslide_workspace **")
         call(lib.skinslide_workspace_create, self._slider, self._lookup, out)
+        self._workspaces.append(out[0])
         return out[0]
 
     def _take_workspace(self) -> Any:
@@ -212,6 +215,7 @@ class Slider:
 
 
 def _destroy(slider: Any, workspaces: Sequence[Any]) -> None:
+    """Workspaces first, as the core asks."""
     for workspace in workspaces:
         lib.skinslide_workspace_destroy(workspace)
     lib.skinslide_slider_destroy(slider)
