@@ -35,6 +35,19 @@ TYPES = [
         f"{PLACE}:edgeForceDensities is not an array of float",
     ),
     Bad(
+        "type: edges beyond int",
+        all_of(
+            retyped(f"{PLACE}:edges", Types.Int64Array, Vt.Int64Array([16 + (1 << 32), 17])),
+            setting("edgeForceDensities", [4.0]),
+        ),
+        f"{PLACE}:edges has a value that does not fit an int",
+    ),
+    Bad(
+        "type: edge factors, no array",
+        all_of(setting("edges", [16, 17]), retyped(f"{PLACE}:edgeForceDensities", Types.Float, 4.0)),
+        f"{PLACE}:edgeForceDensities is not an array of float",
+    ),
+    Bad(
         "type: boundary",
         retyped(f"{PLACE}:boundary", Types.Int, 1),
         f"{PLACE}:boundary is '1'; it must be one of auto, square, circle",
@@ -75,6 +88,31 @@ TYPES = [
         "type: max distance, half",
         put(FARTHEST, Types.HalfArray, "vertex", Vt.HalfArray([1.0] * 49)),
         f"primvars:{FARTHEST} is half[]; it must be float[]",
+    ),
+    Bad(
+        "type: subset beyond int",
+        all_of(subset([0]), retyped("indices", Types.Int64Array, Vt.Int64Array([1 << 32]), at=f"{MESH}/{PATCH}")),
+        f"{MESH}/{PATCH}.indices has a value that does not fit an int",
+    ),
+    Bad(
+        "type: creases beyond int",
+        all_of(
+            retyped("subdivisionScheme", Types.Token, "catmullClark"),
+            retyped("creaseIndices", Types.Int64Array, Vt.Int64Array([1 << 32, 1])),
+            retyped("creaseLengths", Types.IntArray, [2]),
+            retyped("creaseSharpnesses", Types.FloatArray, [1.0]),
+        ),
+        "creaseIndices has a value that does not fit an int",
+        None,
+    ),
+    Bad(
+        "type: holes beyond int",
+        all_of(
+            retyped("subdivisionScheme", Types.Token, "catmullClark"),
+            retyped("holeIndices", Types.Int64Array, Vt.Int64Array([1 << 32])),
+        ),
+        "holeIndices has a value that does not fit an int",
+        None,
     ),
     Bad(
         "type: subset",

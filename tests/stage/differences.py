@@ -9,6 +9,7 @@ _WHERE = "the path as it is authored, not where it was looked for"
 TOOL = {
     "type: envelope, an array": "the array as Python's repr of it",
     "subset: inactive": "an inactive prim counts",
+    "faces: subset whose elementType is blocked": "the fallback does not count",
     "points: nan at a frame": _CHECK_WORDS_IT,
     "points: infinite at a frame": _CHECK_WORDS_IT,
     "rest: nan": _DIGITS,
@@ -30,6 +31,7 @@ _NO_PATCH = "at a frame the patch is not named"
 _LEFT = "left as they are, neither blocked nor right"
 _UNTOLD = "blocked without a word"
 _REST = "the interpolation of a rest primvar is not looked at"
+_TYPE = "declared as normal3f[], whatever type the stage has"
 _NO_FILE = "the map's file is not named"
 _OFFSET = "the offset of a sublayer of the file itself is lost"
 
@@ -59,16 +61,28 @@ LAYER = {
     "type: corners, unsigned beyond int": _WRAPS,
     "type: counts beyond int": _WRAPS,
     "type: indices beyond int": _WRAPS,
+    "type: edges beyond int": _WRAPS,
+    "type: subset beyond int": _WRAPS,
+    "type: creases beyond int": _WRAPS,
+    "type: holes beyond int": _WRAPS,
+    "type: edge factors, no array": "a number counts as an array of one",
+    "points: left-handed by a string, with normals": "a string is no token there, as it is elsewhere",
+    "normals: a primvar of doubles": _TYPE,
+    "normals: a primvar of another kind": _TYPE,
     "subset: inactive": "an inactive prim counts",
     "normals: of a wrong length": _LEFT,
     "normals: of a wrong length at a frame": _LEFT,
     "normals: a primvar of a wrong length": _LEFT,
     "normals: of no interpolation": _LEFT,
+    "normals: indexed badly": _LEFT,
+    "normals: blocked at a frame": _LEFT,
+    "velocities: blocked at a frame": _LEFT,
     "velocities: of a wrong length": _LEFT,
     "velocities: no time codes per second": _LEFT,
     # the same bytes, but not a word
     "velocities: at other times": _UNTOLD,
     "velocities: without samples": _UNTOLD,
+    "velocities: of a still cache": _UNTOLD,
     "accelerations: of two samples": _UNTOLD,
     "prim: no patch name": "passed over in silence",
     # other words

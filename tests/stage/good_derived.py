@@ -10,6 +10,7 @@ from edits import (
     Scene,
     Types,
     all_of,
+    blocked_at,
     half_way,
     indexed,
     normals,
@@ -83,6 +84,29 @@ DERIVED = [
     ),
     Good("normals: double", all_of(retyped("normals", Types.Normal3dArray, Vt.Vec3dArray([(0, 0, 1)] * 49)))),
     Good("normals: half", all_of(retyped("normals", Types.Normal3hArray, Vt.Vec3hArray([Gf.Vec3h(0, 0, 1)] * 49)))),
+    Good(
+        "normals: an indexed primvar over time",
+        all_of(
+            put("normals", Types.Normal3fArray, "faceVarying", [(0, 0, 1), (0, 1, 0)]),
+            indexed("normals", [0, 1] * 72, 1001),
+            indexed("normals", [1, 0] * 72, 1002.5),
+        ),
+        blocked=("primvars:normals:indices",),
+    ),
+    Good("normals: a primvar of doubles", put("normals", Types.Normal3dArray, "vertex", [(0, 0, 1)] * 49)),
+    Good("normals: a primvar of another kind", put("normals", Types.Float3Array, "vertex", [(0, 0, 1)] * 49)),
+    Good(
+        "normals: indexed badly",
+        all_of(put("normals", Types.Normal3fArray, "faceVarying", [(0, 0, 1)]), indexed("normals", [0, 9] * 72)),
+        blocked=("primvars:normals", "primvars:normals:indices"),
+        warns="normals",
+    ),
+    Good(
+        "normals: blocked at a frame",
+        all_of(normals("vertex", 49), blocked_at("normals", 1002)),
+        blocked=("normals",),
+        warns="normals",
+    ),
     Good("normals: of a wrong length", normals("vertex", 3), blocked=("normals",), warns="normals"),
     Good(
         "normals: a primvar of a wrong length",
@@ -123,6 +147,18 @@ DERIVED = [
     Good(
         "velocities: without samples",
         vectors("velocities", 49, [None]),
+        blocked=("velocities",),
+        warns="velocities cannot be recomputed",
+    ),
+    Good(
+        "velocities: blocked at a frame",
+        all_of(vectors("velocities", 49, FRAMES), blocked_at("velocities", 1002)),
+        blocked=("velocities",),
+        warns="velocities",
+    ),
+    Good(
+        "velocities: of a still cache",
+        all_of(still, vectors("velocities", 49, [None])),
         blocked=("velocities",),
         warns="velocities cannot be recomputed",
     ),

@@ -99,6 +99,12 @@ def blend_shapes_without_targets(scene: Scene) -> None:
     UsdSkel.BindingAPI.Apply(scene.prim).CreateBlendShapeTargetsRel()
 
 
+def moved_below(scene: Scene) -> None:
+    """A layer between the file and its cache, which moves it in time."""
+    head = "timeCodesPerSecond = 24; subLayers = [@./cache.usda@ (offset = 5.5; scale = 2)]"
+    (scene.folder / "between.usda").write_text(f"#usda 1.0\n({head})\n")
+
+
 def inactive_instancer(scene: Scene) -> None:
     instancer = UsdGeom.PointInstancer.Define(scene.stage, "/World/crowd")
     instancer.CreatePrototypesRel().SetTargets([scene.prim.GetParent().GetPath()])
@@ -146,6 +152,10 @@ CHOSEN = [
     Good("faces: subset", subset([*range(30), 3, 3])),
     Good("faces: subset without elementType", subset([*range(30)], None)),
     Good(
+        "faces: subset whose elementType is blocked",
+        all_of(subset([*range(30)]), on_subset(lambda it: it.GetElementTypeAttr().Block())),
+    ),
+    Good(
         "faces: subset of another family",
         all_of(subset([*range(30)]), on_subset(lambda it: it.CreateFamilyNameAttr("x"))),
     ),
@@ -172,6 +182,14 @@ CHOSEN = [
     Good("faces: several pieces", faces=stages.two_pieces),
     Good("names: with namespaces", lambda scene: stages.add_patch(scene.mesh, np.arange(12), "left:arm:elbow")),
     Good("names: not of ASCII", lambda scene: stages.add_patch(scene.mesh, np.arange(12), "élève")),
+    Good(
+        "names: like those of the mesh's own settings",
+        lambda scene: [stages.add_patch(scene.mesh, np.arange(12), name) for name in ("live", "cached", "restPoints")],
+    ),
+    Good(
+        "patches: applied again by the file",
+        file=text(body=over("").replace('"skin_GEO"', '"skin_GEO" (append apiSchemas = ["SkinSlideAPI:elbow_L"])')),
+    ),
     Good("patches: overlapping", two_overlapping),
     Good("meshes: two", two_meshes),
     Good("meshes: a bad one that is inactive", inactive_neighbour),
@@ -199,6 +217,10 @@ POINTS = [
     Good(
         "points: left-handed, with normals",
         all_of(lambda scene: scene.mesh.CreateOrientationAttr("leftHanded"), normals("vertex", 49)),
+    ),
+    Good(
+        "points: left-handed by a string, with normals",
+        all_of(retyped("orientation", Types.String, "leftHanded"), normals("vertex", 49)),
     ),
     Good("points: skinning was baked", skinned_earlier),
     Good("points: joint indices that are not inherited", joints_off_the_mesh),
@@ -259,6 +281,7 @@ TIMES = [
         "times: a payload's offset",
         file=f'#usda 1.0\n({HEAD}; {CLOCK})\ndef "World" (payload = @./cache.usda@ (offset = 7.5)) {{}}\n',
     ),
+    Good("times: a sublayer of a sublayer is moved", moved_below, file=text("@./between.usda@")),
     Good(
         "times: another rate than the cache",
         vectors("velocities", 49, FRAMES),

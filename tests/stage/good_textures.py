@@ -11,6 +11,7 @@ from edits import (
     Types,
     all_of,
     blocked,
+    blocked_at,
     image,
     indexed,
     inherited,
@@ -81,6 +82,15 @@ TEXTURES = [
                 put("st", Types.TexCoord2fArray, "vertex", [Gf.Vec2f(k / 49, frame - 1001) for k in range(49)], frame)
                 for frame in (1001.0, 1002.5)
             ),
+        ),
+    ),
+    Good(
+        "texture: none at a sample",
+        all_of(
+            st(),
+            image("w.exr", noise(3, 0, 1)),
+            *(mapped("weight", "./w.exr", frame) for frame in (1001, 1003)),
+            blocked_at(f"{PLACE}:weightMap", 1002),
         ),
     ),
     Good(
