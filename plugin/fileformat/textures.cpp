@@ -40,7 +40,7 @@ struct Texture::Corners {
 };
 
 Texture::Texture(const Composition &composition, const Prim &mesh, const std::string &patch, const std::string &control)
-    : _map(mesh.attribute(names().property(patch, (control + "Texture").c_str()))),
+    : _map(mesh.attribute(names().property(patch, (control + "Map").c_str()))),
       _channel(word(mesh, names().property(patch, (control + "MapChannel").c_str()), "")),
       _setting(names().property(patch, "mapSt")), _resolvedPath(composition.resolvedPath()), _root(composition.root()) {
     _st = Primvar(mesh, TfToken(names().primvars + word(mesh, TfToken(_setting), "st")));
