@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 from typing import get_type_hints
 
 import numpy as np
@@ -12,14 +13,16 @@ from pxr import Sdf, Tf, Usd, UsdGeom, Vt
 import skinslide
 import stages
 from repository import ROOT
-from skinslide import SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI, StageProblems, UsageError
+from skinslide import FrameSpecError, SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI, StageProblems, UsageError
 from skinslide.author import mirror, paint, setup
+from skinslide.shot.frames import checked_frames
 from skinslide.stage import schema
 from skinslide.stage.mesh import read_meshes
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames
 FACES = stages.block(6, range(4), range(4))
+OTHER = "/World/char/geo/other_GEO"
 
 
 @pytest.fixture
@@ -426,3 +429,89 @@ def test_what_is_no_stage_and_no_prim(given, kind, message, stage, prim):
 def test_what_is_no_path_of_a_stage(prim, tmp_path):
     with pytest.raises(TypeError, match=r"stage is 3; it must be a Usd\.Stage or a path"):
         skinslide.setup_to_file(3, tmp_path / "a.usda", prim, PATCH, faces=FACES)
+
+
+def test_a_stage_is_a_stage_or_a_path(tmp_path):
+    path = saved(tmp_path)
+    from_path = skinslide.bake_to_file(path, tmp_path / "a.usda")
+    from_stage = skinslide.bake_to_file(Usd.Stage.Open(str(path)), tmp_path / "b.usda")
+    assert (tmp_path / "a.usda").read_bytes() == (tmp_path / "b.usda").read_bytes()
+    assert from_path.frame_count == from_stage.frame_count == 2 * len(FRAMES)
+    assert skinslide.check(Usd.Stage.Open(str(path))).meshes == skinslide.check(str(path)).meshes
+    skinslide.maps(Usd.Stage.Open(str(path)), tmp_path / "maps", st="uv", frames=FRAMES[:1])
+    assert list((tmp_path / "maps").iterdir())
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda given: skinslide.check(given),
+        lambda given: skinslide.bake(given),
+        lambda given: skinslide.bake_to_file(given, "a.usda"),
+        lambda given: skinslide.preview(given, "pictures"),
+        lambda given: skinslide.maps(given, "maps"),
+    ],
+)
+@pytest.mark.parametrize("given", [3, None, Sdf.Path("/World")])
+def test_what_is_no_stage(call, given):
+    with pytest.raises(TypeError, match=r"stage is .*; it must be a Usd\.Stage"):
+        call(given)
+
+
+def saved(folder) -> Path:
+    """A stage with two meshes, each with a patch."""
+    stage = stages.new_stage()
+    for path in (MESH, OTHER):
+        mesh = stages.add_mesh(stage, stages.grid(), path)
+        stages.set_primvar(mesh, "uv", Types.TexCoord2fArray, "vertex", [(0.5, 0.5)] * 49)
+        stages.add_patch(mesh, FACES)
+    return stages.save(stage, folder / "shot.usda")
+
+
+PRIMS = {
+    "a prim": lambda stage: stage.GetPrimAtPath(OTHER),
+    "a mesh": lambda stage: UsdGeom.Mesh(stage.GetPrimAtPath(OTHER)),
+    "a path": lambda stage: Sdf.Path(OTHER),
+    "text": lambda stage: OTHER,
+    "several": lambda stage: (stage.GetPrimAtPath(OTHER), Sdf.Path(OTHER)),
+    "a generator": lambda stage: (prim for prim in stage.Traverse() if prim.GetPath() == OTHER),
+}
+
+
+@pytest.mark.parametrize("prims", PRIMS.values(), ids=PRIMS.keys())
+def test_prims_of_a_shot(prims, tmp_path):
+    stage = Usd.Stage.Open(str(saved(tmp_path)))
+    report = skinslide.bake_to_file(stage, tmp_path / "out.usda", prims=prims(stage))
+    assert [mesh.path for mesh in report.meshes] == [OTHER]
+    assert [mesh.path for mesh in skinslide.check(stage, prims(stage)).meshes] == [OTHER]
+    assert [mesh.path for mesh in skinslide.bake(stage, prims=prims(stage)).meshes] == [OTHER]
+
+
+@pytest.mark.parametrize("prims", [3, [3], [None]])
+def test_prims_that_are_none(prims, tmp_path):
+    path = saved(tmp_path)
+    with pytest.raises(TypeError, match=r"prims is .*; it must be a Usd\.Prim, an Sdf\.Path or a str"):
+        skinslide.bake_to_file(path, tmp_path / "out.usda", prims=prims)
+    with pytest.raises(UsageError, match="prims is an invalid null prim"):
+        skinslide.check(path, Usd.Prim())
+
+
+@pytest.mark.parametrize(
+    "frames", [[1002], (1002.0, 1002), [Usd.TimeCode(1002)], np.array([1002, 1002]), {1002: "a"}, "1002"]
+)
+def test_frames_however_they_are_given(frames):
+    assert checked_frames(frames) == [1002]
+
+
+@pytest.mark.parametrize("frames", [None, 1002, [None], Usd.TimeCode(1002), [Usd.TimeCode.Default()], np.array([])])
+def test_frames_that_are_none(frames):
+    with pytest.raises(FrameSpecError):
+        checked_frames(frames)
+
+
+def test_a_camera_is_a_prim_too(tmp_path):
+    stage = Usd.Stage.Open(str(saved(tmp_path)))
+    for camera in (stage.DefinePrim("/camera", "Camera"), Sdf.Path("/camera"), "/camera"):
+        assert skinslide.Pictures("pictures", camera=camera).camera == "/camera"
+    with pytest.raises(TypeError, match=r"camera is 3; it must be a Usd\.Prim"):
+        skinslide.Pictures("pictures", camera=3)

@@ -55,10 +55,8 @@ def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = No
     source  the patch that is read for it, of which faults are said; None: the patch itself
     Raises TypeError, UsageError, StageProblems for a Fault too; nothing is authored then.
     """
-    if not isinstance(stage, Usd.Stage):
-        raise TypeError(f"stage is {stage!r}; it must be a Usd.Stage, or see the function that writes a file")
-    path = given_path("prim", prim)
     check_target(stage)
+    path = given_path("prim", prim)
     try:
         with whole_or_not_at_all(stage.GetEditTarget(), path, lambda name: schema.is_of_patch(name, patch)):
             yield EditedMesh(*_mesh(stage.GetPrimAtPath(path)), patch)

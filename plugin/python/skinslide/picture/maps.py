@@ -7,34 +7,32 @@ for each time: texture coordinates             read on the loop's thread
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from threading import Semaphore
 from typing import Any
 
-from pxr import Usd
-
 from skinslide.arrays.native import Lookup
 from skinslide.picture.meshmaps import KINDS, Atlas, MeshMaps, WrittenMap
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
-from skinslide.shot.options import Frames, MapOptions, Names, SlideOptions
+from skinslide.shot.options import Frames, MapOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh
 from skinslide.shot.products import Making, MeshMaking, Shot
 from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
+from skinslide.stage.given import StageLike, StrPath
 from skinslide.write.folder import OutputFolder, check_frames
 
 _MOST_TEXELS = 1 << 28  # drawn at once: each takes some twelve bytes, with its file
 
 
 def maps(
-    stage: str | os.PathLike | Usd.Stage,
-    folder: str | os.PathLike,
+    stage: StageLike,
+    folder: StrPath,
     *,
-    prims: Names = None,
+    prims: Prims = None,
     frames: Frames = None,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
@@ -49,7 +47,7 @@ def maps(
     Raises UsageError, StageProblems, FrameProblem, StageError.
     """
     wanted = Maps(folder, **maps)
-    report = slide(Shot.of(stage), SlideOptions(prims, frames, lookup, jobs), [wanted], progress)
+    report = slide(Shot.of(stage), SlideOptions.of(prims, frames, lookup, jobs), [wanted], progress)
     return MapsReport(report.warnings, report.meshes, report.made)
 
 
@@ -64,7 +62,7 @@ class Maps(MapOptions):
     map gives the same densities again, but for what an edge blurs.
     """
 
-    folder: str | os.PathLike
+    folder: StrPath
 
     def begin(self, shot: Shot, _options: SlideOptions) -> Making:
         """Raises UsageError for a folder that cannot be."""

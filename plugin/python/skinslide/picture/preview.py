@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -30,11 +29,12 @@ from skinslide.picture.page import page
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
-from skinslide.shot.options import Frames, Names, PictureOptions, SlideOptions
+from skinslide.shot.options import Frames, PictureOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh
 from skinslide.shot.products import Making, MeshMaking, Shot
 from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
+from skinslide.stage.given import StageLike, StrPath
 from skinslide.write.folder import OutputFolder, check_frames, frame_label
 from skinslide.write.place import check_not_input, check_output, replacing, writing
 
@@ -42,11 +42,11 @@ _MOST_PIXELS = 1 << 27  # on canvases at once: each takes some forty bytes
 
 
 def preview(
-    stage: Usd.Stage | str | os.PathLike,
-    folder: str | os.PathLike | None = None,
+    stage: StageLike,
+    folder: StrPath | None = None,
     *,
-    html: str | os.PathLike | None = None,
-    prims: Names = None,
+    html: StrPath | None = None,
+    prims: Prims = None,
     frames: Frames = None,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
@@ -60,7 +60,7 @@ def preview(
     Raises UsageError, StageProblems, FrameProblem, StageError. Each picture is written whole or not at all.
     """
     wanted = Pictures(folder, html, **pictures)
-    report = slide(Shot.of(stage), SlideOptions(prims, frames, lookup, jobs), [wanted], progress)
+    report = slide(Shot.of(stage), SlideOptions.of(prims, frames, lookup, jobs), [wanted], progress)
     return PreviewReport(report.warnings, report.meshes, report.made)
 
 
@@ -72,8 +72,8 @@ class Pictures(PictureOptions):
     `html` is a page of all of them, with curves of what happened at each frame: one file, which loads no other.
     """
 
-    folder: str | os.PathLike | None = None
-    html: str | os.PathLike | None = None
+    folder: StrPath | None = None
+    html: StrPath | None = None
 
     def begin(self, shot: Shot, options: SlideOptions) -> Making:
         """Raises UsageError and StageProblems for what cannot be written or drawn."""

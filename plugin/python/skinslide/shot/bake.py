@@ -5,7 +5,6 @@ At each time: points, extent, normals, velocities, accelerations, and diagnostic
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -17,11 +16,12 @@ from skinslide.arrays.native import Lookup
 from skinslide.problems import FrameProblem, Problem, StageProblems
 from skinslide.shot.derived import Derived
 from skinslide.shot.loop import slide
-from skinslide.shot.options import Frames, LayerOptions, Names, SlideOptions
+from skinslide.shot.options import Frames, LayerOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames
 from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
+from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.schema import SLIDE, STRETCH
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
@@ -33,10 +33,10 @@ DIAGNOSTICS = {STRETCH: "stretch_after", SLIDE: "slide"}
 
 
 def bake_to_file(
-    stage_path: str | os.PathLike,
-    output_path: str | os.PathLike,
+    stage: StageLike,
+    output: StrPath,
     *,
-    prims: Names = None,
+    prims: Prims = None,
     frames: Frames = None,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
@@ -46,7 +46,7 @@ def bake_to_file(
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
-    """Bakes a stage into a layer of overs to be sublayered above it. `output_path` is written whole or not at all.
+    """Bakes a stage into a layer of overs to be sublayered above it. `output` is written whole or not at all.
 
     prims     paths of prims, to bake the meshes with patches at and below them; None: every mesh with a patch
     frames    stage times, or a spec such as "101:109x2"; None: the authored samples; a mesh without samples has one
@@ -58,15 +58,15 @@ def bake_to_file(
     also      what else is made of the frames, each of which is slid once: `Pictures`, `Maps`
     Raises UsageError, StageProblems, FrameProblem (also where max_folded or max_clamped is exceeded), StageError.
     """
-    options = SlideOptions(prims, frames, lookup, jobs)
-    layer = _Layer(LayerOptions(max_folded, max_clamped, diagnostics), Path(output_path))
-    return slide(Shot.of(stage_path), options, [layer, *also], progress)
+    options = SlideOptions.of(prims, frames, lookup, jobs)
+    layer = _Layer(LayerOptions(max_folded, max_clamped, diagnostics), Path(output))
+    return slide(Shot.of(stage), options, [layer, *also], progress)
 
 
 def bake(
     stage: Usd.Stage,
     *,
-    prims: Names = None,
+    prims: Prims = None,
     frames: Frames = None,
     lookup: str | Lookup = "auto",
     jobs: int = 1,
@@ -81,9 +81,9 @@ def bake(
     Takes the place of an earlier bake there, of the same prims. Where the layer holds the cache too, the cache's values
     move to attributes skinSlide:cached:*, from which the next bake into it starts.
     """
-    options = SlideOptions(prims, frames, lookup, jobs)
-    wanted = LayerOptions(max_folded, max_clamped, diagnostics)
     check_target(stage)
+    options = SlideOptions.of(prims, frames, lookup, jobs)
+    wanted = LayerOptions(max_folded, max_clamped, diagnostics)
     with replacing_earlier_bake(stage, options.prims) as earlier:
         report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *also], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 from pxr import Usd
@@ -19,8 +18,8 @@ from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
 from skinslide.stage.controls import PatchControls
+from skinslide.stage.given import PrimsLike, StageLike, given_paths, given_stage
 from skinslide.stage.mesh import PatchedMesh, is_skinned
-from skinslide.stage.opening import open_stage
 from skinslide.stage.textures import SampledTexture
 
 
@@ -140,9 +139,7 @@ def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
         yield f"  {used.name}: {used.file}, channel {used.channel}, {size}{tiles}, at primvars:{used.st}"
 
 
-def check(
-    stage: Usd.Stage | str | Path, prims: Sequence[str] | None = None, *, lookup: str | Lookup = "auto"
-) -> CheckReport:
+def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Lookup = "auto") -> CheckReport:
     """Checks a stage without changing it. Reads every sample; StageError where the stage cannot be opened.
 
     prims   paths of prims to look at with everything below them; None: the whole stage
@@ -152,9 +149,10 @@ def check(
         chosen = CheckedLookup.choose(Lookup.of(lookup))
     except SliderError as error:
         raise UsageError(str(error)) from error
-    name = stage.GetRootLayer().identifier if isinstance(stage, Usd.Stage) else str(stage)
-    stage = stage if isinstance(stage, Usd.Stage) else open_stage(stage)
-    found, problems = read_sliders(stage, prims)
+    paths = None if prims is None else given_paths("prims", prims)
+    opened = given_stage(stage)
+    name = opened.GetRootLayer().identifier if isinstance(stage, Usd.Stage) else str(stage)
+    found, problems = read_sliders(opened, paths)
     checked = [_check_mesh(mesh, slider, problems) for mesh, slider in found]
     severities = ("error", "warning", "note")
     return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)), chosen)

@@ -15,6 +15,8 @@ from skinslide.shot.frames import checked_frames
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
+    from skinslide.shot.frames import FramesLike
+    from skinslide.stage.given import PrimLike, PrimsLike
 
 Check = Callable[[str, Any], Any]  # name and value of an option; gives what it holds, or raises UsageError
 
@@ -60,8 +62,14 @@ def truth(_name: str, value: Any) -> bool:
     return bool(value)
 
 
-def text(_name: str, value: Any) -> str:
-    return str(value)
+def prim(name: str, given: PrimLike) -> str:
+    return prims(name, [given])[0]
+
+
+def prims(name: str, given: PrimsLike) -> list[str]:
+    from skinslide.stage.given import given_paths
+
+    return given_paths(name, given)
 
 
 def texts(_name: str, words: Sequence[str] | str) -> list[str]:
@@ -114,7 +122,7 @@ def positive(name: str, number: Any) -> float:
     return found
 
 
-def frames(_name: str, given: Sequence[float] | str) -> list[float]:
+def frames(_name: str, given: FramesLike) -> list[float]:
     return checked_frames(given)
 
 

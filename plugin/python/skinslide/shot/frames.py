@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable
 from fractions import Fraction
+from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
 from skinslide.problems import MOST_FRAMES, FrameSpecError
+
+if TYPE_CHECKING:
+    from pxr import Usd
+
+FrameLike: TypeAlias = "SupportsFloat | Usd.TimeCode"
+FramesLike: TypeAlias = "Iterable[FrameLike] | str"
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 _PART = re.compile(rf"(?P<first>{_NUMBER})(?:[:-](?P<last>{_NUMBER})(?:x(?P<step>{_NUMBER}))?)?", re.ASCII)
@@ -26,17 +33,21 @@ def parse_frames(spec: str) -> list[float]:
     return sorted(frames)
 
 
-def checked_frames(frames: Sequence[float] | str) -> list[float]:
+def checked_frames(frames: FramesLike) -> list[float]:
     """Frames as a spec or one by one, ascending, each once."""
     if isinstance(frames, str):
         return parse_frames(frames)
     try:
-        times = sorted({float(frame) for frame in frames})
-    except (TypeError, ValueError, OverflowError) as error:
+        times = sorted(set(map(_number, frames)))
+    except (AttributeError, TypeError, ValueError, OverflowError) as error:
         raise FrameSpecError(f"frames {frames!r}: must be a spec such as 101:109x2, or a list of numbers") from error
     if not times or not all(map(math.isfinite, times)):
         raise FrameSpecError(f"frames {times}: there must be some, each a finite number")
     return times
+
+
+def _number(frame: FrameLike) -> float:
+    return float(frame if isinstance(frame, SupportsFloat) else frame.GetValue())
 
 
 def _parse_part(part: str, spec: str) -> tuple[Fraction, Fraction, int]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinslide.problems import UsageError
 from skinslide.shot import checks
@@ -15,9 +15,12 @@ from skinslide.shot.checks import Options, option, or_none
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
+    from skinslide.shot.frames import FramesLike
+    from skinslide.stage.given import PrimLike, PrimsLike
 
-Names = Sequence[str] | str | None
-Frames = Sequence[float] | str | None
+Names: TypeAlias = Sequence[str] | str | None
+Prims: TypeAlias = "PrimsLike | None"
+Frames: TypeAlias = "FramesLike | None"
 
 VIEWS = ("chequer", "stretch")
 FORMATS = ("png", "exr")
@@ -27,16 +30,16 @@ FORMATS = ("png", "exr")
 class SlideOptions(Options):
     """What is slid, and how. The result depends neither on lookup nor on jobs."""
 
-    prims: Names = option(
+    prims: list[str] | None = option(
         None,
-        or_none(checks.texts),
+        or_none(checks.prims),
         "--prim",
         action="append",
         metavar="PATH",
         help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch). What "
         "USD cannot compose elsewhere, such as a missing payload, is then a warning and no error",
     )
-    frames: Frames = option(
+    frames: list[float] | None = option(
         None,
         or_none(checks.frames),
         "--frames",
@@ -44,7 +47,7 @@ class SlideOptions(Options):
         help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
         "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
     )
-    lookup: str | Lookup = option(
+    lookup: Lookup = option(
         "auto",
         checks.lookup,
         "--lookup",
@@ -60,6 +63,12 @@ class SlideOptions(Options):
         metavar="N",
         help="frames in hand at once; the result is the same (default: the processors, here %(default)s)",
     )
+
+    @classmethod
+    def of(cls, prims: Prims, frames: Frames, lookup: str | Lookup, jobs: int) -> SlideOptions:
+        """Raises TypeError and UsageError for what cannot be."""
+        given: tuple[Any, ...] = (prims, frames, lookup, jobs)
+        return cls(*given)
 
 
 @dataclass(frozen=True)
@@ -113,9 +122,9 @@ class PictureOptions(Options):
         help="chequer: on the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
         "false colours; may be given again (default: both)",
     )
-    camera: str | None = option(
+    camera: PrimLike | None = option(
         None,
-        or_none(checks.text),
+        or_none(checks.prim),
         "--camera",
         metavar="PATH",
         help="a Camera of the stage (default: one that stands still and has the patch in sight all through the shot)",

@@ -6,7 +6,6 @@ meshes that it wants each a MeshMaking.
 
 from __future__ import annotations
 
-import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -19,7 +18,7 @@ from skinslide.arrays.native import Controls
 from skinslide.arrays.slider import Diagnostics, Slider
 from skinslide.problems import Problem
 from skinslide.shot.options import SlideOptions
-from skinslide.stage.opening import open_stage
+from skinslide.stage.given import StageLike, StrPath, given_stage
 
 if TYPE_CHECKING:
     from skinslide.shot.plan import PlannedMesh
@@ -30,15 +29,15 @@ class Shot(NamedTuple):
     """An open stage, and the path it was opened by; None where it came open."""
 
     stage: Usd.Stage
-    path: str | os.PathLike | None
+    path: StrPath | None
 
     @classmethod
-    def of(cls, stage: Usd.Stage | str | os.PathLike) -> Shot:
-        """Raises StageError where the stage cannot be opened."""
-        return cls(stage, None) if isinstance(stage, Usd.Stage) else cls(open_stage(stage), stage)
+    def of(cls, stage: StageLike) -> Shot:
+        """Raises TypeError, and StageError where the stage cannot be opened."""
+        return cls(given_stage(stage), None if isinstance(stage, Usd.Stage) else stage)
 
     @property
-    def paths(self) -> list[str | os.PathLike]:
+    def paths(self) -> list[StrPath]:
         return [] if self.path is None else [self.path]
 
 

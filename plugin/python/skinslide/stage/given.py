@@ -22,6 +22,7 @@ from skinslide.stage.values import check_length
 StrPath: TypeAlias = str | os.PathLike[str]
 StageLike: TypeAlias = Usd.Stage | StrPath
 PrimLike: TypeAlias = Usd.Prim | Usd.SchemaBase | Sdf.Path | str
+PrimsLike: TypeAlias = PrimLike | Iterable[PrimLike]
 
 # What is an array to numpy: its type there, its class in USD, its shape.
 ARRAYS = {
@@ -51,10 +52,8 @@ def given_file(stage: StageLike) -> Path:
     return Path(layer.realPath)
 
 
-def given_paths(name: str, prims: PrimLike | Iterable[PrimLike] | None) -> list[str] | None:
+def given_paths(name: str, prims: PrimsLike) -> list[str]:
     """The paths of prims, of which one may be given alone. Strings are taken as they are."""
-    if prims is None:
-        return None
     if isinstance(prims, str | Sdf.Path | Usd.Prim | Usd.SchemaBase):
         return [_path_text(name, prims)]
     if not isinstance(prims, Iterable):

@@ -13,7 +13,9 @@ _SCHEMAS = "apiSchemas"
 
 
 def check_target(stage: Usd.Stage) -> None:
-    """Raises UsageError where nothing can be authored into the edit target."""
+    """Raises TypeError for what is no stage, and UsageError where nothing can be authored into its edit target."""
+    if not isinstance(stage, Usd.Stage):
+        raise TypeError(f"stage is {stage!r}; it must be a Usd.Stage, or see the function that writes a file")
     layer = stage.GetEditTarget().GetLayer()
     if not layer.permissionToEdit or stage.IsLayerMuted(layer.identifier):
         fault = "not editable" if not layer.permissionToEdit else "muted"
