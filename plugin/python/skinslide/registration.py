@@ -6,8 +6,9 @@ import ctypes
 import json
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
@@ -70,14 +71,16 @@ def registered() -> bool:
     return Sdf.FileFormat.FindById("skinslide") is not None
 
 
-class _Finder:
+class _Finder(MetaPathFinder):
     """Finds USD's modules as Python does, and has skinslide registered once they are loaded."""
 
-    @staticmethod
-    def find_spec(name: str, path: list[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
-        spec = PathFinder.find_spec(name, path, target) if name in (_SDF, _USD) else None
+    @classmethod
+    def find_spec(
+        cls, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        spec = PathFinder.find_spec(fullname, path, target) if fullname in (_SDF, _USD) else None
         if spec and spec.loader:
-            spec.loader.exec_module = partial(_load, spec.loader.exec_module)
+            spec.loader.exec_module = partial(_load, spec.loader.exec_module)  # type: ignore[method-assign]
         return spec
 
 

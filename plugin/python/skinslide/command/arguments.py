@@ -87,7 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_command(commands, name: str, summary: str) -> argparse.ArgumentParser:
+def _add_command(commands: argparse._SubParsersAction[_Parser], name: str, summary: str) -> argparse.ArgumentParser:
     description = summary[0].upper() + summary[1:] + "."
     return commands.add_parser(name, help=summary, description=description)
 
@@ -107,7 +107,7 @@ def _add_options(command: argparse._ActionsContainer, table: type[Options], *nam
             _add_device(command)
 
 
-def _add_option(command: argparse._ActionsContainer, each: Field, keyword: str, flag: str) -> None:
+def _add_option(command: argparse._ActionsContainer, each: Field[Any], keyword: str, flag: str) -> None:
     words, default = dict(each.metadata["words"]), each.default
     if keyword == "jobs":
         default = words["default"] = _processors()

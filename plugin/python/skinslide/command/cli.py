@@ -44,9 +44,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 # ---- What a command left behind ----
 
 
-def _state(given: dict[str, Any]) -> dict[str, tuple]:
+def _state(given: dict[str, Any]) -> dict[str, tuple[int, ...]]:
     """Tells whether a file is another than before: those that a command writes outside its folders."""
-    found = {}
+    found: dict[str, tuple[int, ...]] = {}
     for file in filter(None, (given.get("output"), given.get("html"))):
         try:
             status = os.stat(file)
@@ -56,7 +56,7 @@ def _state(given: dict[str, Any]) -> dict[str, tuple]:
     return found
 
 
-def _outcome(given: dict[str, Any], before: dict[str, tuple]) -> str:
+def _outcome(given: dict[str, Any], before: dict[str, tuple[int, ...]]) -> str:
     """What became of the files, for where that is in question."""
     written = [file for file, state in _state(given).items() if before.get(file) != state]
     folders = [given[name] for name in ("folder", "pictures", "maps") if given.get(name)]
@@ -75,7 +75,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _bake(
-    bake_to_file: Callable,
+    bake_to_file: Callable[..., Any],
     stage: str,
     output: str,
     *,
@@ -113,13 +113,13 @@ def _also(pictures: str | None, html: str | None, maps: str | None, options: dic
     return products
 
 
-def _check(check: Callable, stage: str, *, json: bool = False, **options: Any) -> Result:
+def _check(check: Callable[..., Any], stage: str, *, json: bool = False, **options: Any) -> Result:
     report = check(stage, **_with_lookup(options))
     return as_json(report.as_dict()) if json else report.text(), PROBLEMS if report.failed else DONE
 
 
 def _preview(
-    preview: Callable,
+    preview: Callable[..., Any],
     stage: str,
     *,
     folder: str | None = None,
@@ -135,7 +135,7 @@ def _preview(
 
 
 def _maps(
-    maps: Callable, stage: str, folder: str, *, json: bool = False, quiet: bool = False, **options: Any
+    maps: Callable[..., Any], stage: str, folder: str, *, json: bool = False, quiet: bool = False, **options: Any
 ) -> Result:
     report = _followed(maps, quiet, stage, folder, **options)
     if json:
@@ -143,15 +143,15 @@ def _maps(
     return "" if quiet else report.text(), DONE
 
 
-def _author(function: Callable, stage: str, output: str, *, prim: str, patch: str, **options: Any) -> Result:
+def _author(function: Callable[..., Any], stage: str, output: str, *, prim: str, patch: str, **options: Any) -> Result:
     return "\n".join([function(stage, output, prim, patch, **options).text(), *_written(output)]), DONE
 
 
-def _stitch(stitch: Callable, chunks: list[str], output: str) -> Result:
+def _stitch(stitch: Callable[..., Any], chunks: list[str], output: str) -> Result:
     return f"{stitch(chunks, output).text()}\n{_layer_written(output)}", DONE
 
 
-def _followed(function: Callable, quiet: bool, *arguments: Any, **options: Any) -> Any:
+def _followed(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
     """Calls a function that slides, with its progress told."""
     from skinslide.command.progress import reporter
 

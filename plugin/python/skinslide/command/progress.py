@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from typing import Any
 
 from tqdm import tqdm
 
@@ -29,7 +30,7 @@ def reporter(*, quiet: bool = False) -> Iterator[Progress | None]:
         yield _lines()
 
 
-def _move(bar: tqdm, done: int, total: int) -> None:
+def _move(bar: tqdm[Any], done: int, total: int) -> None:
     bar.total = total
     with suppress(OSError):  # a terminal that has gone
         bar.update(done - bar.n)

@@ -123,11 +123,11 @@ class MeshPictures(MeshMaking):
                 self._problems.append(bad.problem)
                 return
 
-    def files(self) -> Iterator[Path]:
+    def files(self, folder: OutputFolder) -> Iterator[Path]:
         """Every file that will be written."""
         for time in self._times:
             for number in range(self.picture_count):
-                yield self._path(number, time)
+                yield self._path(folder, number, time)
 
     def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], list[_Encoded]]:
         moments = [series.moment(time) for series in self._series]
@@ -146,20 +146,20 @@ class MeshPictures(MeshMaking):
                 self.thumbnails[number].append(picture.thumbnail)
             if picture.jpeg:
                 self._jpegs[number].append(picture.jpeg)
-            if picture.file:
-                path = self._path(number, time)
+            if picture.file and self._easel.folder:
+                path = self._path(self._easel.folder, number, time)
                 self._easel.folder.write(path, picture.file)
                 self._easel.drawn.files.append(str(path))
 
     def end(self) -> list[Problem]:
         return self._problems
 
-    def _path(self, number: int, time: Usd.TimeCode) -> Path:
+    def _path(self, folder: OutputFolder, number: int, time: Usd.TimeCode) -> Path:
         """MESH.PATCH.VIEW.FRAME.png, or MESH.PATCH.PIECE.VIEW.FRAME.png, of a picture of each frame."""
         series, view = divmod(number, len(self._options.views))
         info = self._slider.patches[self._series[series].index]
         words = [info.name, *([str(info.piece + 1)] if info.piece_count > 1 else []), self._options.views[view]]
-        return self._easel.folder.path(self._mesh.prim.GetPath(), words, frame_of(time), self._options.form)
+        return folder.path(self._mesh.prim.GetPath(), words, frame_of(time), self._options.form)
 
     def _draw(self, canvas: Canvas, moments: list[Moment], frame: SlidFrame) -> Iterator[np.ndarray]:
         """Before and after, series by series, view by view."""

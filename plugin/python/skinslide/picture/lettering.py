@@ -6,6 +6,7 @@ import io
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -25,9 +26,11 @@ def columns(width: int, height: int, count: int) -> list[Viewport]:
     return [Viewport(left, 0, right - left, height) for left, right in pairwise(edges)]
 
 
-def font_of(height: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+def font_of(height: int) -> ImageFont.FreeTypeFont:
     """The font of a picture of that height."""
-    return ImageFont.load_default(max(9, round(height / 42)))
+    font = ImageFont.load_default(max(9, round(height / 42)))
+    assert isinstance(font, ImageFont.FreeTypeFont)  # as Pillow's wheels have it
+    return font
 
 
 def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_foot: bool = False) -> None:
@@ -106,7 +109,7 @@ def thumbnail(pixels: np.ndarray) -> bytes:
     return _as_bytes(small, "PNG", compress_level=1)
 
 
-def _as_bytes(image: Image.Image, form: str, **options) -> bytes:
+def _as_bytes(image: Image.Image, form: str, **options: Any) -> bytes:
     file = io.BytesIO()
     image.save(file, form, **options)
     return file.getvalue()

@@ -85,7 +85,7 @@ class _Timeline:
 
     @property
     def labels(self) -> list[str]:
-        return [time_text(frame) for frame in self.frames or [None]]
+        return [time_text(frame) for frame in self.frames] or [time_text(None)]
 
     def positions(self, patch: PatchReport) -> list[int]:
         """Where each frame of a patch is; nowhere, where it has but a default value."""
@@ -125,8 +125,9 @@ def _templates() -> Environment:
 
 def _inlined(templates: Environment, name: str) -> Markup:
     """A file of the page's own, as it stands."""
-    source, _, _ = templates.loader.get_source(templates, name)
-    return Markup(source)
+    loader = templates.loader
+    assert loader
+    return Markup(loader.get_source(templates, name)[0])
 
 
 def _shown(value: Any) -> Any:

@@ -82,7 +82,7 @@ class Pictures(PictureOptions):
         folder = None if self.folder is None else OutputFolder(self.folder, shot.stage, shot.path)
         if self.html is not None:
             page_file = Path(self.html)
-            check_output(page_file, (".html", ".htm"), made=folder and folder.folder)
+            check_output(page_file, (".html", ".htm"), made=folder.folder if folder else None)
             check_not_input(page_file, shot.stage, *shot.paths)
             _check_clock(shot.stage)
         return _Previewing(self, shot.stage, options, folder)
@@ -149,8 +149,8 @@ class _Previewing(Making):
     @contextmanager
     def running(self, report: BakeReport) -> Iterator[None]:
         if self._folder:
-            pictures = (path for mesh in self._meshes for path in mesh.files())
-            self._folder.check_all(itertools.chain([self._sheet_path(0)], pictures))
+            pictures = [mesh.files(self._folder) for mesh in self._meshes]
+            self._folder.check_all(itertools.chain([self._sheet_path(self._folder, 0)], *pictures))
         with self._easel.canvases.taken() as canvas:
             self._drawn.device = canvas.device.renderer
         report.made.append(self._drawn)
@@ -164,15 +164,16 @@ class _Previewing(Making):
         if not self._folder:
             return
         for number, sheet in enumerate(contact_sheets([strip for mesh in self._meshes for strip in mesh.thumbnails])):
-            self._folder.write(self._sheet_path(number), sheet)
-            self._drawn.files.append(str(self._sheet_path(number)))
+            path = self._sheet_path(self._folder, number)
+            self._folder.write(path, sheet)
+            self._drawn.files.append(str(path))
 
-    def _sheet_path(self, number: int) -> Path:
+    def _sheet_path(self, folder: OutputFolder, number: int) -> Path:
         """With the frames that were asked for, so that tasks of a farm do not take each other's."""
         asked = self._options.frames
         ends = [frame_label(frame) for frame in dict.fromkeys((asked[0], asked[-1]))] if asked else []
         words = ["contact_sheet", *(["-".join(ends)] if ends else []), *([str(number + 1)] if number else [])]
-        return self._folder.folder / ".".join([*words, "png"])
+        return folder.folder / ".".join([*words, "png"])
 
     def _write_page(self, report: BakeReport) -> None:
         if not self._page:

@@ -7,7 +7,7 @@ import operator
 import re
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Sequence
-from dataclasses import Field, field, fields
+from dataclasses import Field, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from skinslide.problems import SliderError, UsageError
@@ -30,8 +30,9 @@ def option(default: Any, check: Check, flag: str, **words: Any) -> Any:
     return field(default=default, metadata={"check": check, "flag": flag, "words": words})
 
 
+@dataclass(frozen=True)
 class Options:
-    """Dataclasses of options, which are checked as they are made. Raises UsageError for what cannot be."""
+    """Options, which are checked as they are made. Raises UsageError for what cannot be."""
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -47,7 +48,7 @@ def described(each: Field[Any], default: Any) -> str:
 def documented(table: T) -> T:
     """Adds its options to what a table says of itself."""
     lines = [f"    {each.name}: {described(each, each.default)}" for each in fields(table) if "words" in each.metadata]
-    table.__doc__ = "\n".join([inspect.cleandoc(table.__doc__), "", "Attributes:", *lines])
+    table.__doc__ = "\n".join([inspect.cleandoc(table.__doc__ or ""), "", "Attributes:", *lines])
     return table
 
 

@@ -58,7 +58,7 @@ def read_sliders(
 ) -> tuple[list[tuple[PatchedMesh, Slider | None]], list[Problem]]:
     """Every mesh that can be read, with a slider unless a patch of it is bad, and every problem."""
     meshes, problems = read_meshes(stage, prims)
-    sliders = []
+    sliders: list[Slider | None] = []
     for mesh in meshes:
         try:
             sliders.append(mesh.slider(lookup))

@@ -58,7 +58,7 @@ class PatchReport:
     def milliseconds(self) -> dict[str, np.ndarray]:
         """Time by stage and in total, frame by frame."""
         stages = {stage: 1e3 * self.column(f"{stage}_seconds") for stage in STAGES}
-        return {**stages, "total": sum(stages.values())}
+        return {**stages, "total": np.sum(list(stages.values()), axis=0)}
 
     @property
     def label(self) -> str:

@@ -53,7 +53,7 @@ def why_not_opened(path: str, error: Exception) -> str:
         try:
             os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK))
         except PermissionError as denied:
-            return denied.strerror
+            return denied.strerror or str(denied)
         except OSError:
             pass  # a resolver may know it under this name
         if not Ar.GetResolver().Resolve(path):

@@ -13,6 +13,7 @@ from pxr import Sdf, Usd
 from skinslide.problems import UsageError, frame_text
 from skinslide.stage import schema
 from skinslide.stage.finding import patched_prims
+from skinslide.stage.given import StrPath
 from skinslide.stage.textures import texture_files
 from skinslide.write.place import Inputs, check_output, check_place, nearest_folder, replacing, writing
 
@@ -22,7 +23,7 @@ _PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
 class OutputFolder:
     """Where files of meshes are written. Nothing of it is made before the first is."""
 
-    def __init__(self, folder: str | os.PathLike, stage: Usd.Stage, stage_path: str | os.PathLike | None):
+    def __init__(self, folder: StrPath, stage: Usd.Stage, stage_path: StrPath | None):
         """Raises UsageError for a folder that cannot be."""
         if not os.fspath(folder):  # Path would take it for the working folder
             raise UsageError("output: the name of the folder is empty")

@@ -18,6 +18,7 @@ from typing import Any
 from pxr import Tf, Usd, UsdUtils
 
 from skinslide.problems import StageError, UsageError, usd_message
+from skinslide.stage.given import StrPath
 
 _ABANDONED = 24 * 60 * 60  # seconds
 
@@ -77,7 +78,7 @@ def partial_name(output: Path, token: str = 8 * "0") -> str:
     return f".{output.stem}.{token}{output.suffix}"
 
 
-def check_not_input(output: Path, stage: Usd.Stage, *others: str | os.PathLike) -> None:
+def check_not_input(output: Path, stage: Usd.Stage, *others: StrPath) -> None:
     """Raises UsageError where the output is a file that the stage may read, in whatever variant and clip."""
     if output.exists():
         Inputs(stage, *others).refuse(output)
@@ -91,9 +92,9 @@ def check_not_read(output: Path, stage: Usd.Stage) -> None:
 class Inputs:
     """The files that a stage may read, in whatever variant and clip."""
 
-    def __init__(self, stage: Usd.Stage, *others: str | os.PathLike):
+    def __init__(self, stage: Usd.Stage, *others: StrPath):
         self._stage = stage
-        self._known = _identities([*map(os.fspath, others), *_dependencies(stage)])
+        self._known = _identities([*(os.fspath(other) for other in others), *_dependencies(stage)])
 
     def refuse(self, output: Path) -> None:
         """Raises UsageError where the output is one of them, or one that the stage has read so far."""

@@ -8,14 +8,15 @@ stitch, and put the layer in place
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pxr import Sdf, Tf, UsdUtils
 
 from skinslide.problems import Problem, StageError, StageProblems, UsageError, frame_text
+from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
 from skinslide.write.overs import EXTENSIONS
@@ -39,24 +40,24 @@ class StitchReport:
         return "\n".join([f"{meshes}, {len(self.frames)} frames{first_to_last}", *map(str, self.problems)])
 
 
-def stitch(chunk_paths: Iterable[str | os.PathLike], output_path: str | os.PathLike) -> StitchReport:
+def stitch(chunks: Iterable[StrPath], output: StrPath) -> StitchReport:
     """Writes one layer with the samples of several that were baked from one stage: the layer of one bake.
 
     Raises UsageError, StageError for a chunk that cannot be opened, StageProblems for chunks that do not fit together.
     """
-    paths, output = [Path(path) for path in chunk_paths], Path(output_path)
-    check_output(output, EXTENSIONS)
-    if not paths:
+    files, stitched = [Path(chunk) for chunk in chunks], Path(output)
+    check_output(stitched, EXTENSIONS)
+    if not files:
         raise UsageError("there are no chunks to stitch")
-    chunks = [_Chunk(path) for path in paths]
-    if output.exists() and any(path.samefile(output) for path in paths):
-        raise UsageError(f"output {output}: is one of the chunks")
-    blocked = {path for chunk in chunks for path in chunk.blocked}
-    problems = [*_differences(chunks, blocked), *_overlaps(chunks, blocked)]
+    opened = [_Chunk(file) for file in files]
+    if stitched.exists() and any(file.samefile(stitched) for file in files):
+        raise UsageError(f"output {stitched}: is one of the chunks")
+    blocked = {path for chunk in opened for path in chunk.blocked}
+    problems = [*_differences(opened, blocked), *_overlaps(opened, blocked)]
     if problems:
         raise StageProblems(problems)
-    _write(chunks, sorted(blocked), output)
-    return _report(chunks, blocked)
+    _write(opened, sorted(blocked), stitched)
+    return _report(opened, blocked)
 
 
 class _Chunk:
@@ -75,7 +76,7 @@ class _Chunk:
         if spec:
             self.attributes[path] = spec
 
-    def clock(self) -> dict:
+    def clock(self) -> dict[str, Any]:
         """Everything that says how the layer is to be read."""
         root = self.layer.pseudoRoot
         return {field: root.GetInfo(field) for field in sorted(set(root.ListInfoKeys()) - _OWN_FIELDS)}
@@ -106,7 +107,7 @@ def _differences(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> Iterator[P
                 yield Problem("error", str(path.GetPrimPath()), None, None, f"{path.name} differs between {pair}")
 
 
-def _unequal(one: dict, other: dict) -> list[str]:
+def _unequal(one: dict[str, Any], other: dict[str, Any]) -> list[str]:
     return [key for key in sorted(one.keys() | other.keys()) if one.get(key) != other.get(key)]
 
 
