@@ -1,6 +1,8 @@
 """What a layer holds, bit for bit, and digests of it that are recorded in files."""
 
 import hashlib
+import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,6 +17,7 @@ class Values(NamedTuple):
     at: dict[float | str, bytes]
 
 
+BLOCKED = b"blocked"  # in place of a value
 Contents = dict[str, Values]  # "/World/mesh.points" -> its values
 Digests = dict[str, str]  # "/World/mesh.points" -> "24 values 5e8f..."
 
@@ -37,14 +40,16 @@ def contents(layer: Sdf.Layer) -> Contents:
     return found
 
 
-BLOCKED = Sdf.ValueBlock().__class__.__name__.encode()
-
-
 def _bytes(value) -> bytes:
     if isinstance(value, Sdf.ValueBlock):
         return BLOCKED
     array = np.asarray(value)
     return str(value).encode() if array.dtype.kind in "OU" else array.tobytes()
+
+
+def _in_order(times: Iterable[float | str]) -> list[float | str]:
+    """The default before the samples."""
+    return sorted(times, key=lambda time: -math.inf if isinstance(time, str) else time)
 
 
 def differences(a: Contents, b: Contents) -> list[str]:
@@ -57,8 +62,8 @@ def differences(a: Contents, b: Contents) -> list[str]:
             said.append(f"{path} is {a[path].type_name} and {b[path].type_name}")
         elif a[path].at != b[path].at:
             times = a[path].at.keys() | b[path].at.keys()
-            differ = [time for time in times if a[path].at.get(time) != b[path].at.get(time)]
-            said.append(f"{path} differs at {sorted(differ, key=str)[0]}, {len(differ)} times in all")
+            differ = [time for time in _in_order(times) if a[path].at.get(time) != b[path].at.get(time)]
+            said.append(f"{path} differs at {differ[0]}, {len(differ)} times in all")
     return said
 
 
@@ -69,9 +74,9 @@ def digest(found: Contents) -> Digests:
 
 def _sha256(values: Values) -> str:
     hashed = hashlib.sha256(values.type_name.encode())
-    for time, value in sorted(values.at.items(), key=lambda item: (isinstance(item[0], float), item[0])):
+    for time in _in_order(values.at):
         hashed.update(f" {time}:".encode())
-        hashed.update(value)
+        hashed.update(values.at[time])
     return hashed.hexdigest()
 
 
