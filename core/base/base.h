@@ -38,6 +38,21 @@ double ss_now(void);
 /* Adds the seconds since *since to *sum, and sets it to now. */
 void ss_lap(double *since, double *sum);
 
+/* ---- sized.c: structs of callers, which begin with a size_t, their size. name is for messages ---- */
+
+/* BAD_ARGUMENT where the size cannot be one. */
+skinslide_status ss_check_size(const void *given, const char *name, skinslide_error *error);
+/* What the caller's struct has, over own, which holds its defaults; NULL: nothing. Fails also with UNSUPPORTED, where it has more
+ * than own, and that is not 0. */
+skinslide_status ss_take(const void *given, const char *name, void *own, size_t own_size, skinslide_error *error);
+/* The same for arrays, whose elements have the size of the first. own is [count]; standard is the default of one. */
+skinslide_status ss_take_all(const void *given, int64_t count, const char *name, void *own, size_t own_size,
+                             const void *standard, skinslide_error *error);
+/* What the caller's struct has room for, whose size was checked; what it has more is 0. */
+void ss_give(const void *own, size_t own_size, void *given);
+/* The same for arrays, of which only the first element need have its size. */
+void ss_give_all(const void *own, int64_t count, size_t own_size, void *given);
+
 #ifdef __cplusplus
 }
 #endif

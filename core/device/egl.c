@@ -256,6 +256,7 @@ static bool describe(ss_egl *egl, const choice *made, account *tried) {
     find_reset_status(&egl->api);
     ss_egl_leave(egl, &before);
     name_choice(made, info->device_name, sizeof info->device_name);
+    info->size = sizeof *info;
     info->device = made->device;
     info->software = made->software || is_software(info->renderer);
     if (strncmp(info->driver, "OpenGL ES 3", 11) == 0)

@@ -85,7 +85,8 @@ skinslide_status skinslide_limit_points(const skinslide_mesh *mesh, const float 
                                         int32_t count, float *out, skinslide_error *error) {
     if (count < 0 || (count > 0 && (!places || !out)))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no places, or no room for their points");
-    skinslide_status status = ss_check_mesh(mesh, error);
+    ss_taken_mesh taken;
+    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (!status && !ss_is_subdivided(mesh))
         status = ss_fail(error, SKINSLIDE_BAD_MESH, "the mesh is not subdivided: it has no limit surface");
     if (!status)

@@ -48,6 +48,17 @@ skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *erro
     return SKINSLIDE_OK;
 }
 
+skinslide_status ss_take_mesh(const skinslide_mesh **mesh, ss_taken_mesh *own, skinslide_error *error) {
+    *own = (ss_taken_mesh){SKINSLIDE_MESH_DEFAULT, SKINSLIDE_SUBDIVISION_DEFAULT};
+    skinslide_status status = ss_take(*mesh, "skinslide_mesh", &own->mesh, sizeof own->mesh, error);
+    const skinslide_subdivision *subdivision = own->mesh.subdivision;
+    if (!status)
+        status = ss_take(subdivision, "skinslide_subdivision", &own->subdivision, sizeof own->subdivision, error);
+    own->mesh.subdivision = subdivision ? &own->subdivision : NULL;
+    *mesh = *mesh ? &own->mesh : NULL;
+    return status ? status : ss_check_mesh(*mesh, error);
+}
+
 /* ---- Edges: sides sorted by their ends ---- */
 
 typedef struct side {

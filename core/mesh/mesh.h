@@ -37,6 +37,13 @@ static inline int32_t ss_previous_corner(const ss_faces *faces, int32_t corner) 
 int ss_ascending(const void *a, const void *b);
 int ss_ascending_pairs(const void *a, const void *b);
 
+/* A caller's mesh as ours. */
+typedef struct ss_taken_mesh {
+    skinslide_mesh mesh;
+    skinslide_subdivision subdivision;
+} ss_taken_mesh;
+/* Puts what it takes in the place of the caller's mesh, and checks that. */
+skinslide_status ss_take_mesh(const skinslide_mesh **mesh, ss_taken_mesh *own, skinslide_error *error);
 /* Counts, indices and rest points of the whole mesh. */
 skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error);
 /* Names the first vertex that is not finite. */

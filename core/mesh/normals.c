@@ -132,7 +132,8 @@ static skinslide_status allocate(ss_memory *memory, work *w, float **before, ski
 skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
                                    skinslide_normals_layout layout, int32_t left_handed, float *normals,
                                    skinslide_error *error) {
-    skinslide_status status = ss_check_mesh(mesh, error);
+    ss_taken_mesh taken;
+    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (status)
         return status;
     if (!cached || !slid || !normals || (unsigned)layout > SKINSLIDE_NORMALS_UNIFORM)

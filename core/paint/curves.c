@@ -97,7 +97,7 @@ static void flatten_segment(const skinslide_curves *curves, int32_t first, int32
 /* ---- Checks ---- */
 
 static skinslide_status check_curves(const skinslide_curves *curves, int64_t *segments, skinslide_error *error) {
-    if (!curves || curves->curve_count < 1 || !curves->vertex_counts || !curves->points ||
+    if (curves->curve_count < 1 || !curves->vertex_counts || !curves->points ||
         (unsigned)curves->basis > SKINSLIDE_CURVE_BASIS_CATMULL_ROM || (unsigned)curves->wrap > SKINSLIDE_CURVE_WRAP_PINNED)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no curves, or no such basis or wrap");
     int64_t sum = 0;
@@ -190,16 +190,19 @@ skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count,
     int64_t segments = 0;
     if (!near || !(distance >= 0) || isinf(distance) || (unsigned)direction > SKINSLIDE_DIRECTION_ACROSS)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "distance %g, or no such direction, or no place for the edges", distance);
+    skinslide_curves own = SKINSLIDE_CURVES_DEFAULT;
     skinslide_status status = check_edges(points, vertex_count, edges, edge_count, error);
     if (!status)
-        status = check_curves(curves, &segments, error);
+        status = ss_take(curves, "skinslide_curves", &own, sizeof own, error);
+    if (!status)
+        status = check_curves(&own, &segments, error);
     if (status)
         return status;
     ss_memory memory = {0};
     pieces all = {SS_NEW(&memory, piece, segments * STEPS), 0};
     if (memory.failed)
         return ss_out_of_memory(error);
-    flatten(curves, &all);
+    flatten(&own, &all);
     for (int32_t e = 0; e < edge_count; e++)
         near[e] =
             is_near(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all, distance, direction);

@@ -440,8 +440,11 @@ static skinslide_status decode_selection(exr_const_context_t file, const selecti
         return status;
     }
     owned->memory = memory;
-    owned->image = (skinslide_image){
-        .width = (int32_t)to.display.width, .height = (int32_t)to.display.height, .pixels = to.pixels, .channel = name};
+    owned->image = (skinslide_image){.size = sizeof owned->image,
+                                     .width = (int32_t)to.display.width,
+                                     .height = (int32_t)to.display.height,
+                                     .pixels = to.pixels,
+                                     .channel = name};
     read_wraps(file, chosen->part, &owned->image);
     *out = &owned->image;
     return SKINSLIDE_OK;

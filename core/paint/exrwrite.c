@@ -69,8 +69,6 @@ static const char *wrap_name(skinslide_wrap wrap) {
 
 static skinslide_status check_channels(const skinslide_channel *channels, int32_t count, int32_t width, int32_t height,
                                        skinslide_error *error) {
-    if (!channels || count < 1)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no channels to write");
     if (width < 1 || height < 1 || width > LARGEST_SIDE || height > LARGEST_SIDE)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "an image of %d x %d; each must be 1 to %d", width, height, LARGEST_SIDE);
     for (int32_t c = 0; c < count; c++) {
@@ -152,10 +150,9 @@ static bool write_file(sink *to, const skinslide_channel *channels, int32_t coun
     return (succeeds(to, exr_finish(&file))) && good;
 }
 
-skinslide_status skinslide_exr_encode(const skinslide_channel *channels, int32_t channel_count, int32_t width, int32_t height,
-                                      skinslide_wrap wrap, skinslide_bytes **out, skinslide_error *error) {
-    if (!out || (unsigned)wrap > SKINSLIDE_WRAP_BLACK)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the bytes, or no such wrap");
+/* Of channels that were taken. */
+static skinslide_status encode(const skinslide_channel *channels, int32_t channel_count, int32_t width, int32_t height,
+                               skinslide_wrap wrap, skinslide_bytes **out, skinslide_error *error) {
     skinslide_status status = check_channels(channels, channel_count, width, height, error);
     if (status)
         return status;
@@ -172,6 +169,24 @@ skinslide_status skinslide_exr_encode(const skinslide_channel *channels, int32_t
     return out_of_memory
                ? ss_out_of_memory(error)
                : ss_fail(error, SKINSLIDE_BAD_IMAGE, "cannot be written: %s", exr_get_default_error_message(to.failed));
+}
+
+skinslide_status skinslide_exr_encode(const skinslide_channel *channels, int32_t channel_count, int32_t width, int32_t height,
+                                      skinslide_wrap wrap, skinslide_bytes **out, skinslide_error *error) {
+    if (!out || (unsigned)wrap > SKINSLIDE_WRAP_BLACK)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the bytes, or no such wrap");
+    if (!channels || channel_count < 1)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no channels to write");
+    const skinslide_channel standard = SKINSLIDE_CHANNEL_DEFAULT;
+    ss_memory memory = {0};
+    skinslide_channel *own = SS_NEW(&memory, skinslide_channel, channel_count);
+    skinslide_status status =
+        own ? ss_take_all(channels, channel_count, "skinslide_channel", own, sizeof *own, &standard, error)
+            : ss_out_of_memory(error);
+    if (!status)
+        status = encode(own, channel_count, width, height, wrap, out, error);
+    ss_free(&memory);
+    return status;
 }
 
 void skinslide_bytes_destroy(skinslide_bytes *bytes) {

@@ -215,9 +215,7 @@ static skinslide_status allocate(mirror *m, ss_memory *memory, uint8_t **lost, s
 
 static skinslide_status check(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
                               int32_t face_count, skinslide_error *error) {
-    skinslide_status status = ss_check_mesh(mesh, error);
-    if (!status)
-        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+    skinslide_status status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
     if (status)
         return status;
     if (axis < 0 || axis > 2 || !isfinite(plane) || !isfinite(tolerance))
@@ -249,7 +247,10 @@ static skinslide_status mirror_faces_of(mirror *m, const int32_t *faces, int32_t
 skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
                                   const int32_t *faces, int32_t face_count, int32_t *mirror_faces, int32_t *mirror_vertices,
                                   skinslide_error *error) {
-    skinslide_status status = check(mesh, axis, plane, tolerance, faces, face_count, error);
+    ss_taken_mesh taken;
+    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
+    if (!status)
+        status = check(mesh, axis, plane, tolerance, faces, face_count, error);
     if (status || face_count < 0 || !mirror_faces || !mirror_vertices)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for what is found");
     ss_memory memory = {0};

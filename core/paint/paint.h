@@ -8,4 +8,14 @@
 /* UDIM tiles, numbered by rows of ten: 1001 to 10000. */
 enum { SS_FIRST_TILE = 1001, SS_TILE_COLUMNS = 10, SS_TILE_ROWS = 900 };
 
+/* ---- texture.c ---- */
+
+/* A caller's layout as ours. */
+typedef struct ss_taken_layout {
+    skinslide_texture_layout layout;
+    ss_taken_mesh mesh;
+} ss_taken_layout;
+/* Puts what it takes in the place of the caller's layout, and checks that. */
+skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_taken_layout *own, skinslide_error *error);
+
 #endif

@@ -10,11 +10,6 @@ typedef struct corners {
 } corners;
 
 static skinslide_status check(const skinslide_texture_layout *layout, skinslide_error *error) {
-    if (!layout)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no layout");
-    skinslide_status status = ss_check_mesh(layout->mesh, error);
-    if (status)
-        return status;
     if (!layout->st || layout->face_count < 0 || (layout->face_count && !layout->faces))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no texture coordinates, or no faces");
     for (int32_t i = 0; i < layout->face_count; i++)
@@ -22,6 +17,17 @@ static skinslide_status check(const skinslide_texture_layout *layout, skinslide_
             return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", layout->faces[i],
                            layout->mesh->face_count);
     return SKINSLIDE_OK;
+}
+
+skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_taken_layout *own, skinslide_error *error) {
+    own->layout = (skinslide_texture_layout)SKINSLIDE_TEXTURE_LAYOUT_DEFAULT;
+    if (!*layout)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no layout");
+    skinslide_status status = ss_take(*layout, "skinslide_texture_layout", &own->layout, sizeof own->layout, error);
+    *layout = &own->layout;
+    if (!status)
+        status = ss_take_mesh(&own->layout.mesh, &own->mesh, error);
+    return status ? status : check(*layout, error);
 }
 
 static skinslide_status list_corners(const skinslide_texture_layout *layout, ss_memory *memory, corners *out,
@@ -65,7 +71,8 @@ static skinslide_status face_tiles(const corners *c, int32_t face, int32_t *tile
 }
 
 skinslide_status skinslide_texture_tiles(const skinslide_texture_layout *layout, int32_t *tiles, skinslide_error *error) {
-    skinslide_status status = check(layout, error);
+    ss_taken_layout taken;
+    skinslide_status status = ss_take_layout(&layout, &taken, error);
     if (status || !tiles)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the tiles");
     ss_memory memory = {0};
@@ -156,40 +163,60 @@ static skinslide_status sample_face(const corners *c, int32_t face, const int32_
     return SKINSLIDE_OK;
 }
 
-static skinslide_status check_tiles(const skinslide_texture_tile *tiles, int32_t tile_count, skinslide_error *error) {
-    if (!tiles || tile_count < 1)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tiles");
-    for (int32_t k = 0; k < tile_count; k++) {
-        const skinslide_image *image = tiles[k].image;
-        bool numbered = tiles[k].number >= SS_FIRST_TILE && tiles[k].number < SS_FIRST_TILE + SS_TILE_COLUMNS * SS_TILE_ROWS;
-        if (!numbered && (tiles[k].number != 0 || tile_count != 1))
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has the number %d", k, tiles[k].number);
-        if (!image || image->width < 1 || image->height < 1 || !image->pixels ||
-            (unsigned)image->wrap_s > SKINSLIDE_WRAP_BLACK || (unsigned)image->wrap_t > SKINSLIDE_WRAP_BLACK)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has no image", k);
-    }
+static skinslide_status check_tile(const skinslide_texture_tile *tile, int32_t k, int32_t tile_count, skinslide_error *error) {
+    const skinslide_image *image = tile->image;
+    bool numbered = tile->number >= SS_FIRST_TILE && tile->number < SS_FIRST_TILE + SS_TILE_COLUMNS * SS_TILE_ROWS;
+    if (!numbered && (tile->number != 0 || tile_count != 1))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has the number %d", k, tile->number);
+    if (!image || image->width < 1 || image->height < 1 || !image->pixels || (unsigned)image->wrap_s > SKINSLIDE_WRAP_BLACK ||
+        (unsigned)image->wrap_t > SKINSLIDE_WRAP_BLACK)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has no image", k);
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_texture_sample(const skinslide_texture_layout *layout, const skinslide_texture_tile *tiles,
-                                          int32_t tile_count, float *values, skinslide_error *error) {
-    skinslide_status status = check(layout, error);
-    if (!status)
-        status =
-            values ? check_tiles(tiles, tile_count, error) : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the values");
-    if (status)
-        return status;
-    ss_memory memory = {0};
+/* The caller's tiles with their images: own and images are [tile_count]. */
+static skinslide_status take_tiles(const skinslide_texture_tile *tiles, int32_t tile_count, skinslide_texture_tile *own,
+                                   skinslide_image *images, skinslide_error *error) {
+    const skinslide_texture_tile standard = SKINSLIDE_TEXTURE_TILE_DEFAULT;
+    skinslide_status status = ss_take_all(tiles, tile_count, "skinslide_texture_tile", own, sizeof *own, &standard, error);
+    for (int32_t k = 0; k < tile_count && !status; k++) {
+        images[k] = (skinslide_image)SKINSLIDE_IMAGE_DEFAULT;
+        status = ss_take(own[k].image, "skinslide_image", &images[k], sizeof *images, error);
+        own[k].image = own[k].image ? &images[k] : NULL;
+        if (!status)
+            status = check_tile(&own[k], k, tile_count, error);
+    }
+    return status;
+}
+
+/* Of tiles that were taken. */
+static skinslide_status sample_all(const skinslide_texture_layout *layout, const skinslide_texture_tile *tiles,
+                                   int32_t tile_count, float *values, ss_memory *memory, skinslide_error *error) {
     corners c;
-    int32_t *numbers = SS_NEW(&memory, int32_t, layout->mesh->index_count);
-    double(*sums)[2] = ss_new(&memory, layout->mesh->vertex_count, sizeof *sums);
-    status = list_corners(layout, &memory, &c, error);
+    int32_t *numbers = SS_NEW(memory, int32_t, layout->mesh->index_count);
+    double(*sums)[2] = ss_new(memory, layout->mesh->vertex_count, sizeof *sums);
+    skinslide_status status = list_corners(layout, memory, &c, error);
     for (int32_t i = 0; !status && tiles[0].number && i < layout->face_count; i++)
         status = face_tiles(&c, layout->faces[i], numbers, error);
     for (int32_t i = 0; !status && i < layout->face_count; i++)
         status = sample_face(&c, layout->faces[i], numbers, tiles, tile_count, sums, error);
     for (int32_t v = 0; !status && v < layout->mesh->vertex_count; v++)
         values[v] = sums[v][1] > 0 ? (float)(sums[v][0] / sums[v][1]) : 1;
+    return status;
+}
+
+skinslide_status skinslide_texture_sample(const skinslide_texture_layout *layout, const skinslide_texture_tile *tiles,
+                                          int32_t tile_count, float *values, skinslide_error *error) {
+    ss_taken_layout taken;
+    skinslide_status status = ss_take_layout(&layout, &taken, error);
+    if (status || !values || !tiles || tile_count < 1)
+        return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, values ? "no tiles" : "no place for the values");
+    ss_memory memory = {0};
+    skinslide_texture_tile *own = SS_NEW(&memory, skinslide_texture_tile, tile_count);
+    skinslide_image *images = SS_NEW(&memory, skinslide_image, tile_count);
+    status = memory.failed ? ss_out_of_memory(error) : take_tiles(tiles, tile_count, own, images, error);
+    if (!status)
+        status = sample_all(layout, own, tile_count, values, &memory, error);
     ss_free(&memory);
     return status;
 }

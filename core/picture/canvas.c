@@ -93,17 +93,19 @@ static skinslide_status make_objects(skinslide_canvas *canvas, skinslide_error *
 
 skinslide_status ss_canvas_create(const skinslide_canvas_options *options, ss_egl_loader load, skinslide_canvas **out,
                                   skinslide_error *error) {
-    const skinslide_canvas_options standard = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
-    const skinslide_canvas_options *own = options ? options : &standard;
-    skinslide_status status =
-        out ? check_options(own, error) : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the canvas");
+    skinslide_canvas_options own = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
+    if (!out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the canvas");
+    skinslide_status status = ss_take(options, "skinslide_canvas_options", &own, sizeof own, error);
+    if (!status)
+        status = check_options(&own, error);
     if (status)
         return status;
     skinslide_canvas *canvas = calloc(1, sizeof *canvas);
     if (!canvas)
         return ss_out_of_memory(error);
-    canvas->width = own->width, canvas->height = own->height, canvas->pixels = own->pixels;
-    const ss_device_request request = {load, own->device, false};
+    canvas->width = own.width, canvas->height = own.height, canvas->pixels = own.pixels;
+    const ss_device_request request = {load, own.device, false};
     status = ss_egl_open(&request, &canvas->egl, error);
     if (!status)
         status = make_objects(canvas, error);
@@ -129,8 +131,10 @@ void skinslide_canvas_destroy(skinslide_canvas *canvas) {
 skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_device_info *info, skinslide_error *error) {
     if (!canvas || !info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no place for the answer");
-    *info = canvas->egl->info;
-    return SKINSLIDE_OK;
+    skinslide_status status = ss_check_size(info, "skinslide_device_info", error);
+    if (!status)
+        ss_give(&canvas->egl->info, sizeof canvas->egl->info, info);
+    return status;
 }
 
 /* ---- Clearing and reading ---- */

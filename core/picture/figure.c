@@ -178,7 +178,7 @@ static skinslide_status check_paint(const skinslide_figure *figure, skinslide_er
 
 static skinslide_status check(const skinslide_canvas *canvas, const skinslide_viewport *viewport,
                               const skinslide_camera *camera, const skinslide_figure *figure, skinslide_error *error) {
-    if (!canvas || !viewport || !camera || !figure || !figure->tessellation)
+    if (!canvas || !viewport || !camera || !figure->tessellation)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, viewport, camera, or figure");
     if (figure->outline && figure->outline->tessellation != figure->tessellation)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the outline is another tessellation's");
@@ -221,11 +221,14 @@ static skinslide_status prepare(drawing *drawn, const skinslide_viewport *viewpo
 skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                        const skinslide_camera *camera, const skinslide_figure *figure, skinslide_error *error) {
     ss_egl_before before;
-    skinslide_status status = check(canvas, viewport, camera, figure, error);
+    skinslide_figure own = SKINSLIDE_FIGURE_DEFAULT;
+    skinslide_status status = ss_take(figure, "skinslide_figure", &own, sizeof own, error);
+    if (!status)
+        status = check(canvas, viewport, camera, &own, error);
     if (status)
         return status;
-    drawing drawn = {.canvas = canvas, .figure = figure, .mesh = figure->tessellation};
-    drawn.outline = figure->outline ? figure->outline : drawn.mesh->outline;
+    drawing drawn = {.canvas = canvas, .figure = &own, .mesh = own.tessellation};
+    drawn.outline = own.outline ? own.outline : drawn.mesh->outline;
     status = prepare(&drawn, viewport, camera, error);
     if (!status)
         status = ss_gl_enter(canvas->egl, &before, error);

@@ -199,7 +199,7 @@ static skinslide_status check(const skinslide_texture_layout *layout, int32_t ti
     if (side < 1 || side > SKINSLIDE_LARGEST_MAP)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a map of %d texels a side; it must have 1 to %d", side,
                        SKINSLIDE_LARGEST_MAP);
-    return ss_check_mesh(layout->mesh, error);
+    return SKINSLIDE_OK;
 }
 
 static skinslide_status check_values(const map *m, const float *values, skinslide_error *error) {
@@ -231,7 +231,10 @@ static skinslide_status prepare(map *m, ss_memory *memory, const float *values, 
 
 skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int32_t tile, const float *values, int32_t side,
                                     float *texels, int32_t *missed_faces, skinslide_error *error) {
+    ss_taken_layout taken;
     skinslide_status status = check(layout, tile, values, side, texels, error);
+    if (!status)
+        status = ss_take_layout(&layout, &taken, error);
     if (status)
         return status;
     ss_memory memory = {0};

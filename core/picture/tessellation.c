@@ -234,9 +234,7 @@ static skinslide_status fix_vertices(skinslide_tessellation *own, const skinslid
 
 static skinslide_status check(const skinslide_mesh *mesh, const float *st, const int32_t *faces, int32_t face_count,
                               skinslide_error *error) {
-    skinslide_status status = ss_check_mesh(mesh, error);
-    if (!status && ss_is_subdivided(mesh))
-        status = ss_check_subdivision(mesh, error);
+    skinslide_status status = ss_is_subdivided(mesh) ? ss_check_subdivision(mesh, error) : SKINSLIDE_OK;
     if (!status && mesh->index_count > MOST_CORNERS)
         status = ss_fail(error, SKINSLIDE_UNSUPPORTED, "%d face indices are too many to be drawn", mesh->index_count);
     if (!status && !st)
@@ -320,7 +318,10 @@ skinslide_status skinslide_tessellation_create(const skinslide_mesh *mesh, const
                                                int32_t face_count, skinslide_tessellation **out, skinslide_error *error) {
     if (!out)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the tessellation");
-    skinslide_status status = check(mesh, st, faces, face_count, error);
+    ss_taken_mesh taken;
+    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
+    if (!status)
+        status = check(mesh, st, faces, face_count, error);
     if (status)
         return status;
     skinslide_tessellation *own = calloc(1, sizeof *own);
@@ -351,6 +352,9 @@ skinslide_status skinslide_tessellation_describe(const skinslide_tessellation *o
                                                  skinslide_error *error) {
     if (!own || !info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tessellation, or no place for the answer");
-    *info = (skinslide_tessellation_info){own->vertex_count, own->triangle_count, own->flat_faces};
-    return SKINSLIDE_OK;
+    const skinslide_tessellation_info answer = {sizeof answer, own->vertex_count, own->triangle_count, own->flat_faces};
+    skinslide_status status = ss_check_size(info, "skinslide_tessellation_info", error);
+    if (!status)
+        ss_give(&answer, sizeof answer, info);
+    return status;
 }

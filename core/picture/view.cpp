@@ -216,9 +216,6 @@ skinslide_status check_poses(const skinslide_subject &own, skinslide_error *erro
 }
 
 skinslide_status check(const skinslide_subject &own, const double *up, double aspect, skinslide_error *error) {
-    skinslide_status status = ss_check_mesh(own.mesh, error);
-    if (status)
-        return status;
     if (own.face_count < 1 || !own.faces || own.pose_count < 1 || !own.poses)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces, or no poses");
     double length = up ? glm::length(glm::make_vec3(up)) : 0;
@@ -249,13 +246,19 @@ skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const d
                                        skinslide_camera *camera, skinslide_error *error) {
     if (!subject || !camera)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no subject, or no place for the camera");
-    skinslide_status status = check(*subject, up, aspect, error);
+    skinslide_subject own = SKINSLIDE_SUBJECT_DEFAULT;
+    ss_taken_mesh taken;
+    skinslide_status status = ss_take(subject, "skinslide_subject", &own, sizeof own, error);
+    if (!status)
+        status = ss_take_mesh(&own.mesh, &taken, error);
+    if (!status)
+        status = check(own, up, aspect, error);
     if (status)
         return status;
     ss_memory scratch = {};
-    const int32_t *start = list_starts(*subject->mesh, &scratch);
-    status = start ? frame(Subject{*subject, start}, glm::normalize(glm::make_vec3(up)), aspect, camera, error)
-                   : ss_out_of_memory(error);
+    const int32_t *start = list_starts(*own.mesh, &scratch);
+    status =
+        start ? frame(Subject{own, start}, glm::normalize(glm::make_vec3(up)), aspect, camera, error) : ss_out_of_memory(error);
     ss_free(&scratch);
     return status;
 }

@@ -14,35 +14,52 @@ static skinslide_status check_options(const skinslide_workspace_options *options
     return SKINSLIDE_OK;
 }
 
-static const skinslide_device_info no_device = {.device = SKINSLIDE_ANY_DEVICE};
-
 /* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with
  * EGL for its absence, and so a resolution that its device does not have; a lack of memory is no choice. */
 static skinslide_status open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
                                     int32_t patch_count, ss_idbuffer **out, skinslide_lookup_info *info,
                                     skinslide_error *error) {
-    const skinslide_workspace_options standard = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
-    const skinslide_workspace_options *own = options ? options : &standard;
-    skinslide_status status = check_options(own, error);
+    skinslide_workspace_options own = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
+    skinslide_status status = ss_take(options, "skinslide_workspace_options", &own, sizeof own, error);
+    if (!status)
+        status = check_options(&own, error);
     if (status)
         return status;
-    *info = (skinslide_lookup_info){.lookup = SKINSLIDE_LOOKUP_EXACT};
-    if (own->lookup == SKINSLIDE_LOOKUP_EXACT)
+    *info = (skinslide_lookup_info)SKINSLIDE_LOOKUP_INFO_DEFAULT;
+    if (own.lookup == SKINSLIDE_LOOKUP_EXACT)
         return SKINSLIDE_OK;
-    ss_device_request request = {load, own->device, own->lookup == SKINSLIDE_LOOKUP_AUTO};
+    ss_device_request request = {load, own.device, own.lookup == SKINSLIDE_LOOKUP_AUTO};
     skinslide_error why = {0};
-    status = ss_idbuffer_create(&request, patches, patch_count, own->resolution, out, &why);
+    status = ss_idbuffer_create(&request, patches, patch_count, own.resolution, out, &why);
     if (!status)
         info->lookup = SKINSLIDE_LOOKUP_EGL;
     bool absent = status == SKINSLIDE_NO_DEVICE || status == SKINSLIDE_DEVICE_FAILED || status == SKINSLIDE_BAD_ARGUMENT;
-    if (own->lookup == SKINSLIDE_LOOKUP_AUTO && absent) {
+    if (own.lookup == SKINSLIDE_LOOKUP_AUTO && absent) {
         memcpy(info->reason, why.message, sizeof info->reason);
         return SKINSLIDE_OK;
     }
     if (status == SKINSLIDE_OUT_OF_MEMORY)
         return ss_out_of_memory(error);
-    const char *name = own->lookup == SKINSLIDE_LOOKUP_EGL ? "egl" : "auto";
+    const char *name = own.lookup == SKINSLIDE_LOOKUP_EGL ? "egl" : "auto";
     return status ? ss_fail(error, status, "lookup %s: %s", name, why.message) : SKINSLIDE_OK;
+}
+
+static skinslide_status check_places(const skinslide_lookup_info *info, const skinslide_device_info *device,
+                                     skinslide_error *error) {
+    skinslide_status status = ss_check_size(info, "skinslide_lookup_info", error);
+    return status || !device ? status : ss_check_size(device, "skinslide_device_info", error);
+}
+
+/* buffer is NULL where the lookup is EXACT. */
+static void answer(const skinslide_lookup_info *chosen, const ss_idbuffer *buffer, skinslide_lookup_info *info,
+                   skinslide_device_info *device) {
+    const skinslide_device_info none = SKINSLIDE_DEVICE_INFO_DEFAULT;
+    skinslide_lookup_info own = *chosen;
+    if (buffer)
+        snprintf(own.reason, sizeof own.reason, "%s", ss_idbuffer_reason(buffer));
+    ss_give(&own, sizeof own, info);
+    if (device)
+        ss_give(buffer ? ss_idbuffer_device(buffer) : &none, sizeof none, device);
 }
 
 skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
@@ -51,11 +68,11 @@ skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *opti
     skinslide_lookup_info chosen;
     if (!info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the answer");
-    skinslide_status status = open_lookup(options, ss_egl_load, NULL, 0, &buffer, &chosen, error);
+    skinslide_status status = check_places(info, device, error);
     if (!status)
-        *info = chosen;
-    if (!status && device)
-        *device = buffer ? *ss_idbuffer_device(buffer) : no_device;
+        status = open_lookup(options, ss_egl_load, NULL, 0, &buffer, &chosen, error);
+    if (!status)
+        answer(&chosen, buffer, info, device);
     ss_idbuffer_destroy(buffer);
     return status;
 }
@@ -64,13 +81,10 @@ skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace
                                             skinslide_device_info *device, skinslide_error *error) {
     if (!workspace || !info)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, or no place for the answer");
-    const ss_idbuffer *buffer = workspace->idbuffer;
-    *info = workspace->lookup;
-    if (buffer)
-        snprintf(info->reason, sizeof info->reason, "%s", ss_idbuffer_reason(buffer));
-    if (device)
-        *device = buffer ? *ss_idbuffer_device(buffer) : no_device;
-    return SKINSLIDE_OK;
+    skinslide_status status = check_places(info, device, error);
+    if (!status)
+        answer(&workspace->lookup, workspace->idbuffer, info, device);
+    return status;
 }
 
 /* The part of each patch that is drawn: [part_count]. */

@@ -7,10 +7,15 @@ static double displacement(const skinslide_sample *sample, int64_t i) {
     return (double)sample->slid[i] - sample->cached[i];
 }
 
-static skinslide_status check_samples(int32_t vertex_count, const skinslide_sample *samples, int count, const float *rates,
-                                      skinslide_error *error) {
-    if (vertex_count < 0 || !samples || !rates)
+/* The caller's samples, in samples [count]. */
+static skinslide_status take_samples(int32_t vertex_count, const skinslide_sample *given, int count, const float *rates,
+                                     skinslide_sample *samples, skinslide_error *error) {
+    const skinslide_sample standard = SKINSLIDE_SAMPLE_DEFAULT;
+    if (vertex_count < 0 || !given || !rates)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no samples, no rates to correct, or a negative count");
+    skinslide_status status = ss_take_all(given, count, "skinslide_sample", samples, sizeof *samples, &standard, error);
+    if (status)
+        return status;
     for (int k = 0; k < count; k++)
         if (!samples[k].cached || !samples[k].slid || !isfinite(samples[k].seconds))
             return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "sample %d has no points, or no finite time", k);
@@ -21,9 +26,10 @@ static skinslide_status check_samples(int32_t vertex_count, const skinslide_samp
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
+skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *given, float *velocities,
                                       skinslide_error *error) {
-    skinslide_status status = check_samples(vertex_count, samples, 2, velocities, error);
+    skinslide_sample samples[2];
+    skinslide_status status = take_samples(vertex_count, given, 2, velocities, samples, error);
     double step = status ? 1 : samples[1].seconds - samples[0].seconds;
     for (int64_t i = 0; !status && i < 3 * (int64_t)vertex_count; i++) {
         double rate = (displacement(&samples[1], i) - displacement(&samples[0], i)) / step;
@@ -32,9 +38,10 @@ skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_samp
     return status;
 }
 
-skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *samples, float *accelerations,
+skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *given, float *accelerations,
                                          skinslide_error *error) {
-    skinslide_status status = check_samples(vertex_count, samples, 3, accelerations, error);
+    skinslide_sample samples[3];
+    skinslide_status status = take_samples(vertex_count, given, 3, accelerations, samples, error);
     if (status)
         return status;
     double first = samples[1].seconds - samples[0].seconds, second = samples[2].seconds - samples[1].seconds;

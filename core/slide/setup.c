@@ -69,7 +69,8 @@ static skinslide_status check_edges(const skinslide_slider *slider, int32_t setu
 
 skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
                                          skinslide_error *error) {
-    skinslide_mesh mesh = {.vertex_count = slider->vertex_count, .face_count = slider->face_count};
+    skinslide_mesh mesh = {
+        .size = sizeof(skinslide_mesh), .vertex_count = slider->vertex_count, .face_count = slider->face_count};
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t i = 0; i < slider->setup_count && !status; i++) {
         status = ss_check_controls(&mesh, slider->setups[i].name, &controls[i], error);
@@ -252,7 +253,8 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
                                          skinslide_slider **out, skinslide_error *error) {
     if (!out || setup_count < 0 || (setup_count > 0 && !setups))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the slider, or no patches");
-    skinslide_status status = ss_check_mesh(mesh, error);
+    ss_taken_mesh taken;
+    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (!status)
         status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
     if (status)

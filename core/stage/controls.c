@@ -311,11 +311,12 @@ skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *control
                                                skinslide_error *error) {
     control *own = controls ? needing(controls) : NULL;
     skinslide_stage_file given = SKINSLIDE_STAGE_FILE_DEFAULT;
-    if (!own || (file && file->size < sizeof file->size))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no file is asked for, or it does not begin with its size");
-    if (file)
-        memcpy(&given, file, file->size < sizeof given ? file->size : sizeof given);
-    skinslide_status status = ss_texture_give(own->own_texture, controls->st, &given, error);
+    if (!own)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no file is asked for");
+    skinslide_status status = ss_take(file, "skinslide_stage_file", &given, sizeof given, error);
+    if (status)
+        return status;
+    status = ss_texture_give(own->own_texture, controls->st, &given, error);
     if (status)
         refuse(own);
     return status;

@@ -274,7 +274,8 @@ static skinslide_status compute(const skinslide_stage_derived *derived, const de
     if (own->output.pose_count == 1)
         return skinslide_normals(&mesh, poses[0].cached, poses[0].slid, own->layout, derived->mesh->left_handed, out, error);
     for (int32_t i = 0; i < own->output.pose_count; i++)
-        samples[i] = (skinslide_sample){poses[i].time / derived->rate, poses[i].cached, poses[i].slid};
+        samples[i] =
+            (skinslide_sample){sizeof(skinslide_sample), poses[i].time / derived->rate, poses[i].cached, poses[i].slid};
     return own->output.pose_count == 2 ? skinslide_velocities(mesh.vertex_count, samples, out, error)
                                        : skinslide_accelerations(mesh.vertex_count, samples, out, error);
 }

@@ -183,13 +183,13 @@ static skinslide_status take_subset(skinslide_stage_patch *patch, const skinslid
     if (!subset)
         return none_there(patch, error);
     skinslide_stage_subset own = SKINSLIDE_STAGE_SUBSET_DEFAULT;
-    if (subset->size < sizeof subset->size)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a subset begins with its size");
-    memcpy(&own, subset, subset->size < sizeof own ? subset->size : sizeof own);
+    skinslide_status status = ss_take(subset, "skinslide_stage_subset", &own, sizeof own, error);
+    if (status)
+        return status;
     if (!own.path)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a subset has no path");
     ss_record indices;
-    skinslide_status status = check_subset(&own, error);
+    status = check_subset(&own, error);
     if (!status)
         status = ss_open(own.indices, &indices, error);
     return status ? status : take_indices(patch, own.path, &indices, error);

@@ -208,7 +208,9 @@ static void say_why_not(search *own) {
 
 static skinslide_status prepare(search *own, const skinslide_stage_prim *prim, skinslide_error *error) {
     own->prim = (skinslide_stage_prim)SKINSLIDE_STAGE_PRIM_DEFAULT;
-    memcpy(&own->prim, prim, prim->size < sizeof own->prim ? prim->size : sizeof own->prim);
+    skinslide_status status = ss_take(prim, "skinslide_stage_prim", &own->prim, sizeof own->prim, error);
+    if (status)
+        return status;
     if (own->prim.schema_count < 0 || own->prim.property_count < 0 || (own->prim.schema_count && !own->prim.schemas) ||
         (own->prim.property_count && !own->prim.properties))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no names of schemas or properties, or a negative count of them");
@@ -234,8 +236,8 @@ static void look(search *own) {
 }
 
 skinslide_status skinslide_stage_find(const skinslide_stage_prim *prim, skinslide_stage_finding **out, skinslide_error *error) {
-    if (!prim || prim->size < sizeof prim->size || !out)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no prim that begins with its size, or no place for the finding");
+    if (!prim || !out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no prim, or no place for the finding");
     search *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);

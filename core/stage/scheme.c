@@ -14,6 +14,7 @@ static bool is_none(const skinslide_stage_mesh *mesh) {
 static void fill(skinslide_stage_mesh *mesh) {
     const ss_taken *taken = mesh->subdivision;
     mesh->subdivided = (skinslide_subdivision){
+        .size = sizeof(skinslide_subdivision),
         .scheme = (skinslide_scheme)taken[SS_ROW_SCHEME].choice,
         .boundary_rule = (skinslide_boundary_rule)taken[SS_ROW_BOUNDARY_RULE].choice,
         .triangle_rule = (skinslide_triangle_rule)taken[SS_ROW_TRIANGLE_RULE].choice,

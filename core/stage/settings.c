@@ -152,12 +152,7 @@ static const ss_input *patch_inputs(void) {
 
 static skinslide_status take_live(const skinslide_stage_live *given, skinslide_stage_live *live, skinslide_error *error) {
     *live = (skinslide_stage_live)SKINSLIDE_STAGE_LIVE_DEFAULT;
-    if (!given)
-        return SKINSLIDE_OK;
-    if (given->size < sizeof given->size)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "what is live begins with its size");
-    memcpy(live, given, given->size < sizeof *live ? given->size : sizeof *live);
-    return SKINSLIDE_OK;
+    return ss_take(given, "skinslide_stage_live", live, sizeof *live, error);
 }
 
 static skinslide_status fill_patch(skinslide_stage_patch *patch, const char *name, const skinslide_stage_live *live,

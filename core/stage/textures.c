@@ -157,7 +157,8 @@ static skinslide_status find_udim_tiles(ss_texture *texture, const float *st, sk
     int32_t *numbers = SS_NEW(&scratch, int32_t, mesh.index_count);
     skinslide_status status = scratch.failed ? ss_out_of_memory(&inner) : SKINSLIDE_OK;
     if (!status)
-        status = skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, face_count, st}, numbers, &inner);
+        status = skinslide_texture_tiles(
+            &(skinslide_texture_layout){sizeof(skinslide_texture_layout), &mesh, faces, face_count, st}, numbers, &inner);
     if (!status)
         list_tiles(texture, numbers, mesh.index_count);
     else
@@ -311,12 +312,13 @@ static skinslide_status sample(ss_texture *texture, const float *st, skinslide_e
     skinslide_texture_tile *tiles = SS_NEW(&scratch, skinslide_texture_tile, texture->held.count);
     skinslide_status status = scratch.failed ? ss_out_of_memory(&inner) : SKINSLIDE_OK;
     for (int32_t i = 0; !status && i < texture->held.count; i++)
-        tiles[i] = (skinslide_texture_tile){texture->held.images[i].image, texture->tiles[i]};
+        tiles[i] = (skinslide_texture_tile){sizeof(skinslide_texture_tile), texture->held.images[i].image, texture->tiles[i]};
     for (int32_t v = 0; v < mesh.vertex_count; v++)
         texture->values[v] = 1;
     if (!status && texture->held.count)
-        status = skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, face_count, st}, tiles, texture->held.count,
-                                          texture->values, &inner);
+        status = skinslide_texture_sample(
+            &(skinslide_texture_layout){sizeof(skinslide_texture_layout), &mesh, faces, face_count, st}, tiles,
+            texture->held.count, texture->values, &inner);
     ss_free(&scratch);
     return status ? of_map(texture, texture->map.file, status, &inner, error) : SKINSLIDE_OK;
 }

@@ -135,7 +135,8 @@ static void take_orientation(skinslide_stage_mesh *mesh, const ss_record *record
 
 skinslide_mesh ss_faces_of(const skinslide_stage_mesh *mesh) {
     const ss_array *counts = &mesh->taken[SS_ROW_FACE_COUNTS].array, *indices = &mesh->taken[SS_ROW_FACE_INDICES].array;
-    return (skinslide_mesh){.vertex_count = mesh->vertex_count,
+    return (skinslide_mesh){.size = sizeof(skinslide_mesh),
+                            .vertex_count = mesh->vertex_count,
                             .face_count = counts->count,
                             .index_count = indices->count,
                             .face_counts = counts->values,
@@ -199,11 +200,14 @@ skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skin
         status = ss_check_refused(mesh_inputs(SKINSLIDE_STAGE_SUBDIVISION), mesh->subdivision, SS_SUBDIVISION_ROWS, error);
     if (!status && (!mesh->has_faces || !mesh->rest))
         status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the faces or the rest points of the mesh were not given");
+    if (!status)
+        status = ss_check_size(out, "skinslide_mesh", error);
     if (status)
         return status;
-    *out = ss_faces_of(mesh);
-    out->rest_points = mesh->rest;
-    out->subdivision = mesh->subdivided.scheme == SKINSLIDE_SCHEME_NONE ? NULL : &mesh->subdivided;
+    skinslide_mesh own = ss_faces_of(mesh);
+    own.rest_points = mesh->rest;
+    own.subdivision = mesh->subdivided.scheme == SKINSLIDE_SCHEME_NONE ? NULL : &mesh->subdivided;
+    ss_give(&own, sizeof own, out);
     return SKINSLIDE_OK;
 }
 

@@ -30,15 +30,13 @@ static const char *name_of_type(const skinslide_value *value) {
     return (value->is_array ? arrays : singles)[value->type];
 }
 
-/* Copies as much of a record as both know, and completes it. */
+/* A caller's record, completed. */
 static skinslide_status complete(const skinslide_value *given, skinslide_value *out, skinslide_error *error) {
     *out = (skinslide_value)SKINSLIDE_VALUE_DEFAULT;
     out->name = "the value";
-    if (!given)
-        return SKINSLIDE_OK;
-    if (given->size < sizeof given->size)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a record begins with its size");
-    memcpy(out, given, given->size < sizeof *out ? given->size : sizeof *out);
+    skinslide_status status = ss_take(given, "skinslide_value", out, sizeof *out, error);
+    if (status || !given)
+        return status;
     if (!out->name)
         out->name = "the value";
     if ((unsigned)out->type > SKINSLIDE_VALUE_OTHER)

@@ -85,7 +85,7 @@ void LiveMesh::say(double time, const std::string &message) {
 
 skinslide_mesh LiveMesh::nativeMesh() const {
     const Topology &topology = _source->topology;
-    skinslide_mesh mesh = {};
+    skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
     mesh.vertex_count = static_cast<int32_t>(topology.vertexCount);
     mesh.face_count = static_cast<int32_t>(topology.faceCount());
     mesh.index_count = static_cast<int32_t>(topology.faceIndices.size());
@@ -313,7 +313,8 @@ VtValue LiveMesh::rate(const Rate &rate, double time) {
             poses.emplace_back();
             if (!pose(at, &poses.back()))
                 return asDeclared(cached);
-            samples.push_back({at / _source->timeCodesPerSecond, floatsOf(poses.back().cached), floatsOf(poses.back().slid)});
+            samples.push_back({sizeof(skinslide_sample), at / _source->timeCodesPerSecond, floatsOf(poses.back().cached),
+                               floatsOf(poses.back().slid)});
         }
         VtVec3fArray rates = positions(cached, rate.attribute.name());
         checkLength(rate.attribute.name(), rates.size(), _source->topology.vertexCount, "points");

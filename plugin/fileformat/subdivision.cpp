@@ -52,7 +52,7 @@ Subdivision::Subdivision(const Prim &mesh)
 }
 
 skinslide_subdivision Subdivision::native() const {
-    skinslide_subdivision native = {};
+    skinslide_subdivision native = SKINSLIDE_SUBDIVISION_DEFAULT;
     native.scheme = static_cast<skinslide_scheme>(_scheme);
     native.boundary_rule = static_cast<skinslide_boundary_rule>(_boundaryRule);
     native.triangle_rule = static_cast<skinslide_triangle_rule>(_triangleRule);

@@ -35,7 +35,7 @@ struct Texture::Corners {
     std::vector<float> st;
 
     skinslide_texture_layout layout() const { // points into this
-        return {&mesh, faces.data(), static_cast<int32_t>(faces.size()), st.data()};
+        return {sizeof(skinslide_texture_layout), &mesh, faces.data(), static_cast<int32_t>(faces.size()), st.data()};
     }
 };
 
@@ -90,7 +90,7 @@ std::vector<float> Texture::sample(const std::string &path, const Corners &corne
     for (int32_t number : tiles(corners, path)) {
         std::string file = number ? TfStringReplace(path, udim, std::to_string(number)) : path;
         images.push_back(read(file, files));
-        used.push_back({images.back().get(), number});
+        used.push_back({sizeof(skinslide_texture_tile), images.back().get(), number});
     }
     std::vector<float> values(corners.mesh.vertex_count);
     skinslide_texture_layout layout = corners.layout();
@@ -170,7 +170,7 @@ Texture::Corners Texture::corners(double time, const Topology &topology, const s
         for (size_t corner = 0; corner < count; corner++)
             std::copy_n(byPoint.begin() + 2 * topology.faceIndices[corner], 2, st.begin() + 2 * corner);
     }
-    skinslide_mesh mesh = {};
+    skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
     mesh.vertex_count = static_cast<int32_t>(topology.vertexCount);
     mesh.face_count = static_cast<int32_t>(topology.faceCount());
     mesh.index_count = static_cast<int32_t>(count);

@@ -32,9 +32,21 @@ def main(declarations: Path, source: Path, records: Path) -> None:
     """Emits a module that gives every function, struct and enum of the headers; calls release the GIL."""
     text, ffi = declarations.read_text(), FFI()
     ffi.cdef(text)
-    ffi.set_source("skinslide._core", "#include <skinslide/picture.h>\n#include <skinslide/stage.h>")
+    source_text = "#include <skinslide/picture.h>\n#include <skinslide/stage.h>\n"
+    for struct in sized_structs(ffi):
+        declaration = f"void {struct}_default({struct} *out)"
+        ffi.cdef(f"{declaration};")
+        source_text += f"static {declaration} {{ const {struct} made = {struct.upper()}_DEFAULT; *out = made; }}\n"
+    ffi.set_source("skinslide._core", source_text)
     ffi.emit_c_code(str(source))
     records.write_text(HEAD + "".join(record(ffi, text, *names) for names in RECORDS.items()))
+
+
+def sized_structs(ffi: FFI) -> list[str]:
+    """Those that may grow, of which the headers have defaults."""
+    kinds = {name: ffi.typeof(name) for name in ffi.list_types()[0]}
+    complete = {name: kind.fields for name, kind in kinds.items() if kind.kind == "struct" and kind.fields}
+    return [name for name, fields in complete.items() if fields[0][0] == "size" and fields[0][1].type.cname == "size_t"]
 
 
 def record(ffi: FFI, text: str, name: str, structs: list[str]) -> str:
@@ -43,7 +55,7 @@ def record(ffi: FFI, text: str, name: str, structs: list[str]) -> str:
         _comment(rf"/\*((?:(?!\*/).)*)\*/\s*typedef struct {struct} \{{(.*?)\}} {struct};", text) for struct in structs
     ]
     above, body = comments[0][0], "".join(body for _, body in comments)
-    fields = [(field, each.type) for struct in structs for field, each in ffi.typeof(struct).fields]
+    fields = [(field, each.type) for struct in structs for field, each in ffi.typeof(struct).fields if field != "size"]
     summary, _, more = _plain(above).partition(". ")
     return "\n".join(
         [

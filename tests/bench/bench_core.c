@@ -11,7 +11,8 @@
 #include <time.h>
 
 enum { FRAMES = 9 };
-static const skinslide_workspace_options exact = {SKINSLIDE_LOOKUP_EXACT, SKINSLIDE_ANY_DEVICE, 0};
+static const skinslide_workspace_options exact = {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_EXACT,
+                                                  SKINSLIDE_ANY_DEVICE, 0};
 
 static double now(void) {
     struct timespec time;

@@ -57,7 +57,7 @@ typedef struct tally {
 /* slid holds the last frame. */
 static tally slide_frames(const skinslide_slider *slider, const test_mesh *mesh, double amount, skinslide_lookup lookup,
                           int32_t side, float *slid) {
-    skinslide_workspace_options options = {lookup, SKINSLIDE_ANY_DEVICE, side};
+    skinslide_workspace_options options = {sizeof(skinslide_workspace_options), lookup, SKINSLIDE_ANY_DEVICE, side};
     skinslide_workspace *workspace = NULL;
     skinslide_error error;
     tally sum = {0};
@@ -109,9 +109,10 @@ static void print_sheet(int32_t columns, double amount) {
 }
 
 int main(void) {
-    const skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 0};
-    skinslide_lookup_info info;
-    skinslide_device_info device;
+    const skinslide_workspace_options options = {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_EGL,
+                                                 SKINSLIDE_ANY_DEVICE, 0};
+    skinslide_lookup_info info = SKINSLIDE_LOOKUP_INFO_DEFAULT;
+    skinslide_device_info device = SKINSLIDE_DEVICE_INFO_DEFAULT;
     skinslide_error error;
     stop_unless(!skinslide_choose_lookup(&options, &info, &device, &error), error.message);
     printf("%s: %s, %s\ntexels 0: lookup exact\n\n", device.device_name, device.renderer, device.driver);

@@ -44,7 +44,7 @@ typedef struct scene {
 /* A sheet with a bump, seen whole; or from near, where most of it is out of sight. The patch is a fifth of it along each side. */
 static scene set_scene(int32_t side, skinslide_scheme scheme, bool near) {
     scene s = {.mesh = quad_grid(side, side)};
-    const skinslide_subdivision own = {.scheme = scheme};
+    const skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = scheme};
     const double up[3] = {0, 1, 0};
     skinslide_mesh view = view_of(&s.mesh);
     int32_t *all = all_faces(&s.mesh), *patch = calloc((size_t)s.mesh.face_count, sizeof *patch), count = 0;
@@ -59,7 +59,8 @@ static scene set_scene(int32_t side, skinslide_scheme scheme, bool near) {
     stop_unless(skinslide_tessellation_create(&view, NULL, patch, count, &s.tessellation, &error), &error);
     s.create = spent() - start;
     const float *poses[2] = {s.before, s.after};
-    const skinslide_subject subject = {.mesh = &view,
+    const skinslide_subject subject = {.size = sizeof(skinslide_subject),
+                                       .mesh = &view,
                                        .faces = near ? patch : all,
                                        .face_count = near ? count : s.mesh.face_count,
                                        .pose_count = 2,
@@ -94,7 +95,11 @@ static double tessellate(const scene *s) {
 static void draw(const scene *s, void *pixels, double seconds[2]) {
     const float grey[3] = {0.2f, 0.2f, 0.2f};
     const skinslide_viewport left = {0, 0, WIDTH / 2, HEIGHT}, right = {WIDTH / 2, 0, WIDTH / 2, HEIGHT};
-    skinslide_figure figure = {.tessellation = s->tessellation, .points = s->before, .squares = 0.5f, .double_sided = 1};
+    skinslide_figure figure = {.size = sizeof(skinslide_figure),
+                               .tessellation = s->tessellation,
+                               .points = s->before,
+                               .squares = 0.5f,
+                               .double_sided = 1};
     skinslide_error error;
     double start = spent();
     stop_unless(skinslide_canvas_clear(s->canvas, grey, &error), &error);

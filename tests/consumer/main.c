@@ -14,13 +14,13 @@ static int fail(const skinslide_error *error) {
 }
 
 int main(void) {
-    skinslide_mesh mesh = {9, 4, 16, counts, indices, rest, NULL};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 9, 4, 16, counts, indices, rest, NULL};
     skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     skinslide_patch_setup patch = {0};
     skinslide_slider *slider;
     skinslide_workspace *workspace;
     skinslide_tessellation *tessellation;
-    skinslide_tessellation_info info;
+    skinslide_tessellation_info info = SKINSLIDE_TESSELLATION_INFO_DEFAULT;
     skinslide_canvas_options options = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
     skinslide_error error;
     float points[27], slid[27];

@@ -35,7 +35,8 @@ static void take_pose(uint64_t *digest, const rig *r, const test_mesh *mesh, uin
 }
 
 static void take_way(uint64_t *digest, const fixture *f, skinslide_patch_setup choices) {
-    static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    static const skinslide_subdivision catmull_clark = {.size = sizeof(skinslide_subdivision),
+                                                        .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
     int32_t *faces = all_faces(&f->mesh);
     choices.name = "all", choices.faces = faces, choices.face_count = f->mesh.face_count;
     skinslide_mesh view = view_of(&f->mesh);

@@ -116,7 +116,8 @@ static void free_scene(scene *s) {
 
 /* Subdivided, so that its patches have limit surfaces and their factor. */
 static skinslide_mesh view_of_scene(const scene *s) {
-    static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    static const skinslide_subdivision catmull_clark = {.size = sizeof(skinslide_subdivision),
+                                                        .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
     skinslide_mesh view = view_of(&s->mesh);
     view.subdivision = &catmull_clark;
     return view;
@@ -140,7 +141,8 @@ static void fail_in_turn(skinslide_status (*run)(void *subject, skinslide_error 
 
 static skinslide_status run_all(void *subject, skinslide_error *error) {
     scene *s = subject;
-    const skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 64};
+    const skinslide_workspace_options options = {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_EGL,
+                                                 SKINSLIDE_ANY_DEVICE, 64};
     skinslide_slider *slider = NULL;
     skinslide_workspace *workspace = NULL;
     const skinslide_limit_place place = {5, 0.5f, 0.5f};
@@ -175,21 +177,21 @@ static void each_allocation_fails_in_turn(void **state) {
 static skinslide_status run_images(void *subject, skinslide_error *error) {
     const float *pixels = subject;
     enum { SIDE = 40 };
-    const skinslide_channel channels[2] = {{"R", pixels}, {"G", pixels}};
+    const skinslide_channel channels[2] = {{sizeof(skinslide_channel), "R", pixels}, {sizeof(skinslide_channel), "G", pixels}};
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {3, 1, 3, counts, indices, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL};
     const float st[6] = {0, 0, 1, 0, 1, 1};
     skinslide_bytes *made = NULL;
     skinslide_image *image = NULL;
     int32_t tiles[3];
     float values[3], texels[16];
-    const skinslide_texture_layout layout = {&mesh, faces, 1, st};
+    const skinslide_texture_layout layout = {sizeof(skinslide_texture_layout), &mesh, faces, 1, st};
     skinslide_status status = skinslide_exr_encode(channels, 2, SIDE, SIDE, SKINSLIDE_WRAP_CLAMP, &made, error);
     if (!status)
         status = skinslide_exr_decode(made->data, made->size, "G", &image, error);
     if (!status)
         status = skinslide_texture_tiles(&layout, tiles, error);
-    const skinslide_texture_tile tile = {image, 0};
+    const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), image, 0};
     if (!status)
         status = skinslide_texture_sample(&layout, &tile, 1, values, error);
     if (!status)
@@ -212,12 +214,17 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     const scene *s = own;
     enum { SIDE = 32 };
     static uint8_t pixels[SIDE * SIDE * 4];
-    const skinslide_canvas_options options = {SIDE, SIDE, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE};
+    const skinslide_canvas_options options = {sizeof(skinslide_canvas_options), SIDE, SIDE, SKINSLIDE_PIXELS_BYTES,
+                                              SKINSLIDE_ANY_DEVICE};
     const skinslide_viewport all = {0, 0, SIDE, SIDE};
     const double up[3] = {0, 1, 0};
     skinslide_mesh view = view_of_scene(s);
-    const skinslide_subject subject = {
-        .mesh = &view, .faces = s->faces, .face_count = 20, .pose_count = 1, .poses = (const float *[]){s->points}};
+    const skinslide_subject subject = {.size = sizeof(skinslide_subject),
+                                       .mesh = &view,
+                                       .faces = s->faces,
+                                       .face_count = 20,
+                                       .pose_count = 1,
+                                       .poses = (const float *[]){s->points}};
     skinslide_tessellation *tessellation = NULL;
     skinslide_outline *outline = NULL;
     skinslide_canvas *canvas = NULL;
@@ -225,7 +232,7 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     skinslide_status status = skinslide_tessellation_create(&view, NULL, s->faces, 20, &tessellation, error);
     if (!status)
         status = skinslide_outline_create(tessellation, s->faces, 10, &outline, error);
-    const skinslide_figure figure = {tessellation, outline, .points = s->points, .squares = 1};
+    const skinslide_figure figure = {sizeof(skinslide_figure), tessellation, outline, .points = s->points, .squares = 1};
     if (!status)
         status = skinslide_frame_faces(&subject, up, 1, &camera, error);
     if (!status)
@@ -258,7 +265,7 @@ typedef struct stage_scene {
 
 static void make_stage_scene(stage_scene *s) {
     const float texel = 0.5f;
-    const skinslide_channel channel = {"R", &texel};
+    const skinslide_channel channel = {sizeof(skinslide_channel), "R", &texel};
     skinslide_error error;
     *s = (stage_scene){.grid = quad_grid(2, 2)};
     assert_ok(skinslide_exr_encode(&channel, 1, 1, 1, SKINSLIDE_WRAP_CLAMP, &s->file, &error), &error);
@@ -454,7 +461,8 @@ static void the_first_limit_may_find_no_memory(void **state) {
 /* 200 faces around a pole have 200 vertices and more each; the 1,800 others have 16, and no room is taken for more. */
 static void a_pole_takes_room_for_itself_alone(void **state) {
     (void)state;
-    static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    static const skinslide_subdivision catmull_clark = {.size = sizeof(skinslide_subdivision),
+                                                        .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
     test_mesh mesh = finger(200, 9);
     skinslide_mesh view = view_of(&mesh);
     view.subdivision = &catmull_clark;

@@ -22,14 +22,18 @@ typedef enum skinslide_wrap {
     SKINSLIDE_WRAP_BLACK     /* 0 */
 } skinslide_wrap;
 
-/* One channel of an image. */
+/* One channel of an image. Start from SKINSLIDE_IMAGE_DEFAULT. */
 typedef struct skinslide_image {
+    size_t size;           /* sizeof(skinslide_image) */
     int32_t width, height; /* of the file's display window */
     skinslide_wrap wrap_s; /* along width */
     skinslide_wrap wrap_t; /* along height */
     const float *pixels;   /* [height][width] from the top row on; 0 where the data window has none; may be not finite */
     const char *channel;   /* its name in the file, after the part's and a dot where there are several parts */
 } skinslide_image;
+
+#define SKINSLIDE_IMAGE_DEFAULT                                                                                                \
+    { sizeof(skinslide_image), 0, 0, SKINSLIDE_WRAP_CLAMP, SKINSLIDE_WRAP_CLAMP, 0, 0 }
 
 /* Reads one channel of an OpenEXR file: scanlines or tiles (the largest level), half or float, of any part that is not deep,
  * compressed as NONE, RLE, ZIPS, ZIP, PIZ or PXR24.
@@ -46,14 +50,19 @@ SKINSLIDE_API skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_image_destroy(skinslide_image *image);
 
-/* A channel to write. */
+/* A channel to write. Start from SKINSLIDE_CHANNEL_DEFAULT. */
 typedef struct skinslide_channel {
+    size_t size;         /* sizeof(skinslide_channel) */
     const char *name;    /* such as "R" */
     const float *pixels; /* [height][width] from the top row on */
 } skinslide_channel;
 
+#define SKINSLIDE_CHANNEL_DEFAULT                                                                                              \
+    { sizeof(skinslide_channel), 0, 0 }
+
+/* What the library made, and destroys. */
 typedef struct skinslide_bytes {
-    int64_t size;
+    int64_t size; /* of data */
     const uint8_t *data;
 } skinslide_bytes;
 
@@ -72,19 +81,28 @@ SKINSLIDE_API void skinslide_bytes_destroy(skinslide_bytes *bytes);
 
 /* ---- Textures: images painted in a mesh's texture coordinates ------------------------------------------------------------ */
 
-/* Where faces of a mesh lie in its texture. */
+/* Where faces of a mesh lie in its texture. Start from SKINSLIDE_TEXTURE_LAYOUT_DEFAULT. */
 typedef struct skinslide_texture_layout {
+    size_t size;                /* sizeof(skinslide_texture_layout) */
     const skinslide_mesh *mesh; /* rest_points are not read */
     const int32_t *faces;       /* [face_count] mesh faces */
     int32_t face_count;
     const float *st; /* [index_count][2] texture coordinates of the mesh's corners, face by face */
 } skinslide_texture_layout;
 
-/* The image of one tile of a UDIM, or the image that covers every texture coordinate by its wraps. */
+#define SKINSLIDE_TEXTURE_LAYOUT_DEFAULT                                                                                       \
+    { sizeof(skinslide_texture_layout), 0, 0, 0, 0 }
+
+/* The image of one tile of a UDIM, or the image that covers every texture coordinate by its wraps. Start from
+ * SKINSLIDE_TEXTURE_TILE_DEFAULT. */
 typedef struct skinslide_texture_tile {
+    size_t size; /* sizeof(skinslide_texture_tile) */
     const skinslide_image *image;
     int32_t number; /* 1001 + u + 10 v, clamped at its border; 0 for the image that covers all, which is then the only one */
 } skinslide_texture_tile;
+
+#define SKINSLIDE_TEXTURE_TILE_DEFAULT                                                                                         \
+    { sizeof(skinslide_texture_tile), 0, 0 }
 
 /* Which tile of a UDIM each corner of some faces lies in. A corner on the border of two tiles lies in its face's.
  *   tiles  out [index_count] 1001 + u + 10 v; 0 at the corners of other faces
@@ -119,7 +137,9 @@ typedef enum skinslide_curve_wrap {
     SKINSLIDE_CURVE_WRAP_PINNED /* B-splines and Catmull-Rom curves reach their first and last points */
 } skinslide_curve_wrap;
 
+/* Curves of a prim. Start from SKINSLIDE_CURVES_DEFAULT. */
 typedef struct skinslide_curves {
+    size_t size; /* sizeof(skinslide_curves) */
     int32_t curve_count;
     const int32_t *vertex_counts; /* [curve_count] control points of each */
     int32_t point_count;          /* the sum of vertex_counts */
@@ -128,6 +148,9 @@ typedef struct skinslide_curves {
     skinslide_curve_basis basis;
     skinslide_curve_wrap wrap;
 } skinslide_curves;
+
+#define SKINSLIDE_CURVES_DEFAULT                                                                                               \
+    { sizeof(skinslide_curves), 0, 0, 0, 0, 0, SKINSLIDE_CURVE_BASIS_LINEAR, SKINSLIDE_CURVE_WRAP_NONPERIODIC }
 
 /* Which edges near a curve count, by their direction and the curve's where it is nearest. Of no length: across. */
 typedef enum skinslide_direction {

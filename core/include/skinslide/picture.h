@@ -20,11 +20,16 @@ extern "C" {
 
 typedef struct skinslide_tessellation skinslide_tessellation;
 
+/* What there is to draw. Start from SKINSLIDE_TESSELLATION_INFO_DEFAULT. */
 typedef struct skinslide_tessellation_info {
+    size_t size; /* sizeof(skinslide_tessellation_info) */
     int32_t vertex_count;
     int32_t triangle_count;
     int32_t flat_faces; /* of a subdivided mesh, drawn flat: OpenSubdiv before 3.5.1 cannot subdivide them */
 } skinslide_tessellation_info;
+
+#define SKINSLIDE_TESSELLATION_INFO_DEFAULT                                                                                    \
+    { sizeof(skinslide_tessellation_info), 0, 0, 0 }
 
 /* Makes a mesh into triangles: the fans of its faces, or, where it is subdivided, grids on its limit surface: 2 by 2 cells a
  * quad, in the patch and two rings of faces around it up to 16 by 16, as 32,768 cells there in all allow. Grids meet without a
@@ -58,8 +63,9 @@ SKINSLIDE_API skinslide_status skinslide_outline_create(const skinslide_tessella
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_outline_destroy(skinslide_outline *outline);
 
-/* A mesh in one pose, and what it is painted with. */
+/* A mesh in one pose, and what it is painted with. Start from SKINSLIDE_FIGURE_DEFAULT. */
 typedef struct skinslide_figure {
+    size_t size; /* sizeof(skinslide_figure) */
     const skinslide_tessellation *tessellation;
     const skinslide_outline *outline; /* of the tessellation; NULL: of the faces that it was made for */
     const float *points;              /* [mesh vertex_count][3] */
@@ -71,6 +77,9 @@ typedef struct skinslide_figure {
     int32_t left_handed;   /* not 0 where the mesh's orientation is leftHanded */
 } skinslide_figure;
 
+#define SKINSLIDE_FIGURE_DEFAULT                                                                                               \
+    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0 }
+
 /* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
 SKINSLIDE_API void skinslide_false_colour(float share, float colour[3]);
 
@@ -81,8 +90,9 @@ typedef struct skinslide_camera {
     double to_screen[16]; /* the projection: to clip space, -1..1 in all of x/w, y/w, z/w */
 } skinslide_camera;
 
-/* Faces of a mesh in some poses. */
+/* Faces of a mesh in some poses. Start from SKINSLIDE_SUBJECT_DEFAULT. */
 typedef struct skinslide_subject {
+    size_t size;                /* sizeof(skinslide_subject) */
     const skinslide_mesh *mesh; /* rest_points are not read */
     const int32_t *faces;       /* [face_count] mesh faces */
     int32_t face_count;         /* > 0 */
@@ -91,6 +101,9 @@ typedef struct skinslide_subject {
     const double *to_world;     /* [pose_count][16], or NULL: poses are in the world */
     int32_t left_handed;        /* not 0 where the mesh's orientation is leftHanded */
 } skinslide_subject;
+
+#define SKINSLIDE_SUBJECT_DEFAULT                                                                                              \
+    { sizeof(skinslide_subject), 0, 0, 0, 0, 0, 0, 0 }
 
 /* A camera that has a subject in sight in each of its poses, as near as all of it fits, and no nearer than half the diagonal of
  * its box, along the picture and into it. It looks against the mean of the faces' normals over the poses; where those cancel
@@ -111,13 +124,14 @@ typedef enum skinslide_pixels {
 
 /* Start from SKINSLIDE_CANVAS_OPTIONS_DEFAULT. */
 typedef struct skinslide_canvas_options {
+    size_t size;           /* sizeof(skinslide_canvas_options) */
     int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit; 67,108,864 in all */
     skinslide_pixels pixels;
     int32_t device; /* as in skinslide_workspace_options */
 } skinslide_canvas_options;
 
 #define SKINSLIDE_CANVAS_OPTIONS_DEFAULT                                                                                       \
-    { 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE }
+    { sizeof(skinslide_canvas_options), 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE }
 
 typedef struct skinslide_canvas skinslide_canvas;
 

@@ -17,12 +17,19 @@
  *     A function that can fail returns a status; *out and output arrays are written only on success. The last parameter, an
  *     optional skinslide_error of the caller's, then says in one line what is wrong and names the element. No function prints,
  *     aborts or keeps state of the process; every function may be called on several threads at once for different objects.
+ *
+ * Versions
+ *     A struct that begins with its size may grow at its end. Start from its default, which sets the size and what is not 0; an
+ *     array's elements all have the size of the first. A library that knows more members than a program was compiled with takes
+ *     their defaults; one that knows fewer fails with UNSUPPORTED where one of them is not 0, and answers them with 0. Structs
+ *     without a size stay as they are.
  */
 #ifndef SKINSLIDE_H
 #define SKINSLIDE_H
 
 #ifndef SKINSLIDE_CDEF /* defined only where the declarations are read by a binding generator */
 #include <skinslide/version.h>
+#include <stddef.h>
 #include <stdint.h>
 #ifdef __cplusplus
 extern "C" {
@@ -90,8 +97,9 @@ typedef enum skinslide_triangle_rule {
     SKINSLIDE_TRIANGLE_RULE_SMOOTH /* Catmull-Clark only */
 } skinslide_triangle_rule;
 
-/* The subdivision of a mesh. Sharpness is >= 0, and 10 or more is infinitely sharp. */
+/* The subdivision of a mesh. Sharpness is >= 0, and 10 or more is infinitely sharp. Start from SKINSLIDE_SUBDIVISION_DEFAULT. */
 typedef struct skinslide_subdivision {
+    size_t size; /* sizeof(skinslide_subdivision) */
     skinslide_scheme scheme;
     skinslide_boundary_rule boundary_rule;
     skinslide_triangle_rule triangle_rule;
@@ -108,8 +116,15 @@ typedef struct skinslide_subdivision {
     const int32_t *hole_indices; /* [hole_count] mesh faces that are not rendered */
 } skinslide_subdivision;
 
-/* A polygon mesh at rest. Counts and indices are those of UsdGeomMesh. */
+#define SKINSLIDE_SUBDIVISION_DEFAULT                                                                                          \
+    {                                                                                                                          \
+        sizeof(skinslide_subdivision), SKINSLIDE_SCHEME_NONE, SKINSLIDE_BOUNDARY_RULE_EDGE_AND_CORNER,                         \
+            SKINSLIDE_TRIANGLE_RULE_CATMULL_CLARK, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                             \
+    }
+
+/* A polygon mesh at rest. Counts and indices are those of UsdGeomMesh. Start from SKINSLIDE_MESH_DEFAULT. */
 typedef struct skinslide_mesh {
+    size_t size; /* sizeof(skinslide_mesh) */
     int32_t vertex_count;
     int32_t face_count;
     int32_t index_count;                      /* the sum of face_vertex_counts */
@@ -118,6 +133,9 @@ typedef struct skinslide_mesh {
     const float *rest_points;                 /* [vertex_count][3] the pose in which nothing slides */
     const skinslide_subdivision *subdivision; /* NULL: none */
 } skinslide_mesh;
+
+#define SKINSLIDE_MESH_DEFAULT                                                                                                 \
+    { sizeof(skinslide_mesh), 0, 0, 0, 0, 0, 0, 0 }
 
 /* Where the outer boundary of a patch goes (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
 typedef enum skinslide_boundary {
@@ -265,6 +283,7 @@ typedef enum skinslide_lookup {
 
 /* How a workspace works. Start from SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT. */
 typedef struct skinslide_workspace_options {
+    size_t size; /* sizeof(skinslide_workspace_options) */
     skinslide_lookup lookup;
     int32_t device; /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
                            order, hardware before software, then its surfaceless platform, then its default display */
@@ -275,16 +294,21 @@ typedef struct skinslide_workspace_options {
 } skinslide_workspace_options;
 
 #define SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT                                                                                    \
-    { SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE, 0 }
+    { sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE, 0 }
 
-/* What options come to on this machine. */
+/* What options come to on this machine. Start from SKINSLIDE_LOOKUP_INFO_DEFAULT. */
 typedef struct skinslide_lookup_info {
+    size_t size;             /* sizeof(skinslide_lookup_info) */
     skinslide_lookup lookup; /* EGL or EXACT */
     char reason[480];        /* why AUTO came to EXACT, or how the device failed last; one line, or empty */
 } skinslide_lookup_info;
 
-/* A device that draws. */
+#define SKINSLIDE_LOOKUP_INFO_DEFAULT                                                                                          \
+    { sizeof(skinslide_lookup_info), SKINSLIDE_LOOKUP_EXACT, "" }
+
+/* A device that draws. Start from SKINSLIDE_DEVICE_INFO_DEFAULT. */
 typedef struct skinslide_device_info {
+    size_t size;                /* sizeof(skinslide_device_info) */
     int32_t device;             /* its number, or SKINSLIDE_ANY_DEVICE where the display has none, or there is no device */
     int32_t software;           /* 1: a software rasteriser */
     int32_t largest_resolution; /* texels along a side, the device's limit; 0: there is no device */
@@ -292,6 +316,9 @@ typedef struct skinslide_device_info {
     char renderer[128];         /* as the driver names the device */
     char driver[128];           /* its version */
 } skinslide_device_info;
+
+#define SKINSLIDE_DEVICE_INFO_DEFAULT                                                                                          \
+    { sizeof(skinslide_device_info), SKINSLIDE_ANY_DEVICE, 0, 0, "", "", "" }
 
 /* Says what options come to; makes a context and drops it where that must be tried, with the largest texture that a workspace
  * with these options could ask for.
@@ -445,12 +472,16 @@ SKINSLIDE_API skinslide_status skinslide_normals(const skinslide_mesh *mesh, con
                                                  skinslide_normals_layout layout, int32_t left_handed, float *normals,
                                                  skinslide_error *error);
 
-/* Points of one time, for rates of change. */
+/* Points of one time, for rates of change. Start from SKINSLIDE_SAMPLE_DEFAULT. */
 typedef struct skinslide_sample {
+    size_t size; /* sizeof(skinslide_sample) */
     double seconds;
     const float *cached; /* [vertex_count][3] */
     const float *slid;   /* [vertex_count][3] */
 } skinslide_sample;
+
+#define SKINSLIDE_SAMPLE_DEFAULT                                                                                               \
+    { sizeof(skinslide_sample), 0, 0, 0 }
 
 /* Adds to the cache's velocities, units per second, the rate at which the displacement (slid - cached) changes from the first
  * sample to the second. Vertices whose displacement does not change keep their bits.

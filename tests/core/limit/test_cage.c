@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const skinslide_subdivision catmull_clark = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
-static const skinslide_subdivision loop = {.scheme = SKINSLIDE_SCHEME_LOOP};
+static const skinslide_subdivision catmull_clark = {.size = sizeof(skinslide_subdivision),
+                                                    .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+static const skinslide_subdivision loop = {.size = sizeof(skinslide_subdivision), .scheme = SKINSLIDE_SCHEME_LOOP};
 
 /* A slider of one set-up over some faces of a subdivided mesh. */
 static rig subdivided_rig(const test_mesh *mesh, const skinslide_subdivision *own, skinslide_patch_setup setup) {
@@ -104,7 +105,7 @@ static void held_vertices_keep_their_bits(void **state) {
 static void auto_is_limit_where_the_mesh_is_subdivided(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(8, 8);
-    const skinslide_subdivision none = {0};
+    const skinslide_subdivision none = SKINSLIDE_SUBDIVISION_DEFAULT;
     const skinslide_subdivision *subdivisions[3] = {NULL, &none, &catmull_clark};
     float *points = bumped(&mesh, 4, 4, 2, 3);
     for (int i = 0; i < 3; i++) {
@@ -246,7 +247,7 @@ static void every_fixture_stays_within_the_bound(void **state) {
     for (int32_t i = 0; i < FIXTURE_COUNT; i++)
         for (int scheme = 1; scheme <= 3; scheme++) {
             fixture f = make_fixture(i);
-            skinslide_subdivision own = {.scheme = (skinslide_scheme)scheme};
+            skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = (skinslide_scheme)scheme};
             if (scheme == SKINSLIDE_SCHEME_LOOP && scheme_for(&f.mesh) != &loop)
                 own.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK, own.triangle_rule = SKINSLIDE_TRIANGLE_RULE_SMOOTH;
             rig limit = subdivided_rig(&f.mesh, &own, chosen(SKINSLIDE_INTERPOLATION_LIMIT));

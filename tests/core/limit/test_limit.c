@@ -105,7 +105,7 @@ static double extent(const test_mesh *mesh) {
 
 /* Seen at corners: 3.4e-4 of the mesh on random disks, rounding on all others. */
 static void check_smooth(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
-    skinslide_subdivision own = {.scheme = scheme};
+    skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = scheme};
     compare(mesh, &own, (i < 8 ? 1e-6 : 1e-3) * extent(mesh));
     own.triangle_rule = SKINSLIDE_TRIANGLE_RULE_SMOOTH;
     compare(mesh, &own, (i < 8 ? 1e-6 : 1e-3) * extent(mesh));
@@ -224,7 +224,7 @@ static void point_at(const surfaces_of_patch *s, const ss_place *place, double o
 /* A point of a side is the same from both faces, whatever polygons they are. Fitted patches meet along curves that agree to
  * 2e-3 of the mesh. */
 static void check_sides(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
-    skinslide_subdivision own = {.scheme = scheme};
+    skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = scheme};
     if (i == 1 || i == 2 || i == 5) /* closed: no patch */
         return;
     surfaces_of_patch s = surfaces_for(mesh, &own, 3);
@@ -255,7 +255,7 @@ static void surfaces_meet_along_sides(void **state) {
 
 /* Corners go to corners and middles to middles, exactly as parameters of the face name them. */
 static void check_corners(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
-    skinslide_subdivision own = {.scheme = scheme};
+    skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = scheme};
     if (i == 1 || i == 2 || i == 5)
         return;
     surfaces_of_patch s = surfaces_for(mesh, &own, 4);
@@ -347,7 +347,8 @@ static void bad_subdivisions_are_named(void **state) {
     const float one[1] = {1}, negative[1] = {-1}, nan[1] = {NAN}, two[2] = {1, 1};
     const int32_t hole[1] = {9}, first[1] = {0};
 #define CREASE(...)                                                                                                            \
-    &(skinslide_subdivision){CC,                                                                                               \
+    &(skinslide_subdivision){sizeof(skinslide_subdivision),                                                                    \
+                             CC,                                                                                               \
                              .crease_count = 1,                                                                                \
                              .crease_lengths = lengths,                                                                        \
                              .crease_index_count = 2,                                                                          \
@@ -391,7 +392,7 @@ static void bad_places_are_named(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(2, 2);
     skinslide_mesh view = view_of(&mesh);
-    skinslide_subdivision own = {CC};
+    skinslide_subdivision own = {sizeof(skinslide_subdivision), CC};
     float out[3];
     skinslide_error error;
     skinslide_limit_place place = {16, 0, 0};
@@ -414,7 +415,7 @@ static void faces_that_cannot_be_subdivided(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(2, 2);
     skinslide_mesh view = view_of(&mesh);
-    skinslide_subdivision own = {CC};
+    skinslide_subdivision own = {sizeof(skinslide_subdivision), CC};
     const skinslide_limit_place place = {0, 0, 0};
     float out[3];
     skinslide_error error;
@@ -437,7 +438,7 @@ static void what_crashes_opensubdiv_is_refused(void **state) {
     static const float sharpness[1] = {2};
     test_mesh mesh = copy_mesh(7, 2, counts, indices, &points[0][0]);
     skinslide_mesh view = view_of(&mesh);
-    skinslide_subdivision own = {CC};
+    skinslide_subdivision own = {sizeof(skinslide_subdivision), CC};
     const skinslide_limit_place place = {0, 0, 0};
     float out[3];
     skinslide_error error;

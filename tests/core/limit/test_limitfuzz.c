@@ -61,7 +61,8 @@ static void roll_sharp(jumble *j, dice *d) {
 
 static void roll_jumble(jumble *j, uint64_t seed) {
     dice d = {seed};
-    *j = (jumble){.mesh = {.vertex_count = 4 + roll_below(&d, MOST_VERTICES - 4), .face_count = 1 + roll_below(&d, 14)}};
+    *j = (jumble){.mesh = SKINSLIDE_MESH_DEFAULT, .own = SKINSLIDE_SUBDIVISION_DEFAULT};
+    j->mesh.vertex_count = 4 + roll_below(&d, MOST_VERTICES - 4), j->mesh.face_count = 1 + roll_below(&d, 14);
     j->own.scheme = (skinslide_scheme)(1 + roll_below(&d, 3));
     j->own.boundary_rule = (skinslide_boundary_rule)roll_below(&d, 3);
     j->own.triangle_rule = (skinslide_triangle_rule)roll_below(&d, 2);

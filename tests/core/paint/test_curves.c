@@ -23,7 +23,7 @@ static void list_edges(int32_t edges[EDGES][2]) {
 
 static skinslide_curves curve_of(const float *points, const int32_t *count, skinslide_curve_basis basis,
                                  skinslide_curve_wrap wrap) {
-    return (skinslide_curves){1, count, *count, points, NULL, basis, wrap};
+    return (skinslide_curves){sizeof(skinslide_curves), 1, count, *count, points, NULL, basis, wrap};
 }
 
 static skinslide_status find(const skinslide_curves *curves, double distance, skinslide_direction direction, uint8_t *near) {
@@ -84,7 +84,7 @@ static void curves_come_by_a_matrix(void **state) {
     const int32_t counts[2] = {2, 3};
     const double matrix[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 2, 0, 1};
     const skinslide_curves curves = {
-        2, counts, 5, points, matrix, SKINSLIDE_CURVE_BASIS_LINEAR, SKINSLIDE_CURVE_WRAP_NONPERIODIC};
+        sizeof(skinslide_curves), 2, counts, 5, points, matrix, SKINSLIDE_CURVE_BASIS_LINEAR, SKINSLIDE_CURVE_WRAP_NONPERIODIC};
     /* From (0, 2) to (2, 2), and from (0, 0) to (0, 4). */
     assert_int_equal(count_near(&curves, 0.1, SKINSLIDE_DIRECTION_ANY), 2 + SIDE);
     assert_int_equal(count_near(&curves, 0.1, SKINSLIDE_DIRECTION_ALONG), 2 + SIDE);

@@ -304,7 +304,7 @@ static void what_is_written_is_read_back(void **state) {
     float a[WIDTH * HEIGHT], b[WIDTH * HEIGHT];
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         a[i] = (float)sin(i), b[i] = i % 7 ? (float)i * 1e30f : INFINITY;
-    const skinslide_channel channels[] = {{"stretch", a}, {"R", b}};
+    const skinslide_channel channels[] = {{sizeof(skinslide_channel), "stretch", a}, {sizeof(skinslide_channel), "R", b}};
     skinslide_bytes *made = NULL, *again = NULL;
     for (skinslide_wrap wrap = SKINSLIDE_WRAP_CLAMP; wrap <= SKINSLIDE_WRAP_BLACK; wrap++) {
         assert_ok(skinslide_exr_encode(channels, 2, WIDTH, HEIGHT, wrap, &made, &error), &error);
@@ -333,7 +333,7 @@ static void small_images_are_read_back(void **state) {
         float pixels[64];
         for (int32_t k = 0; k < width * height; k++)
             pixels[k] = values[(kind + k * step) % 5];
-        const skinslide_channel channel = {"R", pixels};
+        const skinslide_channel channel = {sizeof(skinslide_channel), "R", pixels};
         skinslide_bytes *made = NULL;
         skinslide_image *image = NULL;
         assert_ok(skinslide_exr_encode(&channel, 1, width, height, SKINSLIDE_WRAP_CLAMP, &made, &error), &error);
@@ -348,8 +348,10 @@ static void what_cannot_be_written(void **state) {
     (void)state;
     float pixel = 1;
     skinslide_bytes *made = NULL;
-    const skinslide_channel good = {"R", &pixel}, unnamed = {"", &pixel}, empty = {"R", NULL};
-    const skinslide_channel twice[] = {{"R", &pixel}, {"R", &pixel}}, named = {"a name of two and thirty letters!", &pixel};
+    const skinslide_channel good = {sizeof(skinslide_channel), "R", &pixel}, unnamed = {sizeof(skinslide_channel), "", &pixel},
+                            empty = {sizeof(skinslide_channel), "R", NULL};
+    const skinslide_channel twice[] = {{sizeof(skinslide_channel), "R", &pixel}, {sizeof(skinslide_channel), "R", &pixel}},
+                            named = {sizeof(skinslide_channel), "a name of two and thirty letters!", &pixel};
     assert_fails(skinslide_exr_encode(&good, 0, 1, 1, 0, &made, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no channels to write");
     assert_fails(skinslide_exr_encode(&good, 1, 0, 1, 0, &made, &error), &error, SKINSLIDE_BAD_ARGUMENT,

@@ -11,18 +11,26 @@ static skinslide_error error;
 /* Two texels by two: 1 2 on top, 3 4 below. Texel centres lie at s, t of 0.25 and 0.75, and t grows upwards. */
 static const float four[4] = {1, 2, 3, 4};
 
+/* Good until the next. */
+static const skinslide_texture_layout *layout_of(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count,
+                                                 const float *st) {
+    static skinslide_texture_layout layout;
+    layout = (skinslide_texture_layout){sizeof layout, mesh, faces, face_count, st};
+    return &layout;
+}
+
 static skinslide_image image_of(const float *pixels, int32_t width, int32_t height, skinslide_wrap wrap) {
-    return (skinslide_image){width, height, wrap, wrap, pixels, "R"};
+    return (skinslide_image){sizeof(skinslide_image), width, height, wrap, wrap, pixels, "R"};
 }
 
 /* The value at one texture coordinate: that of a triangle with all corners there. */
 static double value_at(const skinslide_image *image, double s, double t) {
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {3, 1, 3, counts, indices, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL};
     const float st[6] = {(float)s, (float)t, (float)s, (float)t, (float)s, (float)t};
-    const skinslide_texture_tile tile = {image, 0};
+    const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), image, 0};
     float values[3];
-    assert_ok(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 1, st}, &tile, 1, values, &error), &error);
+    assert_ok(skinslide_texture_sample(layout_of(&mesh, faces, 1, st), &tile, 1, values, &error), &error);
     assert_near(values[1], values[0], 0);
     return values[0];
 }
@@ -102,15 +110,15 @@ static void vertices_take_the_mean_of_their_corners(void **state) {
     skinslide_mesh mesh = view_of(&grid);
     mesh.rest_points = NULL;
     skinslide_image image = image_of(four, 2, 2, SKINSLIDE_WRAP_CLAMP);
-    const skinslide_texture_tile tile = {&image, 0};
+    const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), &image, 0};
     float st[16], values[6];
     for (int c = 0; c < 8; c++)
         st[2 * c] = c < 4 ? 0.25f : 0.75f, st[2 * c + 1] = 0.75f; /* a seam between the faces */
     const int32_t both[2] = {1, 0}, second[1] = {1};
-    assert_ok(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, both, 2, st}, &tile, 1, values, &error), &error);
+    assert_ok(skinslide_texture_sample(layout_of(&mesh, both, 2, st), &tile, 1, values, &error), &error);
     const float means[6] = {1, 1.5f, 2, 1, 1.5f, 2}, of_second[6] = {1, 2, 2, 1, 2, 2};
     assert_same_bytes(values, means, sizeof means);
-    assert_ok(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, second, 1, st}, &tile, 1, values, &error), &error);
+    assert_ok(skinslide_texture_sample(layout_of(&mesh, second, 1, st), &tile, 1, values, &error), &error);
     assert_same_bytes(values, of_second, sizeof of_second);
     free_mesh(&grid);
 }
@@ -135,15 +143,15 @@ static void corners_on_borders_are_in_their_faces_tile(void **state) {
     float st[24];
     int32_t tiles[12];
     strip_st(3, 0, 0, st);
-    assert_ok(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 2, st}, tiles, &error), &error);
+    assert_ok(skinslide_texture_tiles(layout_of(&mesh, faces, 2, st), tiles, &error), &error);
     for (int c = 0; c < 12; c++)
         assert_int_equal(tiles[c], c < 4 ? 1001 : c < 8 ? 0 : 1003);
     strip_st(3, 7, 12, st);
-    assert_ok(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 2, st}, tiles, &error), &error);
+    assert_ok(skinslide_texture_tiles(layout_of(&mesh, faces, 2, st), tiles, &error), &error);
     assert_int_equal(tiles[0], 1001 + 7 + 120);
     assert_int_equal(tiles[8], 1001 + 9 + 120);
     strip_st(3, 0.5f, 0, st); /* faces across borders: each corner where it is */
-    assert_ok(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 1, st}, tiles, &error), &error);
+    assert_ok(skinslide_texture_tiles(layout_of(&mesh, faces, 1, st), tiles, &error), &error);
     assert_int_equal(tiles[0], 1001);
     assert_int_equal(tiles[1], 1002);
     free_mesh(&grid);
@@ -155,14 +163,15 @@ static void tiles_are_sampled_each_for_itself(void **state) {
     skinslide_mesh mesh = view_of(&grid);
     const float tens[4] = {10, 20, 30, 40};
     skinslide_image a = image_of(four, 2, 2, SKINSLIDE_WRAP_PERIODIC), b = image_of(tens, 2, 2, SKINSLIDE_WRAP_BLACK);
-    const skinslide_texture_tile tiles[2] = {{&b, 1002}, {&a, 1001}};
+    const skinslide_texture_tile tiles[2] = {{sizeof(skinslide_texture_tile), &b, 1002},
+                                             {sizeof(skinslide_texture_tile), &a, 1001}};
     const int32_t faces[2] = {0, 1};
     float st[16], values[6];
     strip_st(2, 0, 0, st);
-    assert_ok(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 2, st}, tiles, 2, values, &error), &error);
+    assert_ok(skinslide_texture_sample(layout_of(&mesh, faces, 2, st), tiles, 2, values, &error), &error);
     const float expected[6] = {3, (4 + 30) / 2.0f, 40, 1, (2 + 10) / 2.0f, 20};
     assert_same_bytes(values, expected, sizeof expected);
-    assert_fails(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 2, st}, tiles, 1, values, &error), &error,
+    assert_fails(skinslide_texture_sample(layout_of(&mesh, faces, 2, st), tiles, 1, values, &error), &error,
                  SKINSLIDE_BAD_CONTROL, "face 0 has st (0, 0), but there is no tile 1001");
     free_mesh(&grid);
 }
@@ -174,27 +183,24 @@ static void coordinates_that_cannot_be(void **state) {
     test_mesh grid = quad_grid(2, 1);
     skinslide_mesh mesh = view_of(&grid);
     skinslide_image image = image_of(four, 2, 2, SKINSLIDE_WRAP_CLAMP);
-    const skinslide_texture_tile tile = {&image, 0};
+    const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), &image, 0};
     const int32_t faces[2] = {0, 1}, outside[1] = {2};
     int32_t numbers[8] = {7, 7, 7, 7, 7, 7, 7, 7};
     float st[16], values[6];
     strip_st(2, 8.5f, 0, st);
-    assert_fails(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 2, st}, numbers, &error), &error,
-                 SKINSLIDE_BAD_CONTROL, "face 1 has st (10.5, 0), which is in no UDIM tile");
+    assert_fails(skinslide_texture_tiles(layout_of(&mesh, faces, 2, st), numbers, &error), &error, SKINSLIDE_BAD_CONTROL,
+                 "face 1 has st (10.5, 0), which is in no UDIM tile");
     assert_int_equal(numbers[0], 7);
     strip_st(2, 0, -0.5f, st);
-    assert_int_equal(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 1, st}, numbers, &error),
-                     SKINSLIDE_BAD_CONTROL);
+    assert_int_equal(skinslide_texture_tiles(layout_of(&mesh, faces, 1, st), numbers, &error), SKINSLIDE_BAD_CONTROL);
     strip_st(2, 0, 899.5f, st);
-    assert_int_equal(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 1, st}, numbers, &error),
-                     SKINSLIDE_BAD_CONTROL);
+    assert_int_equal(skinslide_texture_tiles(layout_of(&mesh, faces, 1, st), numbers, &error), SKINSLIDE_BAD_CONTROL);
     st[9] = NAN;
-    assert_fails(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 2, st}, &tile, 1, values, &error), &error,
+    assert_fails(skinslide_texture_sample(layout_of(&mesh, faces, 2, st), &tile, 1, values, &error), &error,
                  SKINSLIDE_BAD_CONTROL, "face 1 has st (1, nan)");
-    assert_int_equal(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces + 1, 1, st}, numbers, &error),
-                     SKINSLIDE_BAD_CONTROL);
-    assert_ok(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 1, st}, &tile, 1, values, &error), &error);
-    assert_fails(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, outside, 1, st}, &tile, 1, values, &error), &error,
+    assert_int_equal(skinslide_texture_tiles(layout_of(&mesh, faces + 1, 1, st), numbers, &error), SKINSLIDE_BAD_CONTROL);
+    assert_ok(skinslide_texture_sample(layout_of(&mesh, faces, 1, st), &tile, 1, values, &error), &error);
+    assert_fails(skinslide_texture_sample(layout_of(&mesh, outside, 1, st), &tile, 1, values, &error), &error,
                  SKINSLIDE_BAD_ARGUMENT, "face 2 is not one of the mesh's 2");
     free_mesh(&grid);
 }
@@ -207,11 +213,11 @@ static void texels_that_are_no_numbers(void **state) {
     assert_near(value_at(&image, 0.25, 0.5), 2, 0);
     assert_near(value_at(&image, 0.1, 0.9), 1, 0);
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {3, 1, 3, counts, indices, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL};
     const float st[6] = {0.25f, 0.5f, 0.25f, 0.5f, 0.5f, 0.75f};
-    const skinslide_texture_tile tile = {&image, 0};
+    const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), &image, 0};
     float values[3] = {5, 5, 5};
-    assert_fails(skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 1, st}, &tile, 1, values, &error), &error,
+    assert_fails(skinslide_texture_sample(layout_of(&mesh, faces, 1, st), &tile, 1, values, &error), &error,
                  SKINSLIDE_BAD_CONTROL, "the map is nan at st (0.5, 0.75), on face 0");
     assert_near(values[0], 5, 0);
 }
@@ -221,13 +227,16 @@ static void bad_arguments(void **state) {
     test_mesh grid = quad_grid(1, 1);
     skinslide_mesh mesh = view_of(&grid);
     skinslide_image image = image_of(four, 2, 2, SKINSLIDE_WRAP_CLAMP), empty = image_of(four, 0, 2, 0);
-    const skinslide_texture_tile good = {&image, 0}, none = {NULL, 0}, no_texels = {&empty, 0}, odd = {&image, 1000};
-    const skinslide_texture_tile mixed[2] = {{&image, 1001}, {&image, 0}};
+    const skinslide_texture_tile good = {sizeof(skinslide_texture_tile), &image, 0},
+                                 none = {sizeof(skinslide_texture_tile), NULL, 0},
+                                 no_texels = {sizeof(skinslide_texture_tile), &empty, 0},
+                                 odd = {sizeof(skinslide_texture_tile), &image, 1000};
+    const skinslide_texture_tile mixed[2] = {{sizeof(skinslide_texture_tile), &image, 1001},
+                                             {sizeof(skinslide_texture_tile), &image, 0}};
     const int32_t faces[1] = {0};
     float st[8] = {0}, values[4];
     int32_t tiles[4];
-#define SAMPLE(st, tiles, count, values)                                                                                       \
-    skinslide_texture_sample(&(skinslide_texture_layout){&mesh, faces, 1, st}, tiles, count, values, &error)
+#define SAMPLE(st, tiles, count, values) skinslide_texture_sample(layout_of(&mesh, faces, 1, st), tiles, count, values, &error)
     assert_int_equal(SAMPLE(st, &good, 1, values), SKINSLIDE_OK);
     assert_int_equal(SAMPLE(NULL, &good, 1, values), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(SAMPLE(st, &good, 1, NULL), SKINSLIDE_BAD_ARGUMENT);
@@ -237,13 +246,10 @@ static void bad_arguments(void **state) {
     assert_int_equal(SAMPLE(st, &no_texels, 1, values), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(SAMPLE(st, &odd, 1, values), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(SAMPLE(st, mixed, 2, values), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 1, st}, NULL, &error),
-                     SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, NULL, 1, st}, tiles, &error),
-                     SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_texture_tiles(layout_of(&mesh, faces, 1, st), NULL, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_texture_tiles(layout_of(&mesh, NULL, 1, st), tiles, &error), SKINSLIDE_BAD_ARGUMENT);
     mesh.index_count = 3;
-    assert_int_equal(skinslide_texture_tiles(&(skinslide_texture_layout){&mesh, faces, 1, st}, tiles, &error),
-                     SKINSLIDE_BAD_MESH);
+    assert_int_equal(skinslide_texture_tiles(layout_of(&mesh, faces, 1, st), tiles, &error), SKINSLIDE_BAD_MESH);
     free_mesh(&grid);
 }
 

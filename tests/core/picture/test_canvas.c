@@ -9,7 +9,7 @@
 #include <string.h>
 
 static skinslide_canvas_options sized(int32_t width, int32_t height, skinslide_pixels pixels) {
-    return (skinslide_canvas_options){width, height, pixels, SKINSLIDE_ANY_DEVICE};
+    return (skinslide_canvas_options){sizeof(skinslide_canvas_options), width, height, pixels, SKINSLIDE_ANY_DEVICE};
 }
 
 static skinslide_canvas *canvas_of(skinslide_canvas_options options) {
@@ -35,18 +35,23 @@ typedef struct scene {
 
 static scene set_scene(int32_t side, int32_t width, int32_t height, bool subdivided) {
     scene s = {.mesh = quad_grid(side, side), .all = {0, 0, width, height}};
-    const skinslide_subdivision own = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    const skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
     const double up[3] = {0, 1, 0};
     skinslide_mesh view = view_of(&s.mesh);
     skinslide_error error;
     int32_t *faces = all_faces(&s.mesh);
     const float *poses[1] = {s.mesh.points};
-    const skinslide_subject subject = {
-        .mesh = &view, .faces = faces, .face_count = s.mesh.face_count, .poses = poses, .pose_count = 1};
+    const skinslide_subject subject = {.size = sizeof(skinslide_subject),
+                                       .mesh = &view,
+                                       .faces = faces,
+                                       .face_count = s.mesh.face_count,
+                                       .poses = poses,
+                                       .pose_count = 1};
     view.subdivision = subdivided ? &own : NULL;
     assert_ok(skinslide_tessellation_create(&view, NULL, faces, 1, &s.tessellation, &error), &error);
     assert_ok(skinslide_frame_faces(&subject, up, (double)width / height, &s.camera, &error), &error);
-    s.figure = (skinslide_figure){.tessellation = s.tessellation, .points = s.mesh.points, .squares = 1};
+    s.figure = (skinslide_figure){
+        .size = sizeof(skinslide_figure), .tessellation = s.tessellation, .points = s.mesh.points, .squares = 1};
     free(faces);
     return s;
 }
@@ -344,7 +349,7 @@ static void refused(skinslide_canvas *canvas, const scene *s, skinslide_status s
 static void bad_canvases_are_named(void **state) {
     (void)state;
     skinslide_canvas *canvas = NULL;
-    skinslide_device_info info;
+    skinslide_device_info info = SKINSLIDE_DEVICE_INFO_DEFAULT;
     skinslide_error error;
     skinslide_canvas_options options = sized(4, 4, (skinslide_pixels)2);
     const float grey[3] = {0.5f, 0.5f, 0.5f}, nan[3] = {0, NAN, 0}, endless[3] = {0, 0, INFINITY};

@@ -21,7 +21,7 @@ static skinslide_canvas *canvases[MOST_CANVASES];
 
 /* Cleared to blue. A test draws on several only where they differ in size or pixels. */
 static skinslide_canvas *canvas_of(int32_t width, int32_t height, skinslide_pixels pixels) {
-    const skinslide_canvas_options options = {width, height, pixels, SKINSLIDE_ANY_DEVICE};
+    const skinslide_canvas_options options = {sizeof(skinslide_canvas_options), width, height, pixels, SKINSLIDE_ANY_DEVICE};
     skinslide_error error;
     int i = 0;
     while (i < MOST_CANVASES && canvases[i] &&
@@ -89,7 +89,8 @@ static sheet sheet_of(int32_t columns, int32_t rows, const double box[4], int32_
         p[0] = (float)(box[0] + (box[2] - box[0]) * p[0] / columns), p[1] = (float)(box[1] + (box[3] - box[1]) * p[1] / rows);
     }
     assert_ok(skinslide_tessellation_create(&view, st ? at : NULL, faces, inside, &s.tessellation, &error), &error);
-    s.figure = (skinslide_figure){.tessellation = s.tessellation, .points = s.mesh.points, .squares = 1};
+    s.figure = (skinslide_figure){
+        .size = sizeof(skinslide_figure), .tessellation = s.tessellation, .points = s.mesh.points, .squares = 1};
     s.values = calloc((size_t)s.mesh.vertex_count, sizeof *s.values);
     free(at), free(faces);
     return s;
@@ -368,7 +369,7 @@ static void where_normals_cancel_colours_are_plain(void **state) {
     static const int32_t counts[2] = {3, 3}, indices[6] = {0, 1, 2, 0, 2, 1}, faces[2] = {0, 1};
     static const float values[3] = {0.4f, 0.4f, 0.4f};
     const double sizes[3] = {1, 1e-9, 1e9};
-    const skinslide_mesh mesh = {3, 2, 6, counts, indices, &points[0][0], NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 2, 6, counts, indices, &points[0][0], NULL};
     skinslide_tessellation *both;
     skinslide_error error;
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 2, &both, &error), &error);
@@ -377,7 +378,7 @@ static void where_normals_cancel_colours_are_plain(void **state) {
         double s = 1 / sizes[i], back[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1};
         for (int k = 0; k < 9; k++)
             (&scaled[0][0])[k] = (float)(sizes[i] * (&points[0][0])[k]);
-        skinslide_figure figure = {both, NULL, &scaled[0][0], back, values, 0, 1, 1, 1, 0};
+        skinslide_figure figure = {sizeof(skinslide_figure), both, NULL, &scaled[0][0], back, values, 0, 1, 1, 1, 0};
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
         draw(canvas, &figure);
         read_all(canvas, pixels);
@@ -550,7 +551,8 @@ static void from_inside_nothing_smears(void **state) {
                 clips[v][k] = at[0] * camera.to_screen[k] + at[1] * camera.to_screen[4 + k] + at[2] * camera.to_screen[8 + k] +
                               at[3] * camera.to_screen[12 + k];
         }
-        skinslide_figure figure = {.tessellation = box, .points = mesh.points, .squares = 0.01f, .double_sided = 1};
+        skinslide_figure figure = {
+            .size = sizeof(skinslide_figure), .tessellation = box, .points = mesh.points, .squares = 0.01f, .double_sided = 1};
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
         draw_in(canvas, whole, &figure, camera);
         read_all(canvas, pixels);
@@ -581,14 +583,15 @@ static void compare_parts(test_mesh mesh, const skinslide_subdivision *own) {
     skinslide_mesh view = view_of(&mesh);
     int32_t *faces = all_faces(&mesh), differ = 0;
     const float *poses[1] = {mesh.points};
-    const skinslide_subject subject = {&view, faces, mesh.face_count, 1, poses, NULL, 0};
+    const skinslide_subject subject = {sizeof(skinslide_subject), &view, faces, mesh.face_count, 1, poses, NULL, 0};
     skinslide_tessellation *drawn;
     skinslide_camera camera;
     skinslide_error error;
     view.subdivision = own;
     assert_ok(skinslide_tessellation_create(&view, NULL, faces, 2, &drawn, &error), &error);
     assert_ok(skinslide_frame_faces(&subject, up, (double)WIDTH / HEIGHT, &camera, &error), &error);
-    const skinslide_figure figure = {.tessellation = drawn, .points = mesh.points, .squares = 0.5f, .double_sided = 1};
+    const skinslide_figure figure = {
+        .size = sizeof(skinslide_figure), .tessellation = drawn, .points = mesh.points, .squares = 0.5f, .double_sided = 1};
     skinslide_canvas *canvas = canvas_of(PARTS * WIDTH, PARTS * HEIGHT, SKINSLIDE_PIXELS_BYTES);
     draw_in(canvas, (skinslide_viewport){0, 0, PARTS * WIDTH, PARTS * HEIGHT}, &figure, camera);
     read_all(canvas, all);
@@ -617,7 +620,7 @@ static void parts_of_pictures_are_theirs(void **state) {
     (void)state;
     test_mesh sharp = torus(16, 12);
     creased c = crease_at_random(&sharp, SKINSLIDE_SCHEME_CATMULL_CLARK, 2);
-    const skinslide_subdivision smooth = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    const skinslide_subdivision smooth = {.size = sizeof(skinslide_subdivision), .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
     compare_parts(sharp, &c.own);
     compare_parts(brick_wall(9, 10), &smooth);
     compare_parts(finger(12, 20), NULL);
@@ -629,7 +632,7 @@ static void parts_of_pictures_are_theirs(void **state) {
 static void draw_torus(double scale, const double shift[3], uint8_t *levels) {
     test_mesh mesh = torus(16, 12);
     skinslide_mesh view = view_of(&mesh);
-    const skinslide_subdivision own = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+    const skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
     const double up[3] = {0, 1, 0}, matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, shift[0], shift[1], shift[2], 1};
     skinslide_tessellation *drawn;
     skinslide_error error;
@@ -638,12 +641,16 @@ static void draw_torus(double scale, const double shift[3], uint8_t *levels) {
         mesh.points[i] = (float)(scale * mesh.points[i]);
     view.subdivision = &own;
     const float *poses[1] = {mesh.points};
-    const skinslide_subject subject = {&view, faces, 20, 1, poses, matrix, 0};
+    const skinslide_subject subject = {sizeof(skinslide_subject), &view, faces, 20, 1, poses, matrix, 0};
     skinslide_camera camera;
     skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
     assert_ok(skinslide_frame_faces(&subject, up, (double)WIDTH / HEIGHT, &camera, &error), &error);
     assert_ok(skinslide_tessellation_create(&view, NULL, faces, 20, &drawn, &error), &error);
-    skinslide_figure figure = {.tessellation = drawn, .points = mesh.points, .to_world = matrix, .squares = (float)(3 / scale)};
+    skinslide_figure figure = {.size = sizeof(skinslide_figure),
+                               .tessellation = drawn,
+                               .points = mesh.points,
+                               .to_world = matrix,
+                               .squares = (float)(3 / scale)};
     draw_in(canvas, whole, &figure, camera);
     read_all(canvas, levels);
     skinslide_tessellation_destroy(drawn);

@@ -34,7 +34,7 @@ static void fill_scene(scene *s, test_mesh mesh, uint64_t seed) {
     for (int32_t v = 0; v < mesh.vertex_count; v++)
         s->values[v] = (float)roll_between(&d, -2, 5);
     read_points(s);
-    s->layout = (skinslide_texture_layout){&s->view, s->faces, mesh.face_count, s->st};
+    s->layout = (skinslide_texture_layout){sizeof(skinslide_texture_layout), &s->view, s->faces, mesh.face_count, s->st};
 }
 
 static void free_scene(scene *s) {
@@ -83,12 +83,12 @@ static int32_t *coverage_of(const whole_triangle *triangles, int32_t count) {
                 st[2 * (4 + 3 * i + k) + axis] = (float)triangles[i].corner[k][axis] / (TILE * UNITS);
         }
     }
-    const skinslide_mesh mesh = {7, 1 + count, 4 + 3 * count, face_counts, indices, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 7, 1 + count, 4 + 3 * count, face_counts, indices, NULL, NULL};
     int32_t *covered = calloc(TILE * TILE, sizeof *covered);
     float texels[TILE * TILE];
     for (int32_t f = 1; f <= count; f++) {
         const int32_t faces[2] = {0, f};
-        const skinslide_texture_layout layout = {&mesh, faces, 2, st};
+        const skinslide_texture_layout layout = {sizeof(skinslide_texture_layout), &mesh, faces, 2, st};
         assert_ok(skinslide_map_draw(&layout, 1001, values, TILE, texels, NULL, &error), &error);
         for (int32_t i = 0; i < TILE * TILE; i++)
             covered[i] += texels[(TILE - 1 - i / TILE) * TILE + i % TILE] == 1;

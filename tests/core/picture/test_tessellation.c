@@ -335,7 +335,7 @@ static void check_triangles(made *m) {
             check_winding(m, grid, (const uint32_t(*)[3])m->own->triangles + first, count);
         first += count;
     }
-    skinslide_tessellation_info info;
+    skinslide_tessellation_info info = SKINSLIDE_TESSELLATION_INFO_DEFAULT;
     assert_ok(skinslide_tessellation_describe(m->own, &info, &m->error), &m->error);
     assert_int_equal(info.triangle_count, first);
     assert_int_equal(info.vertex_count, m->own->vertex_count);
@@ -425,7 +425,7 @@ static void without_st_places_at_rest(void **state) {
         for (int32_t v = 0; v < mesh.vertex_count; v++)
             mesh.points[3 * v] += (float)(far * 65536);
         skinslide_mesh view = view_of(&mesh);
-        skinslide_subdivision own = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+        skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
         skinslide_tessellation *made_of;
         ss_tessellation_work work = {0};
         skinslide_error error;
@@ -522,7 +522,7 @@ static void fine_cells_are_bounded(void **state) {
     for (int32_t side = 5; side <= 90; side += 17) {
         test_mesh mesh = quad_grid(side, side);
         skinslide_mesh view = view_of(&mesh);
-        skinslide_subdivision own = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+        skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
         skinslide_tessellation *all;
         skinslide_error error;
         int32_t *faces = all_faces(&mesh);
@@ -593,7 +593,8 @@ static void refused_faces_are_flat(void **state) {
     static const int32_t counts[2] = {5, 5}, indices[10] = {0, 1, 6, 4, 3, 1, 2, 5, 4, 6};
     static const int32_t lengths[1] = {2}, crease[2] = {1, 6}, faces[2] = {0, 1};
     static const float sharpness[1] = {2};
-    const skinslide_subdivision own = {.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK,
+    const skinslide_subdivision own = {.size = sizeof(skinslide_subdivision),
+                                       .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK,
                                        .crease_count = 1,
                                        .crease_index_count = 2,
                                        .crease_sharpness_count = 1,
@@ -601,7 +602,7 @@ static void refused_faces_are_flat(void **state) {
                                        .crease_indices = crease,
                                        .crease_sharpnesses = sharpness};
     const double origin[3] = {0, 0, 0};
-    skinslide_mesh mesh = {7, 2, 10, counts, indices, &points[0][0], &own};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 7, 2, 10, counts, indices, &points[0][0], &own};
     skinslide_tessellation *flat;
     ss_tessellation_work work = {0};
     skinslide_error error;
@@ -626,7 +627,7 @@ static void any_faces_can_be_drawn(void **state) {
     static const float points[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}};
     static const int32_t counts[6] = {4, 4, 3, 2, 4, 0}, faces[7] = {0, 1, 2, 1, 3, 4, 5};
     static const int32_t indices[17] = {0, 1, 2, 3, 0, 1, 5, 4, 0, 1, 4, 0, 1, 2, 2, 3, 0};
-    skinslide_mesh mesh = {6, 6, 17, counts, indices, &points[0][0], NULL};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 6, 6, 17, counts, indices, &points[0][0], NULL};
     skinslide_tessellation *drawn;
     skinslide_error error;
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 7, &drawn, &error), &error);
@@ -644,7 +645,7 @@ static void bad_arguments_are_named(void **state) {
     test_mesh mesh = quad_grid(2, 2);
     skinslide_mesh view = view_of(&mesh);
     skinslide_tessellation *out = NULL;
-    skinslide_tessellation_info info;
+    skinslide_tessellation_info info = SKINSLIDE_TESSELLATION_INFO_DEFAULT;
     skinslide_error error;
     float st[32] = {0}, nan = mesh.points[4];
     const int32_t past[1] = {4}, below[1] = {-1}, first[1] = {0};

@@ -26,8 +26,12 @@ static void start_framing(framed *f, test_mesh mesh, bool posed) {
     f->poses[0] = f->mesh.points;
     for (int i = 1; i < 3 && posed; i++)
         f->poses[i] = random_pose(&f->mesh, (uint64_t)i);
-    f->subject = (skinslide_subject){
-        .mesh = &f->view, .faces = f->faces, .face_count = mesh.face_count, .pose_count = posed ? 3 : 1, .poses = f->poses};
+    f->subject = (skinslide_subject){.size = sizeof(skinslide_subject),
+                                     .mesh = &f->view,
+                                     .faces = f->faces,
+                                     .face_count = mesh.face_count,
+                                     .pose_count = posed ? 3 : 1,
+                                     .poses = f->poses};
 }
 
 static void end_framing(framed *f) {

@@ -12,7 +12,7 @@
 
 static skinslide_workspace *workspace_at(const skinslide_slider *slider, skinslide_lookup lookup, int32_t resolution,
                                          ss_egl_loader load) {
-    skinslide_workspace_options options = {lookup, SKINSLIDE_ANY_DEVICE, resolution};
+    skinslide_workspace_options options = {sizeof(skinslide_workspace_options), lookup, SKINSLIDE_ANY_DEVICE, resolution};
     skinslide_workspace *workspace = NULL;
     skinslide_error error;
     assert_ok(ss_workspace_create(slider, &options, load, &workspace, &error), &error);
@@ -131,7 +131,7 @@ static skinslide_lookup_info choose(scene *s, skinslide_lookup lookup, fault pla
                                     skinslide_device_info *device) {
     plan_fault(planned);
     skinslide_workspace *workspace = workspace_at(s->exact.slider, lookup, 0, load);
-    skinslide_lookup_info info;
+    skinslide_lookup_info info = SKINSLIDE_LOOKUP_INFO_DEFAULT;
     skinslide_error error;
     assert_ok(skinslide_workspace_lookup(workspace, &info, device, &error), &error);
     skinslide_patch_result result = expect_same(s, workspace);
@@ -148,7 +148,7 @@ static void auto_is_egl_on_hardware_only(void **state) {
     fault software = {.devices = 1, .shown = "EGL_MESA_device_software"};
     fault incomplete = hardware;
     incomplete.call = "glCheckFramebufferStatus", incomplete.times = -1, incomplete.code = GL_FRAMEBUFFER_UNSUPPORTED;
-    skinslide_device_info device;
+    skinslide_device_info device = SKINSLIDE_DEVICE_INFO_DEFAULT;
     skinslide_lookup_info info = choose(&s, automatic, hardware, load_with_faults, &device);
     assert_int_equal(info.lookup, SKINSLIDE_LOOKUP_EGL);
     assert_string_equal(device.renderer, "A GPU");
@@ -173,9 +173,10 @@ static void auto_is_egl_on_hardware_only(void **state) {
 static void a_resolution_above_the_limit(void **state) {
     (void)state;
     scene s = scene_of(4);
-    skinslide_workspace_options options = {SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE, 600};
+    skinslide_workspace_options options = {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE,
+                                           600};
     skinslide_workspace *workspace;
-    skinslide_lookup_info info;
+    skinslide_lookup_info info = SKINSLIDE_LOOKUP_INFO_DEFAULT;
     skinslide_error error;
     plan_fault((fault){.devices = 1, .shown = "EGL_EXT_device_drm", .renderer = "A GPU", .largest = 512});
     assert_ok(ss_workspace_create(s.exact.slider, &options, load_with_faults, &workspace, &error), &error);
@@ -207,11 +208,12 @@ static void egl_asked_for_and_not_to_be_had(void **state) {
 
 static void options_that_cannot_be(void **state) {
     (void)state;
-    skinslide_lookup_info info;
-    skinslide_device_info device;
+    skinslide_lookup_info info = SKINSLIDE_LOOKUP_INFO_DEFAULT;
+    skinslide_device_info device = SKINSLIDE_DEVICE_INFO_DEFAULT;
     skinslide_error error;
-    skinslide_workspace_options options[3] = {
-        {(skinslide_lookup)3, -1, 0}, {SKINSLIDE_LOOKUP_AUTO, -2, 0}, {SKINSLIDE_LOOKUP_EXACT, -1, -1}};
+    skinslide_workspace_options options[3] = {{sizeof(skinslide_workspace_options), (skinslide_lookup)3, -1, 0},
+                                              {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_AUTO, -2, 0},
+                                              {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_EXACT, -1, -1}};
     const char *texts[] = {"no such lookup: 3", "no such device: -2", "no such resolution: -1"};
     for (int i = 0; i < 3; i++)
         assert_fails(skinslide_choose_lookup(&options[i], &info, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, texts[i]);
@@ -225,7 +227,7 @@ static void options_that_cannot_be(void **state) {
 /* ---- In the middle of a shot ---- */
 
 static skinslide_lookup_info lookup_of(const skinslide_workspace *workspace) {
-    skinslide_lookup_info info;
+    skinslide_lookup_info info = SKINSLIDE_LOOKUP_INFO_DEFAULT;
     skinslide_error error;
     assert_ok(skinslide_workspace_lookup(workspace, &info, NULL, &error), &error);
     return info;
@@ -361,7 +363,7 @@ typedef struct job {
 /* What a thread finds is told afterwards: cmocka's assertions are for the thread of the test. */
 static void *slide_on_thread(void *argument) {
     job *own = argument;
-    skinslide_workspace_options options = {SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 0};
+    skinslide_workspace_options options = {sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_EGL, SKINSLIDE_ANY_DEVICE, 0};
     skinslide_workspace *workspace = own->workspace;
     size_t bytes = POINT_BYTES(&own->s->mesh);
     float *slid = malloc(bytes);

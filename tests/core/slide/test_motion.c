@@ -23,7 +23,7 @@ static void make_moves(moves *m) {
             m->cached[i][k] = (float)(i + k);
             m->slid[i][k] = m->cached[i][k] + (k == 2 ? 5 : (k + 1) * displacement); /* the third does not change */
         }
-        m->samples[i] = (skinslide_sample){times[i], m->cached[i], m->slid[i]};
+        m->samples[i] = (skinslide_sample){sizeof(skinslide_sample), times[i], m->cached[i], m->slid[i]};
     }
 }
 

@@ -347,7 +347,7 @@ static void bad_workspaces(void **state) {
     rig r = rig_of(&mesh, setup_of(NULL, 0));
     skinslide_workspace *const untouched = (skinslide_workspace *)&mesh, *workspace = untouched;
     skinslide_error error;
-    skinslide_workspace_options options = {(skinslide_lookup)3, SKINSLIDE_ANY_DEVICE, 0};
+    skinslide_workspace_options options = {sizeof(skinslide_workspace_options), (skinslide_lookup)3, SKINSLIDE_ANY_DEVICE, 0};
     assert_fails(skinslide_workspace_create(r.slider, &options, &workspace, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no such lookup: 3");
     assert_fails(skinslide_workspace_create(NULL, NULL, &workspace, &error), &error, SKINSLIDE_BAD_ARGUMENT,

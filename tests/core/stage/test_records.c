@@ -144,7 +144,7 @@ static void give_files(dice *d, const test_mesh *mesh, skinslide_stage_controls 
     expect_said(skinslide_stage_controls_take_coordinates(controls, &st.value, &error));
     free_value(&st);
     const float texel = (float)roll_between(d, -0.5, 2);
-    const skinslide_channel channel = {"R", &texel};
+    const skinslide_channel channel = {sizeof(skinslide_channel), "R", &texel};
     skinslide_bytes *bytes = NULL;
     assert_ok(skinslide_exr_encode(&channel, 1, 1, 1, SKINSLIDE_WRAP_CLAMP, &bytes, &error), &error);
     for (int32_t i = 0; skinslide_stage_controls_need(controls) && i < MOST_NUMBERS; i++) {
@@ -239,7 +239,7 @@ static void random_records(void **state) {
         dice d = {(uint64_t)round + 1};
         test_mesh mesh = round % 2 ? quad_grid(1 + roll_below(&d, 2), 1 + roll_below(&d, 2)) : annulus(3, 1);
         skinslide_stage_mesh *wild = NULL, *scene = scene_mesh(&mesh);
-        skinslide_mesh out;
+        skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
         assert_ok(skinslide_stage_mesh_create(&wild, &error), &error);
         take_all(&d, &mesh, SKINSLIDE_STAGE_MESH, take_mesh, wild, 0);
         expect_said(skinslide_stage_mesh_get(wild, &out, &error));

@@ -44,7 +44,7 @@ static void each_candidate_counts(void **state) {
                                         "primvars:__Pref"};
     for (int32_t own = 0; own <= 5; own++) {
         skinslide_stage_mesh *mesh = triangle();
-        skinslide_mesh out;
+        skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
         for (int32_t i = 0; i < 5; i++)
             assert_ok(mesh_takes(mesh, candidates[i], i >= own ? rest_of(names[i], (float)i) : nothing_of(names[i]), &error),
                       &error);
@@ -59,7 +59,7 @@ static void each_candidate_counts(void **state) {
 static void a_bad_candidate_is_not_passed_over(void **state) {
     (void)state;
     skinslide_stage_mesh *mesh = triangle();
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     skinslide_value uniform = painted_as(rest_of("primvars:rest", 0), "uniform");
     assert_ok(mesh_takes(mesh, "restPoints", nothing_of("skinSlide:restPoints"), &error), &error);
     assert_fails(mesh_takes(mesh, "rest", uniform, &error), &error, SKINSLIDE_BAD_POINTS,
@@ -110,7 +110,7 @@ static void none_at_all_says_what_to_author(void **state) {
     static const char text[] = "has no rest points: points has samples but no default value, so author the rest pose as "
                                "skinSlide:restPoints or primvars:rest (point3f[], vertex)";
     skinslide_stage_mesh *mesh = triangle();
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     assert_fails(take_default(mesh, nothing_of("points")), &error, SKINSLIDE_BAD_POINTS, text);
     assert_int_equal(skinslide_stage_mesh_get(mesh, &out, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_fails(mesh_takes(mesh, "restPoints", blocked_of("skinSlide:restPoints"), &error), &error, SKINSLIDE_BAD_POINTS,

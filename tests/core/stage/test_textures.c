@@ -44,7 +44,7 @@ static skinslide_value st_of(float scale) {
 
 /* An image of one value, as a file. */
 static skinslide_bytes *file_of(float value) {
-    const skinslide_channel channel = {"R", &value};
+    const skinslide_channel channel = {sizeof(skinslide_channel), "R", &value};
     skinslide_bytes *bytes = NULL;
     assert_ok(skinslide_exr_encode(&channel, 1, 1, 1, SKINSLIDE_WRAP_CLAMP, &bytes, &error), &error);
     return bytes;

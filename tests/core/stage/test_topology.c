@@ -27,7 +27,7 @@ static void a_mesh_comes_back(void **state) {
     (void)state;
     test_mesh grid = quad_grid(3, 2);
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     assert_ok(skinslide_stage_mesh_get(mesh, &out, &error), &error);
     assert_int_equal(out.vertex_count, grid.vertex_count);
     assert_int_equal(out.face_count, grid.face_count);
@@ -74,7 +74,7 @@ static void bad_faces_are_named(void **state) {
 /* A mesh gives nothing while a value is refused or missing, and what takes its place mends it. */
 static void what_was_refused_may_be_given_again(void **state) {
     (void)state;
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     skinslide_stage_mesh *mesh = empty_mesh();
     assert_int_equal(skinslide_stage_mesh_get(mesh, &out, &error), SKINSLIDE_BAD_ARGUMENT);
     takes(mesh, "points", POINTS("points", 3));
@@ -158,7 +158,7 @@ static void subdivision_comes_back(void **state) {
     (void)state;
     test_mesh grid = quad_grid(2, 2);
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     take_surface_of_nothing(mesh); /* USD's fallbacks */
     assert_ok(skinslide_stage_mesh_get(mesh, &out, &error), &error);
     assert_int_equal(out.subdivision->scheme, SKINSLIDE_SCHEME_CATMULL_CLARK);
@@ -190,7 +190,7 @@ static void bad_subdivision_is_named(void **state) {
     (void)state;
     test_mesh grid = quad_grid(2, 2);
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     assert_fails(surface_takes(mesh, "subdivisionScheme", text_of("subdivisionScheme", "butterfly")), &error,
                  SKINSLIDE_BAD_MESH, "subdivisionScheme is 'butterfly'; it must be one of none, catmullClark, loop, bilinear");
     assert_fails(skinslide_stage_mesh_get(mesh, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT, "subdivisionScheme was refused");
@@ -215,7 +215,7 @@ static void a_mesh_of_no_scheme_has_no_subdivision(void **state) {
     (void)state;
     test_mesh grid = quad_grid(2, 2);
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
-    skinslide_mesh out;
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     assert_ok(surface_takes(mesh, "subdivisionScheme", text_of("subdivisionScheme", "none")), &error);
     assert_ok(surface_takes(mesh, "interpolateBoundary", text_of("interpolateBoundary", "nonsense")), &error);
     assert_ok(skinslide_stage_mesh_get(mesh, &out, &error), &error);

@@ -119,10 +119,12 @@ static void records_of_other_versions(void **state) {
     struct {
         skinslide_value value;
         char more[64];
-    } newer = {FLOATS("x", 1, 2), {1}};
+    } newer = {FLOATS("x", 1, 2), {0}};
     const skinslide_value indices = INTS("x:indices", 1, 0);
     newer.value.size = sizeof newer;
     assert_ok(skinslide_value_floats(&newer.value, out, &error), &error);
+    newer.more[0] = 1;
+    assert_int_equal(skinslide_value_floats(&newer.value, out, &error), SKINSLIDE_UNSUPPORTED);
     skinslide_value older = indexed_by(FLOATS("x", 1, 2), &indices);
     older.size = offsetof(skinslide_value, indices);
     assert_ok(skinslide_value_floats(&older, out, &error), &error);
@@ -133,7 +135,8 @@ static void records_that_are_none(void **state) {
     (void)state;
     skinslide_value bad = FLOATS("x", 1);
     bad.size = 0;
-    assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "a record begins with its size");
+    assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "skinslide_value: its size is ...");
     bad = FLOATS("x", 1), bad.count = -1;
     assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "x: the record has no data, or a count of none");

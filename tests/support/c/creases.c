@@ -7,7 +7,7 @@
 creased crease_at_random(const test_mesh *mesh, skinslide_scheme scheme, uint64_t seed) {
     dice d = {seed};
     size_t room = (size_t)mesh->index_count;
-    creased c = {.own = {.scheme = scheme}};
+    creased c = {.own = {.size = sizeof c.own, .scheme = scheme}};
     c.lengths = malloc(room * sizeof *c.lengths), c.indices = malloc(2 * room * sizeof *c.indices);
     c.sharpnesses = malloc(room * sizeof *c.sharpnesses);
     c.corners = malloc(room * sizeof *c.corners), c.corner_sharpnesses = malloc(room * sizeof *c.corner_sharpnesses);

@@ -64,8 +64,8 @@ void free_mesh(test_mesh *mesh) {
 }
 
 skinslide_mesh view_of(const test_mesh *mesh) {
-    return (skinslide_mesh){
-        mesh->vertex_count, mesh->face_count, mesh->index_count, mesh->face_counts, mesh->face_indices, mesh->points, NULL};
+    return (skinslide_mesh){sizeof(skinslide_mesh), mesh->vertex_count, mesh->face_count, mesh->index_count,
+                            mesh->face_counts,      mesh->face_indices, mesh->points,     NULL};
 }
 
 static void put_point(test_mesh *mesh, int32_t vertex, double x, double y, double z) {

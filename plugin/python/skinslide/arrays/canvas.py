@@ -16,6 +16,7 @@ from skinslide.arrays.native import (
     call,
     device_number,
     enum_value,
+    new,
     read,
     writable,
 )
@@ -69,7 +70,7 @@ class Tessellation:
         call(lib.skinslide_tessellation_create, ffi.addressof(mesh), corners, chosen, len(faces), out)
         self.handle = ffi.gc(out[0], lib.skinslide_tessellation_destroy)
         self.vertex_count = len(rest_points)
-        info = ffi.new("skinslide_tessellation_info *")
+        info = new("tessellation_info")
         call(lib.skinslide_tessellation_describe, self.handle, info)
         self.triangle_count, self.flat_faces = info.triangle_count, info.flat_faces
 
@@ -103,8 +104,9 @@ class Canvas:
 
     def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None):
         out = ffi.new("skinslide_canvas **")
-        settings = (width, height, enum_value("pixels", pixels, ""), device_number(device))
-        options = _struct("canvas_options", settings)
+        options = new("canvas_options")
+        options.pixels, options.device = enum_value("pixels", pixels, ""), device_number(device)
+        _set(options, "canvas options", width=width, height=height)
         call(lib.skinslide_canvas_create, options, out)
         self._handle = ffi.gc(out[0], lib.skinslide_canvas_destroy)
         self.width, self.height = width, height
@@ -113,7 +115,7 @@ class Canvas:
     @property
     def device(self) -> DeviceInfo:
         """What it is drawn with."""
-        info = ffi.new("skinslide_device_info *")
+        info = new("device_info")
         call(lib.skinslide_canvas_device, self._handle, info)
         return read(DeviceInfo, info[0])
 
@@ -137,7 +139,7 @@ class Canvas:
         left_handed: bool = False,
     ) -> None:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale."""
-        native, figure = Arguments(), ffi.new("skinslide_figure *")
+        native, figure = Arguments(), new("figure")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
         figure.tessellation = tessellation.handle
         figure.outline = ffi.NULL if outline is None else outline.handle
@@ -147,7 +149,7 @@ class Canvas:
         if scale:
             figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
             figure.lowest, figure.highest = scale.lowest, scale.highest
-        call(lib.skinslide_canvas_draw, self._handle, _struct("viewport", viewport), _camera(camera), figure)
+        call(lib.skinslide_canvas_draw, self._handle, _viewport(viewport), _camera(camera), figure)
 
     def read(self) -> np.ndarray:
         """(height, width, 4), from the top row on."""
@@ -167,7 +169,7 @@ def frame_faces(
     left_handed: bool = False,
 ) -> Camera:
     """A camera that has faces in sight in each of the poses, (V, 3), with to_world (poses, 4, 4)."""
-    native, subject, found = Arguments(), ffi.new("skinslide_subject *"), ffi.new("skinslide_camera *")
+    native, subject, found = Arguments(), new("subject"), ffi.new("skinslide_camera *")
     if not len(poses):
         raise SliderError("BAD_ARGUMENT", "no faces, or no poses")
     mesh = native.mesh(*shape, poses[0])
@@ -199,9 +201,16 @@ def _camera(camera: Camera) -> Any:
     return made
 
 
-def _struct(name: str, values: Sequence[int]) -> Any:
-    """Of whole numbers; SliderError where one is too large for it."""
+def _viewport(viewport: Viewport) -> Any:
+    made = ffi.new("skinslide_viewport *")
+    _set(made, "viewport", **viewport._asdict())
+    return made
+
+
+def _set(struct: Any, what: str, **numbers: int) -> None:
+    """Whole numbers; SliderError where one is too large."""
     try:
-        return ffi.new(f"skinslide_{name} *", tuple(values))
+        for name, number in numbers.items():
+            setattr(struct, name, number)
     except OverflowError as error:
-        raise SliderError("BAD_ARGUMENT", f"{name.replace('_', ' ')}: {error}") from error
+        raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error

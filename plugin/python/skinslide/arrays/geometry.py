@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, call, enum_value, writable
+from skinslide.arrays.native import Arguments, call, enum_value, new, writable
 
 AXES = ("x", "y", "z")
 
@@ -30,7 +30,7 @@ def edges_near(
     direction  "along": at 45 degrees or less to the curve; "across": at more; or "any"
     """
     native, near = Arguments(), np.zeros(len(edges), np.uint8)
-    given = ffi.new("skinslide_curves *")
+    given = new("curves")
     given.curve_count, given.point_count = len(curves.vertex_counts), len(curves.points)
     given.vertex_counts = native.pointer(curves.vertex_counts, np.int32, (-1,), "curve vertex counts")
     given.points = native.points(curves.points, -1, "curve points")

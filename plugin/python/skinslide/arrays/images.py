@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, call, enum_value, text, token_of, writable
+from skinslide.arrays.native import Arguments, call, enum_value, new, new_array, text, token_of, writable
 
 FIRST_TILE = 1001
 LARGEST_MAP: int = lib.SKINSLIDE_LARGEST_MAP  # texels along each side of a map drawn
@@ -51,7 +51,7 @@ def encode_exr(channels: Mapping[str, np.ndarray], wrap: str = "clamp") -> bytes
     """An OpenEXR file of float channels, each (height, width) from the top row on."""
     native = Arguments()
     shape = next((np.shape(pixels) for pixels in channels.values()), (0, 0))
-    given = ffi.new("skinslide_channel[]", len(channels))
+    given = new_array("channel", len(channels))
     names = [ffi.new("char[]", name.encode()) for name in channels]
     for target, name, (word, pixels) in zip(given, names, channels.items(), strict=True):
         target.name = name
@@ -75,8 +75,8 @@ def sample_map(corners: Corners, images: Mapping[int, Image]) -> np.ndarray:
     images  by the number of their tile; {0: image} covers every texture coordinate by its wraps
     """
     native, values = Arguments(), np.empty(corners.vertex_count, np.float32)
-    tiles = ffi.new("skinslide_texture_tile[]", len(images))
-    structs = ffi.new("skinslide_image[]", len(images))
+    tiles = new_array("texture_tile", len(images))
+    structs = new_array("image", len(images))
     for i, (number, image) in enumerate(images.items()):
         structs[i].pixels = native.pointer(image.pixels, np.float32, (-1, -1), f"tile {number}")
         structs[i].height, structs[i].width = image.pixels.shape
@@ -97,7 +97,7 @@ def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_
 
 def _layout(native: Arguments, corners: Corners) -> Any:
     """Points are not read."""
-    layout = ffi.new("skinslide_texture_layout *")
+    layout = new("texture_layout")
     mesh = native.mesh(corners.face_counts, corners.face_indices, np.zeros((corners.vertex_count, 3), np.float32))
     layout.mesh = ffi.addressof(mesh)
     layout.faces, layout.face_count = native.pointer(corners.faces, np.int32, (-1,), "faces"), len(corners.faces)

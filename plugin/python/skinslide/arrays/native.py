@@ -80,7 +80,23 @@ class Lookup:
         method, device = enum_value("lookup", self.method, ""), device_number(self.device)
         if not 0 <= self.resolution < 2**31:
             raise SliderError("BAD_ARGUMENT", f"no such resolution: {self.resolution}")
-        return ffi.new("skinslide_workspace_options *", (method, device, self.resolution))
+        options = new("workspace_options")
+        options.lookup, options.device, options.resolution = method, device, self.resolution
+        return options
+
+
+def new(struct: str) -> Any:
+    """A struct of the headers, as its default has it."""
+    made = ffi.new(f"skinslide_{struct} *")
+    getattr(lib, f"skinslide_{struct}_default")(made)
+    return made
+
+
+def new_array(struct: str, count: int) -> Any:
+    made = ffi.new(f"skinslide_{struct}[]", count)
+    for i in range(count):
+        getattr(lib, f"skinslide_{struct}_default")(made + i)
+    return made
 
 
 def device_number(device: int | None) -> int:
@@ -131,7 +147,7 @@ class Arguments:
         points: np.ndarray,
         subdivision: Subdivision | None = None,
     ) -> Any:
-        mesh = ffi.new("skinslide_mesh *")
+        mesh = new("mesh")
         self._alive.append(mesh)
         mesh.face_counts = self.pointer(face_counts, np.int32, (-1,), "face counts")
         mesh.face_indices = self.pointer(face_indices, np.int32, (-1,), "face indices")
@@ -142,7 +158,7 @@ class Arguments:
         return mesh[0]
 
     def subdivision(self, given: Subdivision) -> Any:
-        target = ffi.new("skinslide_subdivision *")
+        target = new("subdivision")
         self._alive.append(target)
         for setting in ("scheme", "boundary_rule", "triangle_rule"):
             setattr(target, setting, enum_value(setting, getattr(given, setting), ""))

@@ -23,6 +23,8 @@ from skinslide.arrays.native import (
     as_array,
     call,
     enum_value,
+    new,
+    new_array,
     read,
     text,
     tokens,
@@ -223,7 +225,7 @@ def _destroy(slider: Any, workspaces: Sequence[Any]) -> None:
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
     """What a lookup comes to on this machine, and its device; SliderError where it cannot be had."""
-    info, device = ffi.new("skinslide_lookup_info *"), ffi.new("skinslide_device_info *")
+    info, device = new("lookup_info"), new("device_info")
     call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info, device)
     return read(LookupInfo, info[0], device[0])
 
@@ -306,7 +308,7 @@ def _rates(function: Any, sample_count: int, samples: Sequence[Sample], rates: n
         raise SliderError("BAD_ARGUMENT", f"{what} need {sample_count} samples, not {len(samples)}")
     native = Arguments()
     vertex_count = len(samples[0].cached)
-    given = ffi.new("skinslide_sample[]", sample_count)
+    given = new_array("sample", sample_count)
     for target, sample in zip(given, samples, strict=True):
         target.seconds = sample.seconds
         target.cached = native.points(sample.cached, vertex_count, "cached")
