@@ -177,6 +177,8 @@ static skinslide_status take_factors(skinslide_stage_controls *controls, int32_t
     own->values = NULL, own->layout = LAYOUT_NONE;
     ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_EDGES, controls->patch->name, edges_name);
     skinslide_status status = ss_check_floats(record, SKINSLIDE_BAD_CONTROL, error);
+    if (controls->patch->taken[SS_ROW_EDGES].refused) /* which was said */
+        return status;
     if (!status && record->length != edges->count / 2)
         status = ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " has %lld values, but %s has %d pairs", SS_NAME(name),
                          (long long)record->length, edges_name, edges->count / 2);

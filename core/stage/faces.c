@@ -13,15 +13,31 @@ static int32_t face_count_of(const skinslide_stage_patch *patch) {
 
 /* ---- Chosen by a primvar ---- */
 
-static skinslide_status check_primvar(const skinslide_stage_patch *patch, const ss_record *record, bool *by_face,
-                                      skinslide_error *error) {
+static skinslide_status check_type(const ss_record *record, skinslide_error *error) {
     const skinslide_value *value = &record->value;
-    const char *interpolation = ss_interpolation(record);
     bool good = value->type == SKINSLIDE_VALUE_BLOCKED || value->type == SKINSLIDE_VALUE_BOOL ||
                 value->type == SKINSLIDE_VALUE_INT32 || value->type == SKINSLIDE_VALUE_FLOAT;
     if (!good || (ss_has_value(record) && (!value->is_array || value->width != 1)))
         return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " is " SS_NAMED "; it must be bool[], int[] or float[]",
                        SS_NAME(value->name), SS_NAME(value->type_name));
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status check_finite(const ss_record *record, skinslide_error *error) {
+    for (int64_t i = 0; i < record->length; i++)
+        if (!isfinite(ss_number(record, i, 0)))
+            return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED "[%lld] is %g", SS_NAME(record->value.name), (long long)i,
+                           ss_number(record, i, 0));
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status check_primvar(const skinslide_stage_patch *patch, const ss_record *record, bool *by_face,
+                                      skinslide_error *error) {
+    const skinslide_value *value = &record->value;
+    const char *interpolation = ss_interpolation(record);
+    skinslide_status status = check_type(record, error);
+    if (status)
+        return status;
     *by_face = strcmp(interpolation, "uniform") == 0;
     if (!*by_face && strcmp(interpolation, "vertex") != 0)
         return ss_fail(error, SKINSLIDE_BAD_PATCH,
@@ -29,7 +45,7 @@ static skinslide_status check_primvar(const skinslide_stage_patch *patch, const 
                        SS_NAME(interpolation));
     if (!ss_has_value(record))
         return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " has no value", SS_NAME(value->name));
-    skinslide_status status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
+    status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
     if (status)
         return status;
     return *by_face ? ss_check_length(record, face_count_of(patch), "faces", SKINSLIDE_BAD_PATCH, error)
@@ -51,10 +67,8 @@ static skinslide_status choose(const skinslide_stage_patch *patch, const ss_reco
                                skinslide_error *error) {
     bool by_face = false;
     skinslide_status status = check_primvar(patch, record, &by_face, error);
-    for (int64_t i = 0; !status && i < record->length; i++)
-        if (!isfinite(ss_number(record, i, 0)))
-            status = ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED "[%lld] is %g", SS_NAME(record->value.name), (long long)i,
-                             ss_number(record, i, 0));
+    if (!status)
+        status = check_finite(record, error);
     if (status)
         return status;
     int32_t *chosen = SS_NEW(memory, int32_t, face_count_of(patch)), count = 0;
@@ -98,6 +112,33 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
                          SS_NAME(record->value.name), text);
     }
     ss_free(&scratch);
+    return status;
+}
+
+/* ---- Painted on points ---- */
+
+static skinslide_status check_painted(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_error *error) {
+    skinslide_status status = check_type(record, error);
+    if (!status && !ss_is_by_vertex(ss_interpolation(record)))
+        status = ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " has interpolation " SS_NAMED "; it must be vertex",
+                         SS_NAME(record->value.name), SS_NAME(ss_interpolation(record)));
+    if (!status)
+        status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
+    if (!status)
+        status = ss_check_length(record, mesh->vertex_count, "points", SKINSLIDE_BAD_PATCH, error);
+    return status ? status : check_finite(record, error);
+}
+
+skinslide_status skinslide_stage_painted(const skinslide_stage_mesh *mesh, const skinslide_value *value, double *numbers,
+                                         skinslide_error *error) {
+    if (!mesh || !mesh->has_faces || !numbers)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh with faces, or no place for the numbers");
+    ss_record record;
+    skinslide_status status = ss_open(value, &record, error);
+    if (!status)
+        status = check_painted(mesh, &record, error);
+    for (int64_t i = 0; !status && i < record.length; i++)
+        numbers[i] = ss_number(&record, i, 0);
     return status;
 }
 

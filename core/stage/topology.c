@@ -192,6 +192,18 @@ skinslide_status skinslide_stage_mesh_check(const skinslide_stage_mesh *mesh, co
                           error);
 }
 
+skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_mesh *mesh, skinslide_mesh *out, skinslide_error *error) {
+    if (!mesh || !out || !mesh->has_faces)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh with faces, or no place for it");
+    skinslide_status status = ss_check_size(out, "skinslide_mesh", error);
+    if (status)
+        return status;
+    skinslide_mesh own = ss_faces_of(mesh);
+    own.rest_points = mesh->rest;
+    ss_give(&own, sizeof own, out);
+    return SKINSLIDE_OK;
+}
+
 skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skinslide_mesh *out, skinslide_error *error) {
     if (!mesh || !out)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh, or no place for it");

@@ -3,24 +3,11 @@
 # ---- What the tool says otherwise ----
 
 _CHECK_WORDS_IT = "check has its own words for what the core says"
-_DIGITS = "digits that no artist wrote"
-_WHERE = "the path as it is authored, not where it was looked for"
 
 TOOL = {
-    "type: envelope, an array": "the array as Python's repr of it",
     "subset: inactive": "an inactive prim counts",
-    "faces: subset whose elementType is blocked": "the fallback does not count",
     "points: nan at a frame": _CHECK_WORDS_IT,
     "points: infinite at a frame": _CHECK_WORDS_IT,
-    "rest: nan": _DIGITS,
-    "rest: infinite": _DIGITS,
-    "rest: larger than a float": _DIGITS,
-    "texture: missing": _WHERE,
-    "texture: density, missing": _WHERE,
-    "texture: missing at a frame": _WHERE,
-    "texture: no tiles": _WHERE,
-    "texture: a tile is missing": _WHERE,
-    "texture: type of the name of st": "said once for each map",
 }
 
 # ---- What a layer computes or says otherwise ----

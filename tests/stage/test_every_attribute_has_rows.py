@@ -11,7 +11,7 @@ from edits import PLACE
 from good_stages import GOOD
 from repository import ROOT
 from rows import made
-from skinslide.stage import schema
+from skinslide.arrays.meaning import inputs
 from stages import MESH
 
 LAYER = Sdf.Layer.FindOrOpen(str(ROOT / "schema" / "generatedSchema.usda"))
@@ -27,7 +27,12 @@ def declared(schema_class: str) -> list[str]:
 NAMES = [
     *declared("SkinSlideAPI"),
     *declared("SkinSlideMeshAPI"),
-    *(f"primvars:{PLACE}:{name}" for name in schema.PRIMVARS),
+    *(
+        each.property(PLACE.removeprefix("skinSlide:"))
+        for group in ("patch", "controls")
+        for each in inputs(group)
+        if each.is_primvar
+    ),
 ]
 
 

@@ -5,11 +5,10 @@ import pytest
 from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
+from skinslide.arrays.meaning import merge_times
 from skinslide.problems import FrameProblem, UsageError, errors
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 from skinslide.stage.opening import open_stage
-from skinslide.stage.schema import unapplied_patch_names
-from skinslide.stage.values import merged_times
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames
@@ -136,7 +135,7 @@ def test_a_patch_s_name_may_have_namespaces():
     patches = {patch.name: patch for patch in only_mesh(stage).patches}
     assert patches["left:arm:elbow"].controls.envelope == 0.25
     assert patches[PATCH].controls.envelope == 1
-    assert not unapplied_patch_names(mesh.GetPrim())
+    assert not read_meshes(stage)[1]
 
 
 # ---- Controls ----
@@ -267,7 +266,7 @@ def test_a_spline_over_half_of_eternity():
 
 
 def test_times_that_differ_by_noise_are_one():
-    assert merged_times([3.0, 1.0, 1.0 + 4e-16, 2.0000001, 2.0]) == [1.0, 2.0000001, 3.0]
+    assert merge_times([3.0, 1.0, 1.0 + 4e-16, 2.0000001, 2.0]) == [1.0, 2.0000001, 3.0]
 
 
 def test_layer_offset_and_payload(tmp_path):

@@ -14,9 +14,9 @@ import skinslide
 import stages
 from repository import ROOT
 from skinslide import FrameSpecError, SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI, StageProblems, UsageError
+from skinslide.arrays.meaning import inputs
 from skinslide.author import mirror, paint, setup
 from skinslide.shot.frames import checked_frames
-from skinslide.stage import schema
 from skinslide.stage.mesh import read_meshes
 from stages import FRAMES, MESH, PATCH
 
@@ -180,7 +180,7 @@ def test_painted_primvars(prim):
         "forceDensity": patch.CreateForceDensityPrimvar("uniform", range(1, 37)),
         "patch": patch.CreatePatchPrimvar(defaultValue=np.arange(36) < 6),
     }
-    assert set(made) == set(schema.PRIMVARS)
+    assert set(made) == {each.name for group in ("patch", "controls") for each in inputs(group) if each.is_primvar}
     for name, primvar in made.items():
         assert primvar.GetName() == f"primvars:skinSlide:{PATCH}:{name}"
         assert getattr(patch, f"Get{name[0].upper()}{name[1:]}Primvar")().GetAttr() == primvar.GetAttr()
@@ -228,7 +228,7 @@ def test_faces_take_the_place_of_all_before(stage, prim):
     [
         ([36], StageProblems, "there is no face 36: the mesh has 36 faces"),
         ([-1], StageProblems, "there is no face -1"),
-        (np.ones(35, bool), StageProblems, "faces has 35 values, but the mesh has 36 faces"),
+        (np.ones(35, bool), StageProblems, "faces: 35 values for 36 faces"),
         ([0.5], UsageError, "faces: float64 values do not fit int32"),
         ([[1, 2]], UsageError, "faces: the shape is 1 x 2; it must be n"),
         ([[1], [2, 3]], UsageError, "faces: "),

@@ -22,7 +22,6 @@ from shots import (
 )
 from skinslide import bake, bake_to_file
 from skinslide.arrays import slider
-from skinslide.shot.derived import samples_around
 from stages import vectors
 
 
@@ -82,7 +81,7 @@ def test_normals_of_a_wrong_length_are_blocked_and_named(shot, out):
     report = bake_to_file(shot.save().path, out)
     assert_blocked(out, "normals")
     (problem,) = report.problems
-    assert problem.frame == 1001 and "normals cannot be recomputed, so the bake blocks them" in problem.message
+    assert problem.frame is None and "normals cannot be recomputed, so the bake blocks them" in problem.message
 
 
 @pytest.mark.parametrize("indices", [[0, 1, 2] * 5, [7] * 4 * FACES])
@@ -172,16 +171,3 @@ def test_frames_between_samples_at_the_end_of_the_cache(shot, out):
     bake_to_file(shot.save().path, out, frames="1004,1004.5,1005")
     _stage, mesh = baked_mesh(out)
     assert mesh.GetAccelerationsAttr().GetTimeSamples() == [1004, 1004.5, 1005]
-
-
-def test_samples_around():
-    times = [1.0, 2.0, 3.0, 4.0]
-    assert samples_around(times, 2.0, 2) == [1, 3]
-    assert samples_around(times, 2.5, 2) == [2, 3]
-    assert samples_around(times, 1.0, 2) == [1, 2]
-    assert samples_around(times, 4.0, 2) == [3, 4]
-    assert samples_around(times, 2.0, 3) == [1, 2, 3]
-    assert samples_around(times, 2.5, 3) == [2, 2.5, 3]
-    assert samples_around(times, 1.0, 3) == [1, 2, 3]
-    assert samples_around(times, 4.0, 3) == [2, 3, 4]
-    assert samples_around(times, 2.0 + 1e-9, 2) == [1, 3]

@@ -12,9 +12,9 @@ from skinslide.arrays.geometry import mirror_faces
 from skinslide.arrays.images import encode_exr
 from skinslide.author.mirror import other_side
 from skinslide.command.cli import main
-from skinslide.stage.controls import PatchControls
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 from skinslide.stage.opening import open_stage
+from skinslide.stage.patch import Animation
 from stages import FRAMES, MESH
 
 Types = Sdf.ValueTypeNames
@@ -63,7 +63,7 @@ class Read(NamedTuple):
     """A patch, with its controls over time, for as long as the mesh that it is on."""
 
     patch: PatchSetup
-    controls: PatchControls
+    controls: Animation
     mesh: PatchedMesh
 
 
@@ -191,7 +191,7 @@ def test_maps_become_paint(tmp_path):
     there = np.flatnonzero(ON_PATCH)
     np.testing.assert_array_equal(patch.controls.weight[ACROSS[there]], left.weight[there])
     np.testing.assert_array_equal(patch.controls.vertex_density[ACROSS[there]], left.vertex_density[there])
-    assert controls.maps == [] and len(np.unique(patch.controls.weight[ACROSS[there]])) > 3
+    assert controls.textures == [] and len(np.unique(patch.controls.weight[ACROSS[there]])) > 3
 
 
 def test_a_subset_becomes_a_primvar(tmp_path):

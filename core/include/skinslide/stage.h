@@ -213,6 +213,11 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_check(const skinslide_stage_
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skinslide_mesh *out,
                                                         skinslide_error *error);
 
+/* The same once points and faces are there, which is what patches need; rest points may be missing, and are then NULL.
+ * Fails with BAD_ARGUMENT where points or faces are missing, or were refused. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_mesh *mesh, skinslide_mesh *out,
+                                                          skinslide_error *error);
+
 /* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the library. */
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
 
@@ -232,6 +237,13 @@ SKINSLIDE_API skinslide_status skinslide_stage_points(const skinslide_stage_mesh
  * Fails with BAD_CONTROL (another interpolation, type or length, an index out of range), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_stage_coordinates(const skinslide_stage_mesh *mesh, const skinslide_value *value,
                                                            float *st, skinslide_error *error);
+
+/* What any primvar says of the points: bools, ints or floats by vertex, as an artist chooses points by.
+ *   numbers  out [vertex_count]
+ * Fails with BAD_PATCH (another type, interpolation or length, an index out of range, a number that is not finite),
+ * BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_stage_painted(const skinslide_stage_mesh *mesh, const skinslide_value *value,
+                                                       double *numbers, skinslide_error *error);
 
 /* ---- Patches --------------------------------------------------------------------------------------------------------------- */
 

@@ -40,6 +40,55 @@ static void a_mesh_comes_back(void **state) {
     free_mesh(&grid);
 }
 
+/* Patches need no rest points, and a mesh that refuses them still has its faces. */
+static void faces_need_no_rest(void **state) {
+    (void)state;
+    skinslide_stage_mesh *mesh = empty_mesh();
+    skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
+    takes(mesh, "points", POINTS("points", 4));
+    takes(mesh, "faceVertexCounts", INTS("faceVertexCounts", 4));
+    assert_fails(skinslide_stage_mesh_faces(mesh, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no mesh with faces, or no place for it");
+    takes(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 1, 2, 3));
+    assert_ok(skinslide_stage_mesh_faces(mesh, &out, &error), &error);
+    assert_int_equal(out.face_count, 1);
+    assert_int_equal(out.vertex_count, 4);
+    assert_null(out.rest_points);
+    out.size = 1;
+    assert_fails(skinslide_stage_mesh_faces(mesh, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "skinslide_mesh: its size is 1; start from its default");
+    skinslide_stage_mesh_destroy(mesh);
+}
+
+static void expect_painted(skinslide_stage_mesh *mesh, skinslide_value value, const char *interpolation, const char *fault) {
+    double numbers[4];
+    value.interpolation = interpolation;
+    skinslide_status status = skinslide_stage_painted(mesh, &value, numbers, &error);
+    if (fault)
+        assert_fails(status, &error, SKINSLIDE_BAD_PATCH, fault);
+    else
+        assert_ok(status, &error);
+    for (int32_t v = 0; v < 4 && !fault; v++)
+        assert_true(numbers[v] == v);
+}
+
+static void paint_on_points(void **state) {
+    (void)state;
+    skinslide_stage_mesh *mesh = empty_mesh();
+    takes(mesh, "points", POINTS("points", 4));
+    takes(mesh, "faceVertexCounts", INTS("faceVertexCounts", 4));
+    takes(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 1, 2, 3));
+    expect_painted(mesh, INTS("primvars:a", 0, 1, 2, 3), "vertex", NULL);
+    expect_painted(mesh, FLOATS("primvars:a", 0, 1, 2, 3), "varying", NULL);
+    expect_painted(mesh, FLOATS("primvars:a", 0, 1, 2, 3), "uniform",
+                   "primvars:a has interpolation uniform; it must be vertex");
+    expect_painted(mesh, FLOATS("primvars:a", 0, 1), "vertex", "primvars:a has 2 values, but the mesh has 4 points");
+    expect_painted(mesh, FLOATS("primvars:a", 0, NAN, 2, 3), "vertex", "primvars:a[1] is nan");
+    expect_painted(mesh, other_of("primvars:a", "color3f[]"), "vertex",
+                   "primvars:a is color3f[]; it must be bool[], int[] or float[]");
+    skinslide_stage_mesh_destroy(mesh);
+}
+
 static void bad_points_are_named(void **state) {
     (void)state;
     skinslide_stage_mesh *mesh = empty_mesh();
@@ -277,6 +326,8 @@ static void bad_coordinates_are_named(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mesh_comes_back),
+        cmocka_unit_test(faces_need_no_rest),
+        cmocka_unit_test(paint_on_points),
         cmocka_unit_test(bad_points_are_named),
         cmocka_unit_test(bad_faces_are_named),
         cmocka_unit_test(what_was_refused_may_be_given_again),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -11,6 +10,7 @@ import numpy as np
 from skinslide._core import ffi, lib
 from skinslide.arrays.native import (
     Arguments,
+    Handle,
     Subdivision,
     as_array,
     call,
@@ -68,10 +68,10 @@ class Tessellation:
         corners = native.optional(st, np.float32, (len(shape.face_indices), 2), "st")
         chosen = native.pointer(faces, np.int32, (-1,), "faces")
         call(lib.skinslide_tessellation_create, ffi.addressof(mesh), corners, chosen, len(faces), out)
-        self.handle = ffi.gc(out[0], lib.skinslide_tessellation_destroy)
+        self.handle = Handle(out[0], lib.skinslide_tessellation_destroy)
         self.vertex_count = len(rest_points)
         info = new("tessellation_info")
-        call(lib.skinslide_tessellation_describe, self.handle, info)
+        call(lib.skinslide_tessellation_describe, self.handle.pointer, info)
         self.triangle_count, self.flat_faces = info.triangle_count, info.flat_faces
 
 
@@ -81,14 +81,8 @@ class Outline:
     def __init__(self, tessellation: Tessellation, faces: np.ndarray):
         native, out = Arguments(), ffi.new("skinslide_outline **")
         chosen = native.pointer(faces, np.int32, (-1,), "faces")
-        call(lib.skinslide_outline_create, tessellation.handle, chosen, len(faces), out)
-        self.handle = out[0]
-        weakref.finalize(self, _destroy, self.handle, tessellation)
-
-
-def _destroy(outline: Any, _tessellation: Tessellation) -> None:
-    """The tessellation lives until then, as the core asks, and in a cycle of garbage too."""
-    lib.skinslide_outline_destroy(outline)
+        call(lib.skinslide_outline_create, tessellation.handle.pointer, chosen, len(faces), out)
+        self.handle = Handle(out[0], lib.skinslide_outline_destroy, tessellation.handle)
 
 
 class Scale(NamedTuple):
@@ -108,7 +102,7 @@ class Canvas:
         options.pixels, options.device = enum_value("pixels", pixels, ""), device_number(device)
         _set(options, "canvas options", width=width, height=height)
         call(lib.skinslide_canvas_create, options, out)
-        self._handle = ffi.gc(out[0], lib.skinslide_canvas_destroy)
+        self._handle = Handle(out[0], lib.skinslide_canvas_destroy)
         self.width, self.height = width, height
         self._dtype: Any = np.uint8 if pixels == "bytes" else np.float32
 
@@ -116,13 +110,13 @@ class Canvas:
     def device(self) -> DeviceInfo:
         """What it is drawn with."""
         info = new("device_info")
-        call(lib.skinslide_canvas_device, self._handle, info)
+        call(lib.skinslide_canvas_device, self._handle.pointer, info)
         return read(DeviceInfo, info[0])
 
     def clear(self, colour: Sequence[float]) -> None:
         """Fills it with a colour, linear light."""
         native = Arguments()
-        call(lib.skinslide_canvas_clear, self._handle, native.pointer(colour, np.float32, (3,), "colour"))
+        call(lib.skinslide_canvas_clear, self._handle.pointer, native.pointer(colour, np.float32, (3,), "colour"))
 
     def draw(
         self,
@@ -141,20 +135,20 @@ class Canvas:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale."""
         native, figure = Arguments(), new("figure")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
-        figure.tessellation = tessellation.handle
-        figure.outline = ffi.NULL if outline is None else outline.handle
+        figure.tessellation = tessellation.handle.pointer
+        figure.outline = ffi.NULL if outline is None else outline.handle.pointer
         figure.points = native.points(points, tessellation.vertex_count, "points")
         figure.to_world = ffi.NULL if world is None else world
         figure.squares, figure.double_sided, figure.left_handed = squares, double_sided, left_handed
         if scale:
             figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
             figure.lowest, figure.highest = scale.lowest, scale.highest
-        call(lib.skinslide_canvas_draw, self._handle, _viewport(viewport), _camera(camera), figure)
+        call(lib.skinslide_canvas_draw, self._handle.pointer, _viewport(viewport), _camera(camera), figure)
 
     def read(self) -> np.ndarray:
         """(height, width, 4), from the top row on."""
         pixels = np.empty((self.height, self.width, 4), self._dtype)
-        call(lib.skinslide_canvas_read, self._handle, writable("char[]", pixels))
+        call(lib.skinslide_canvas_read, self._handle.pointer, writable("char[]", pixels))
         return pixels
 
 

@@ -6,7 +6,8 @@ Fields and enums are read from the declarations; only what C cannot see, the len
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import weakref
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeVar
 
@@ -112,6 +113,22 @@ def tokens(setting: str) -> tuple[str, ...]:
     """The tokens of a setting: boundary, holes, rule, interpolation, lookup, normals_layout, scheme, boundary_rule,
     triangle_rule, pixels."""
     return tuple(_values_by_token(setting))
+
+
+class Handle:
+    """A handle of the core, which is destroyed when nothing refers to this, before the handles that it needs.
+
+    Not by ffi.gc: the collector breaks a cycle wherever it likes, and might destroy what is needed first.
+    """
+
+    def __init__(self, pointer: Any, destroy: Callable[[Any], None], *needed: Handle):
+        self.pointer = pointer
+        # What is needed lives as long as the finalizer, which is no part of a cycle.
+        weakref.finalize(self, _destroy, destroy, pointer, needed).atexit = False
+
+
+def _destroy(destroy: Callable[[Any], None], pointer: Any, _needed: tuple[Handle, ...]) -> None:
+    destroy(pointer)
 
 
 class Sizes(NamedTuple):

@@ -6,7 +6,6 @@ The manual is `skinslide.h`. Arrays of other types are converted where that lose
 from __future__ import annotations
 
 import threading
-import weakref
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -16,6 +15,7 @@ from skinslide._core import ffi, lib
 from skinslide.arrays.native import (
     Arguments,
     Controls,
+    Handle,
     Lookup,
     PatchSetup,
     Sizes,
@@ -108,11 +108,8 @@ class Slider:
             native.fill_setup(setup, patch, self._sizes)
         out = ffi.new("skinslide_slider **")
         call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, len(patches), out)
-        self._slider: Any = out[0]
-        self._workspaces: list[Any] = []
-        # Not ffi.gc: in a circle of garbage its destructor may have lost what it refers to.
-        weakref.finalize(self, _destroy, self._slider, self._workspaces)
-        self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider)))
+        self._slider = Handle(out[0], lib.skinslide_slider_destroy)
+        self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider.pointer)))
         self._idle = [self._new_workspace()]
         self._lock = threading.Lock()
 
@@ -127,7 +124,7 @@ class Slider:
         results = ffi.new("skinslide_patch_result[]", len(self.patches))
         workspace = self._take_workspace()
         try:
-            call(lib.skinslide_slide, workspace, cached, given, writable("float[]", slid), results)
+            call(lib.skinslide_slide, workspace.pointer, cached, given, writable("float[]", slid), results)
             planes = self._frame_embeddings(workspace) if embeddings else None
         finally:
             self._give_back(workspace)
@@ -150,7 +147,7 @@ class Slider:
         wanted = ffi.NULL if chosen is None else ffi.new("uint8_t[]", [bool(each) for each in chosen])
         result = Diagnostics(*(np.empty(count, np.float32) for _ in Diagnostics._fields))
         arrays = ffi.new("skinslide_diagnostics *", [writable("float[]", array) for array in result])
-        call(lib.skinslide_diagnose, self._slider, given, wanted, before, after, arrays)
+        call(lib.skinslide_diagnose, self._slider.pointer, given, wanted, before, after, arrays)
         return result
 
     def vertices(self, patch: int) -> np.ndarray:
@@ -172,17 +169,17 @@ class Slider:
         slid = ffi.new("float[]", 3 * self._sizes.vertices)
         workspace = self._take_workspace()
         try:
-            call(lib.skinslide_slide, workspace, cached, ffi.NULL, slid, ffi.NULL)
-            call(lib.skinslide_workspace_id_buffer, workspace, patch, side, ffi.NULL)
+            call(lib.skinslide_slide, workspace.pointer, cached, ffi.NULL, slid, ffi.NULL)
+            call(lib.skinslide_workspace_id_buffer, workspace.pointer, patch, side, ffi.NULL)
             texels = np.empty((side[0], side[0]), np.uint32)
-            call(lib.skinslide_workspace_id_buffer, workspace, patch, side, writable("uint32_t[]", texels))
+            call(lib.skinslide_workspace_id_buffer, workspace.pointer, patch, side, writable("uint32_t[]", texels))
         finally:
             self._give_back(workspace)
         return texels
 
     def _info(self, patch: int) -> PatchInfo:
         info = ffi.new("skinslide_patch_info *")
-        call(lib.skinslide_slider_patch_info, self._slider, patch, info)
+        call(lib.skinslide_slider_patch_info, self._slider.pointer, patch, info)
         return read(PatchInfo, info[0])
 
     def _patch_array(self, function: Any, patch: int, size: str, dtype: type, width: int | None = None) -> np.ndarray:
@@ -190,37 +187,29 @@ class Slider:
             raise SliderError("BAD_ARGUMENT", f"there is no patch {patch}; patches are 0 to {len(self.patches) - 1}")
         count = getattr(self.patches[patch], size)
         array = np.empty(count if width is None else (count, width), dtype)
-        call(function, self._slider, patch, writable("int32_t[]" if dtype == np.int32 else "double[]", array))
+        call(function, self._slider.pointer, patch, writable("int32_t[]" if dtype == np.int32 else "double[]", array))
         return array
 
-    def _frame_embeddings(self, workspace: Any) -> tuple[np.ndarray, ...]:
+    def _frame_embeddings(self, workspace: Handle) -> tuple[np.ndarray, ...]:
         arrays = tuple(np.empty((patch.vertex_count, 2)) for patch in self.patches)
         for i, array in enumerate(arrays):
-            call(lib.skinslide_workspace_embedding, workspace, i, writable("double[]", array))
+            call(lib.skinslide_workspace_embedding, workspace.pointer, i, writable("double[]", array))
         return arrays
 
-    def _new_workspace(self) -> Any:
+    def _new_workspace(self) -> Handle:
         out = ffi.new("skinslide_workspace **")
-        call(lib.skinslide_workspace_create, self._slider, self._lookup, out)
-        self._workspaces.append(out[0])
-        return out[0]
+        call(lib.skinslide_workspace_create, self._slider.pointer, self._lookup, out)
+        return Handle(out[0], lib.skinslide_workspace_destroy, self._slider)
 
-    def _take_workspace(self) -> Any:
+    def _take_workspace(self) -> Handle:
         with self._lock:
             if self._idle:
                 return self._idle.pop()
         return self._new_workspace()
 
-    def _give_back(self, workspace: Any) -> None:
+    def _give_back(self, workspace: Handle) -> None:
         with self._lock:
             self._idle.append(workspace)
-
-
-def _destroy(slider: Any, workspaces: Sequence[Any]) -> None:
-    """Workspaces first, as the core asks."""
-    for workspace in workspaces:
-        lib.skinslide_workspace_destroy(workspace)
-    lib.skinslide_slider_destroy(slider)
 
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:

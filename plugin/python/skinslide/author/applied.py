@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Sdf, Usd, UsdGeom
 
+from skinslide.arrays.meaning import can_name_patch
 from skinslide.problems import Fault, Problem, StageProblems, UsageError
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_faces, given_value
@@ -276,7 +277,7 @@ def _why_no_name(patch: str) -> str:
     parts = patch.split(":")
     if (
         not Sdf.Path.IsValidNamespacedIdentifier(patch)
-        or parts[0] in schema.NOT_PATCHES
+        or not can_name_patch(patch)
         or parts[-1] in schema.declared_names()  # USD does not allow those
     ):
         return f"{patch!r} cannot name a patch; use letters, digits and _, such as elbow_L"

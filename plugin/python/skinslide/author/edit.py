@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from pxr import Usd, UsdGeom
 
+from skinslide.arrays.meaning import MeshMeaning
 from skinslide.problems import Fault, Problem, StageProblems, errors
 from skinslide.shot.check import CheckReport, check
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, given_path
 from skinslide.stage.marks import has_values
-from skinslide.stage.mesh import read_points
-from skinslide.stage.topology import Topology, read_topology
-from skinslide.stage.values import FIRST
+from skinslide.stage.mesh import read_faces_of_mesh
+from skinslide.stage.topology import Topology
 from skinslide.write.earlier import without_earlier_bake
 from skinslide.write.target import check_target, whole_or_not_at_all
 
@@ -25,8 +26,12 @@ class EditedMesh:
     """A mesh, and the patch that is authored."""
 
     prim: Usd.Prim
-    topology: Topology
+    meaning: MeshMeaning
     patch: str
+
+    @cached_property
+    def topology(self) -> Topology:
+        return Topology.of(self.meaning)
 
     def checked(self) -> CheckReport:
         """What `check` says of the mesh. Raises StageProblems where the patch cannot be slid."""
@@ -64,9 +69,9 @@ def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = No
         raise StageProblems([Problem("error", str(path), source or patch, None, str(fault))]) from fault
 
 
-def _mesh(prim: Usd.Prim) -> tuple[Usd.Prim, Topology]:
+def _mesh(prim: Usd.Prim) -> tuple[Usd.Prim, MeshMeaning]:
     if not prim:
         raise Fault("there is no such prim")
     if not prim.IsA(UsdGeom.Mesh):
         raise Fault(f"is a {prim.GetTypeName() or 'prim without a type'}, not a Mesh")
-    return prim, read_topology(UsdGeom.Mesh(prim), len(read_points(prim, FIRST)))
+    return prim, read_faces_of_mesh(prim)

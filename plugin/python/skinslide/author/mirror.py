@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, TypedDict, TypeVar, Unpack
+from typing import TypedDict, Unpack
 
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
@@ -16,13 +15,9 @@ from skinslide.author.edit import EditedMesh, edited
 from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.stage import controls, schema
-from skinslide.stage.faces import read_faces
+from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath
-from skinslide.stage.rest import read_rest
-from skinslide.stage.textures import read_texture
-from skinslide.stage.topology import Topology
-from skinslide.stage.values import Reading
+from skinslide.stage.patch import Animation, read_patch
 
 _SIDES = {"L": "R", "l": "r", "left": "right", "Left": "Right", "LEFT": "RIGHT"}
 _OTHER_SIDE = _SIDES | {right: left for left, right in _SIDES.items()}
@@ -87,9 +82,11 @@ def mirror(
     with edited(stage, prim, to, source=patch) as mesh:
         if patch not in schema.patch_names(mesh.prim):
             raise Fault("there is no such patch on the mesh")
-        faces = read_faces(mesh.prim, patch, mesh.topology)
-        across = _across(mesh.prim, mesh.topology, faces, axis, plane, tolerance)
-        _Copy(mesh, patch, faces, across).run()
+        animation, faults = read_patch(mesh.prim, patch, mesh.meaning)
+        if animation is None:
+            raise Fault(faults[0])
+        across = _across(mesh, animation.setup.faces, axis, plane, tolerance)
+        _Copy(mesh, patch, animation, across).run()
         return mesh.checked()
 
 
@@ -145,10 +142,8 @@ def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: fl
         raise UsageError(f"tolerance {tolerance:g} must be 0 or more")
 
 
-def _across(
-    mesh: Usd.Prim, topology: Topology, faces: np.ndarray, axis: str, plane: float, tolerance: float | None
-) -> Mirrored:
-    rest, _ = read_rest(mesh, topology.vertex_count)
+def _across(mesh: EditedMesh, faces: np.ndarray, axis: str, plane: float, tolerance: float | None) -> Mirrored:
+    rest, topology = mesh.meaning.rest_points(), mesh.topology
     try:
         return mirror_faces(
             topology.face_counts, topology.face_indices, rest, faces, axis=axis, plane=plane, tolerance=tolerance
@@ -157,23 +152,18 @@ def _across(
         raise Fault(f"the mesh is not symmetric here: {error}") from error
 
 
-T = TypeVar("T")
-
-
 class _Copy:
     """Writes what one patch has as another's."""
 
-    def __init__(self, mesh: EditedMesh, patch: str, faces: np.ndarray, across: Mirrored):
-        self._mesh, self._topology = mesh.prim, mesh.topology
-        self._patch, self._name = patch, mesh.patch
-        self._faces, self._across = faces, across
+    def __init__(self, mesh: EditedMesh, patch: str, animation: Animation, across: Mirrored):
+        self._mesh, self._patch, self._name = mesh.prim, patch, mesh.patch
+        self._animation, self._setup, self._across = animation, animation.setup, across
 
     def run(self) -> None:
         SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(self._across.faces)
         self._paint()
-        corners = controls.corners(self._mesh, self._patch, self._topology.vertex_count)
-        self._points("corners", corners)
-        self._points("edges", controls.edge_density(self._mesh, self._patch).first.get("edges"))
+        self._points("corners", self._setup.corners)
+        self._points("edges", self._setup.controls.edges)
         for name in schema.declared_names():
             if name in _OF_ONE_SIDE - {"corners", "edges"}:
                 self._block(self._new(name))
@@ -183,40 +173,30 @@ class _Copy:
     # ---- Paint ----
 
     def _paint(self) -> None:
-        arguments = (self._mesh, self._patch, self._topology, self._faces)
-        textures = {
-            control: read_texture(*arguments[:2], control, *arguments[2:]) for control in ("weight", "forceDensity")
-        }
-        weight = controls.weight(*arguments, textures["weight"])
-        self._by_vertex_or_none("weight", weight)
-        self._by_vertex_or_none("maxDistance", controls.max_distance(*arguments))
-        density = controls.density(*arguments, textures["forceDensity"])
-        kinds = {"vertex_density": UsdGeom.Tokens.vertex, "face_density": UsdGeom.Tokens.uniform}
-        if len(density.first) > 1:
+        density = self._setup.controls
+        if density.vertex_density is not None and density.face_density is not None:
             raise Fault("force density is painted by face and has a map; paint it by point to mirror it")
-        argument = next(iter(density.first), "")
-        self._primvar("forceDensity", density, lambda values: values[argument], kinds.get(argument))
+        self._primvar("weight", "weight")
+        self._primvar("maxDistance", "max_distance")
+        self._primvar("forceDensity", "vertex_density" if density.face_density is None else "face_density")
 
-    def _by_vertex_or_none(self, name: str, reading: Reading[Any]) -> None:
-        self._primvar(name, reading, lambda values: values, None if reading.first is None else UsdGeom.Tokens.vertex)
-
-    def _primvar(
-        self, name: str, reading: Reading[T], values_of: Callable[[T], np.ndarray], interpolation: str | None
-    ) -> None:
-        """Writes what a reading gives at each of its times; None: nothing."""
+    def _primvar(self, name: str, field: str) -> None:
+        """Writes a field of the controls, at all its times, as a primvar; where the field is None, nothing."""
         full = f"primvars:{self._new(name)}"
         self._block(f"{full}:indices")
-        if interpolation is None:
+        if getattr(self._setup.controls, field) is None:
             self._block(full)
             return
+        by_face = field == "face_density"
+        interpolation = UsdGeom.Tokens.uniform if by_face else UsdGeom.Tokens.vertex
         self._mesh.RemoveProperty(full)
         primvars = UsdGeom.PrimvarsAPI(self._mesh)
         primvar = primvars.CreatePrimvar(full, Sdf.ValueTypeNames.FloatArray, interpolation)
-        move = self._by_vertex if interpolation == UsdGeom.Tokens.vertex else self._by_face
-        fallback = 1.0 if name == "forceDensity" else 0.0
-        for time in map(Usd.TimeCode, reading.times(None)) if reading.varies else [Usd.TimeCode.Default()]:
-            value = reading.at(time)
-            primvar.Set(Vt.FloatArray.FromNumpy(move(values_of(value), fallback)), time)
+        move, fallback = self._by_face if by_face else self._by_vertex, 1.0 if name == "forceDensity" else 0.0
+        times = self._animation.times(names={name, f"{name}Map"})
+        for time in map(Usd.TimeCode, times) if times else [Usd.TimeCode.Default()]:
+            controls = self._animation.at(time) if times else self._setup.controls
+            primvar.Set(Vt.FloatArray.FromNumpy(move(getattr(controls, field), fallback)), time)
 
     def _by_vertex(self, values: np.ndarray, fallback: float) -> np.ndarray:
         moved, inside = np.full(len(values), fallback, np.float32), self._across.vertices >= 0
@@ -225,7 +205,7 @@ class _Copy:
 
     def _by_face(self, values: np.ndarray, fallback: float) -> np.ndarray:
         moved = np.full(len(values), fallback, np.float32)
-        moved[self._across.faces] = values[self._faces]
+        moved[self._across.faces] = values[self._setup.faces]
         return moved
 
     # ---- Attributes ----

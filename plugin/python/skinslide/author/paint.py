@@ -12,17 +12,17 @@ import numpy.typing as npt
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 from skinslide.arrays.geometry import Curves, edges_near
+from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positions
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.stage import controls, schema
-from skinslide.stage.faces import read_faces
+from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path
-from skinslide.stage.rest import read_rest
+from skinslide.stage.patch import read_edges, read_faces, read_pairs
 from skinslide.stage.topology import Topology
-from skinslide.stage.values import FIRST, check_length, flattened, integers, positions, unchanging
+from skinslide.stage.values import FIRST, read_value
 
 DIRECTIONS = ("any", "along", "across")
 
@@ -63,6 +63,7 @@ class _Surface:
     """The mesh that is painted on. `edges` (n, 2) are the patch's."""
 
     prim: Usd.Prim
+    meaning: MeshMeaning
     topology: Topology
     edges: np.ndarray
 
@@ -127,11 +128,12 @@ def paint(
     with edited(stage, prim, patch) as mesh:
         if patch not in schema.patch_names(mesh.prim):
             raise Fault(f"there is no such patch on the mesh; {_patches_there(mesh.prim)}")
-        own = mesh.topology.edges_of(read_faces(mesh.prim, patch, mesh.topology))
-        chosen, left_out = _split(choose(_Surface(mesh.prim, mesh.topology, own)), own)
+        before = read_faces(mesh.prim, patch, mesh.meaning)
+        own = mesh.topology.edges_of(before.faces)
+        chosen, left_out = _split(choose(_Surface(mesh.prim, mesh.meaning, mesh.topology, own)), own)
         if not len(chosen):
             raise Fault(f"{what} chooses no edge of the patch")
-        painted, factors = _before(mesh.prim, patch, clear)
+        painted, factors = _before(mesh.prim, before, clear)
         kept = ~_rows_in(painted, chosen)
         painted = np.concatenate([painted[kept], chosen])
         factors = np.concatenate([factors[kept], np.full(len(chosen), value, np.float32)])
@@ -262,33 +264,20 @@ def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
     element = subset.GetElementTypeAttr().Get()
     if element != UsdGeom.Tokens.edge:
         raise Fault(f"the GeomSubset {path} has elementType {element}; it must be edge")
-    value = unchanging(subset.GetIndicesAttr(), f"{path}.indices")
-    indices = integers([] if value is None else value, f"{path}.indices")
-    if len(indices) % 2:
-        raise Fault(f"{path}.indices has {len(indices)} values; it must hold pairs of point indices")
-    return _edges_of_mesh(surface, indices.reshape(-1, 2), f"the GeomSubset {path}")
+    pairs = read_pairs(subset.GetIndicesAttr(), surface.meaning)
+    return _edges_of_mesh(surface, pairs, f"the GeomSubset {path}")
 
 
 def _primvar_edges(surface: _Surface, name: str, threshold: float) -> np.ndarray:
     primvar = UsdGeom.PrimvarsAPI(surface.prim).GetPrimvar(name)
     if not primvar or not primvar.HasAuthoredValue():
         raise Fault(f"there is no primvar {name} on the mesh")
-    name, interpolation = primvar.GetName(), primvar.GetInterpolation()
-    if str(primvar.GetTypeName()) not in ("bool[]", "int[]", "float[]"):
-        raise Fault(f"{name} is {primvar.GetTypeName()}; it must be bool[], int[] or float[]")
-    if interpolation not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
-        raise Fault(f"{name} has interpolation {interpolation}; it must be vertex")
-    value = flattened(primvar, FIRST)
-    values = np.asarray([] if value is None else value, np.float64)
-    check_length(name, len(values), surface.topology.vertex_count, "points")
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
-        raise Fault(f"{name}[{bad[0]}] is {values[bad[0]]:g}")
+    values = surface.meaning.painted(read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr()))
     return surface.edges[(values >= threshold)[surface.edges].all(axis=1)]
 
 
 def _curve_edges(surface: _Surface, near: _Near) -> np.ndarray:
-    rest, _ = read_rest(surface.prim, surface.topology.vertex_count)
+    rest = surface.meaning.rest_points()
     curves = _read_curves(surface.prim, near.curve)
     try:
         return surface.edges[edges_near(rest, surface.edges, curves, near.distance, near.direction)]
@@ -303,10 +292,13 @@ def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
         raise Fault(f"there is no BasisCurves prim {path}" + (f", it is a {prim.GetTypeName()}" if prim else ""))
     curves, transforms = UsdGeom.BasisCurves(prim), UsdGeom.XformCache(FIRST)
     to_mesh = transforms.GetLocalToWorldTransform(prim) * transforms.GetLocalToWorldTransform(mesh).GetInverse()
-    counts, points = curves.GetCurveVertexCountsAttr().Get(FIRST), curves.GetPointsAttr().Get(FIRST)
+    counts, points = (
+        read_value(each, FIRST, name=f"{path}.{each.GetName()}")
+        for each in (curves.GetCurveVertexCountsAttr(), curves.GetPointsAttr())
+    )
     return Curves(
-        integers([] if counts is None else counts, f"{path}.curveVertexCounts"),
-        positions([] if points is None else points, f"{path}.points"),
+        integers(counts),
+        positions(points),
         "linear" if curves.GetTypeAttr().Get() == UsdGeom.Tokens.linear else curves.GetBasisAttr().Get(),
         curves.GetWrapAttr().Get(),
         np.array(Gf.Matrix4d(to_mesh)),
@@ -316,13 +308,14 @@ def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
 # ---- What is written ----
 
 
-def _before(mesh: Usd.Prim, patch: str, clear: bool) -> tuple[np.ndarray, np.ndarray]:
+def _before(mesh: Usd.Prim, patch: PatchMeaning, clear: bool) -> tuple[np.ndarray, np.ndarray]:
     """The edges painted so far and their factors."""
     nothing = np.empty((0, 2), np.int32), np.empty(0, np.float32)
     if clear:
         return nothing
-    reading = controls.edge_density(mesh, patch)
-    if reading.varies:
-        name = schema.property_name(patch, "edgeForceDensities")
+    animation = read_edges(mesh, patch)
+    if animation.varies:
+        name = schema.property_name(patch.name, "edgeForceDensities")
         raise Fault(f"{name} is animated, and cannot be painted on; clear it first")
-    return (reading.first["edges"], reading.first["edge_density"]) if reading.first else nothing
+    edges, density = animation.edges()
+    return nothing if edges is None or density is None else (edges, density)

@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Sdf, Usd, UsdGeom
 
+from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.stage.faces import primvar_faces, subset_faces
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_faces
-from skinslide.stage.topology import Topology
+from skinslide.stage.patch import primvar_faces, subset_faces
 
 _RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
@@ -69,9 +69,9 @@ def setup(
         elif faces is not None:
             chosen = given_faces("faces", faces, mesh.topology.face_count)
         elif subset is not None:
-            chosen = _of_subset(applied, subset, mesh.topology)
+            chosen = _of_subset(applied, subset, mesh.meaning)
         else:
-            chosen = _of_primvar(applied, primvar, mesh.topology)
+            chosen = _of_primvar(applied, primvar, mesh.meaning)
         if chosen is not None:
             applied.SetFaces(chosen)
         return mesh.checked()
@@ -132,7 +132,7 @@ def _expand(ranges: list[tuple[int, int]], face_count: int) -> np.ndarray:
     return np.unique(np.concatenate([np.arange(first, last + 1) for first, last in ranges]))
 
 
-def _of_subset(patch: SkinSlideAPI, subset: str, topology: Topology) -> np.ndarray | None:
+def _of_subset(patch: SkinSlideAPI, subset: str, mesh: MeshMeaning) -> np.ndarray | None:
     """The faces of a GeomSubset; None where the patch finds them by itself."""
     child, own = (
         patch.GetPrim().GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None,
@@ -140,14 +140,14 @@ def _of_subset(patch: SkinSlideAPI, subset: str, topology: Topology) -> np.ndarr
     )
     if not child:
         raise Fault(f"there is no GeomSubset {subset} under the mesh")
-    found = subset_faces(child, topology)
+    found = subset_faces(child, mesh)
     return None if subset == patch.GetName() and not (own and own.HasAuthoredValue()) else found
 
 
-def _of_primvar(patch: SkinSlideAPI, primvar: str, topology: Topology) -> np.ndarray | None:
+def _of_primvar(patch: SkinSlideAPI, primvar: str, mesh: MeshMeaning) -> np.ndarray | None:
     """The faces that a primvar chooses; None where it is the patch's own."""
     source, own = UsdGeom.PrimvarsAPI(patch.GetPrim()).GetPrimvar(primvar), patch.GetPatchPrimvar()
     if not source:
         raise Fault(f"there is no primvar {primvar} on the mesh")
-    found = primvar_faces(source, topology)
+    found = primvar_faces(source, mesh)
     return None if own and source.GetName() == own.GetName() else found

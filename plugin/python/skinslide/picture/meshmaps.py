@@ -8,7 +8,7 @@ from threading import Semaphore
 from typing import NamedTuple
 
 import numpy as np
-from pxr import Usd, UsdGeom
+from pxr import Usd
 
 from skinslide.arrays.images import FIRST_TILE, Corners, draw_map, encode_exr, map_tiles
 from skinslide.arrays.native import PatchSetup
@@ -16,9 +16,8 @@ from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageP
 from skinslide.shot.options import MapOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
 from skinslide.shot.products import MeshMaking, SlidFrame, SlidFrames
-from skinslide.stage.coordinates import read_coordinates
 from skinslide.stage.mesh import PatchedMesh
-from skinslide.stage.values import FIRST, Reading, primvar_sources
+from skinslide.stage.values import FIRST, Source, primvar_source
 from skinslide.write.folder import OutputFolder
 
 # Kinds of maps, each with the field of skinslide.arrays.slider.Diagnostics that it shows.
@@ -86,7 +85,7 @@ class MeshMaps(MeshMaking):
         self._vertices = mesh.topology.vertices_of(self._faces)
         self._missed: list[tuple[int, float | None]] = []
         try:
-            self._st = _read_st(mesh, self._options.st)
+            self._st = _find_st(mesh, self._options.st)
             self._first = self._corners_at(FIRST)
         except Fault as fault:
             raise StageProblems([mesh.problem(str(fault), FIRST)]) from fault
@@ -144,7 +143,9 @@ class MeshMaps(MeshMaking):
         """The texture coordinates of the faces drawn, and the tiles of a UDIM that they reach. Raises FrameProblem."""
         counts, indices = self._mesh.face_counts, self._mesh.face_indices
         try:
-            corners = Corners(counts, indices, self._mesh.vertex_count, self._faces, self._st.at(time))
+            corners = Corners(
+                counts, indices, self._mesh.vertex_count, self._faces, self._mesh.meaning.coordinates(self._st.at(time))
+            )
         except Fault as fault:
             raise FrameProblem(self._mesh.problem(str(fault), time)) from fault
         for patch in self._drawn_patches():
@@ -163,9 +164,9 @@ def _map_names(tiles: list[int], time: Usd.TimeCode) -> list[MapName]:
     return [MapName(kind, tile, frame_of(time)) for kind in KINDS for tile in shown]
 
 
-def _read_st(mesh: PatchedMesh, name: str) -> Reading[np.ndarray]:
-    """The texture coordinates of the corners, over time. Raises Fault."""
-    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(name)
-    if not primvar or not primvar.HasAuthoredValue():
+def _find_st(mesh: PatchedMesh, name: str) -> Source:
+    """Where the texture coordinates of the corners come from. Raises Fault."""
+    source = primvar_source(mesh.prim, f"primvars:{name}")
+    if source.at(FIRST) is None:
         raise Fault(f"has no primvars:{name}, in which its maps would be drawn; name another primvar")
-    return Reading(lambda time: read_coordinates(primvar, time, mesh.topology), primvar_sources(primvar))
+    return source

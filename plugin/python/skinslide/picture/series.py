@@ -18,9 +18,8 @@ from skinslide.shot.checks import MOST
 from skinslide.shot.options import PictureOptions
 from skinslide.shot.plan import frame_of
 from skinslide.shot.report import PatchReport
-from skinslide.stage.coordinates import read_coordinates
 from skinslide.stage.mesh import PatchedMesh
-from skinslide.stage.subdivision import read_subdivision
+from skinslide.stage.values import FIRST, primvar_source
 
 _ST = "st"
 _SQUARES = 16  # of the chequer, across a patch
@@ -57,7 +56,7 @@ class Skin:
     def of(cls, mesh: PatchedMesh, faces: np.ndarray, st: str | None) -> Skin:
         """To be looked at closely at some faces. Raises Fault and SliderError for what cannot be drawn."""
         corners = _st_of(mesh, st)
-        shape, subdivision = Shape(mesh.face_counts, mesh.face_indices), read_subdivision(UsdGeom.Mesh(mesh.prim))
+        shape, subdivision = Shape(mesh.face_counts, mesh.face_indices), mesh.drawn_subdivision()
         try:
             tessellation = Tessellation(shape, mesh.rest_points, corners, faces, subdivision)
         except SliderError as error:
@@ -126,9 +125,9 @@ class Series:
 
 def _st_of(mesh: PatchedMesh, asked: str | None) -> np.ndarray | None:
     """Texture coordinates for the chequer; None where there are none and none were asked for."""
-    primvar = UsdGeom.PrimvarsAPI(mesh.prim).GetPrimvar(asked or _ST)
-    if primvar and primvar.HasAuthoredValue():
-        return read_coordinates(primvar, Usd.TimeCode.EarliestTime(), mesh.topology)
+    value = primvar_source(mesh.prim, f"primvars:{asked or _ST}").at(FIRST)
+    if value is not None:
+        return mesh.meaning.coordinates(value)
     if asked:
         raise Fault(f"there is no primvars:{asked} to draw a chequer on")
     return None

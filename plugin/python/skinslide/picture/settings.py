@@ -12,8 +12,8 @@ def settings_of(mesh: PatchedMesh, setup: int) -> dict[str, str]:
     chosen = {"rule": patch.rule, "interpolation": _interpolation(mesh, patch), "holes": patch.holes}
     chosen["boundary"] = patch.boundary if patch.corners is None else f"{patch.boundary}, with corners"
     painted = _painted(patch.controls)
-    maps = {read.name.rpartition(":")[2]: read.file for read in animation.maps}
-    animated = {"animated": "yes"} if animation.vary else {}
+    maps = {read.name.rpartition(":")[2]: read.file for read in animation.textures}
+    animated = {"animated": "yes"} if animation.varies else {}
     return {**chosen, **painted, **maps, **animated, "rest": mesh.rest_source}
 
 

@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 from pxr import Usd
 
-from skinslide.arrays.native import Lookup, PatchSetup
+from skinslide.arrays.meaning import Texture
+from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
 from skinslide.problems import Problem, SliderError, UsageError, errors, frame_text
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
-from skinslide.stage.controls import PatchControls
+from skinslide.stage.finding import is_skinned
 from skinslide.stage.given import PrimsLike, StageLike, given_paths, given_stage
-from skinslide.stage.mesh import PatchedMesh, is_skinned
-from skinslide.stage.textures import SampledTexture
+from skinslide.stage.mesh import PatchedMesh
 
 
 @dataclass(frozen=True)
@@ -168,16 +168,13 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     problems += Derived(mesh).problems
     times = mesh.sample_times()
     problems += sample_problems(mesh, times)
-    used = [_checked_map(patch.name, each) for patch, read in _animated(mesh) for each in read.maps]
+    pairs = zip(mesh.patches, mesh.animation, strict=True)
+    used = [_checked_map(patch.name, each) for patch, read in pairs for each in read.textures]
     faces = mesh.topology.face_count
     return CheckedMesh(mesh.path, mesh.vertex_count, faces, mesh.rest_source, times, patches, used)
 
 
-def _animated(mesh: PatchedMesh) -> Iterator[tuple[PatchSetup, PatchControls]]:
-    return zip(mesh.patches, mesh.animation, strict=True)
-
-
-def _checked_map(patch: str, used: SampledTexture) -> CheckedMap:
+def _checked_map(patch: str, used: Texture) -> CheckedMap:
     width, height = max(used.sizes.values())
     return CheckedMap(patch, used.name, used.file, used.channel, used.st, list(used.sizes), width, height)
 

@@ -19,7 +19,7 @@ def sample_problems(mesh: PatchedMesh, times: Sequence[float]) -> Iterator[Probl
     codes = [Usd.TimeCode(time) for time in times]
     yield from _first_of(_points_problem(mesh, code) for code in codes)
     for index, animation in enumerate(mesh.animation):
-        moments = codes if animation.vary else [FIRST]
+        moments = codes if animation.varies else [FIRST]
         found = [_controls_problem(mesh, index, moment) for moment in moments]
         for severity in ("error", "warning"):
             yield from _first_of(problem for problem in found if problem and problem.severity == severity)

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom, UsdSkel
 
+from skinslide.arrays.meaning import SCHEMA, PrimFacts, find, nothing_to_slide
 from skinslide.problems import Problem
 from skinslide.stage import schema
+from skinslide.stage.marks import baked_layer
 from skinslide.stage.opening import is_live
 
 
-def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tuple[list[Usd.Prim], list[Problem]]:
-    """The meshes with patches, and every prim that carries a patch where none can be slid.
+def find_meshes(
+    stage: Usd.Stage, prim_paths: Sequence[str] | None = None
+) -> tuple[list[tuple[Usd.Prim, list[str]]], list[Problem]]:
+    """The meshes with patches, each with their names, and what there is to say of every prim that carries a patch.
 
     prim_paths  None: the whole stage; else prims that are looked at with everything below them
     """
@@ -23,18 +28,12 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
             if prim.GetPath() in seen:
                 continue
             seen.add(prim.GetPath())
-            problems += _misnamed(prim)
-            if not schema.patch_names(prim):
-                continue
-            reason = _why_not(prim, prototypes)
-            slid_by = None if reason else _slid_by(prim)
-            if reason:
-                problems.append(Problem("error", str(prim.GetPath()), None, None, reason))
-            elif slid_by:
-                message = f"is slid already, by {slid_by}; bake that file, or put the cache in its place"
-                problems.append(Problem("warning", str(prim.GetPath()), None, None, message))
-            else:
-                meshes.append(prim)
+            finding = find(_facts(prim, prototypes))
+            problems += [
+                Problem(said.severity, str(prim.GetPath()), said.patch, None, said.message) for said in finding.said
+            ]
+            if finding.patches and finding.slides:
+                meshes.append((prim, finding.patches))
     if not meshes and not any(problem.severity == "error" for problem in problems):
         problems.append(Problem("error", "", None, None, _nothing(prim_paths)))
     return meshes, problems
@@ -93,43 +92,59 @@ def _instancer_prototypes(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
     }
 
 
-def _misnamed(prim: Usd.Prim) -> Iterator[Problem]:
-    path = str(prim.GetPath())
-    if {schema.SCHEMA, f"{schema.SCHEMA}:"} & set(schema.applied_schemas(prim)):
-        message = f"{schema.SCHEMA} is applied without a patch's name; apply {schema.SCHEMA}:NAME"
-        yield Problem("error", path, None, None, message)
-    if prim.IsA(UsdGeom.Mesh):
-        for patch in schema.unapplied_patch_names(prim):
-            message = f"has properties, but {schema.SCHEMA}:{patch} is not applied to the prim, so it does not slide"
-            yield Problem("warning", path, patch, None, message)
-        for patch, unknown in schema.unknown_settings(prim).items():
-            for name in unknown:
-                yield Problem("warning", path, patch, None, f"{name} is no setting of a patch, and counts for nothing")
+def _facts(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> PrimFacts:
+    """What of a prim decides whether it can be slid; of one that carries no patch little is asked."""
+    names = schema.applied_schemas(prim)
+    properties = [prop for space in schema.SPACES for prop in prim.GetAuthoredPropertiesInNamespace(space)]
+    facts = PrimFacts(
+        type_name=str(prim.GetTypeName()),
+        is_mesh=prim.IsA(UsdGeom.Mesh),
+        is_defined=prim.IsDefined(),
+        schemas=names,
+        properties=[prop.GetName() for prop in properties],
+    )
+    if not any(name.startswith(SCHEMA) for name in names):
+        return facts
+    points, baked = UsdGeom.PointBased(prim).GetPointsAttr(), baked_layer(prim)
+    return replace(
+        facts,
+        instance=_instance_of(prim),
+        instancer=next((str(prototypes[each]) for each in prim.GetPath().GetPrefixes() if each in prototypes), None),
+        slid_by=_slid_by(prim),
+        baked_by=baked.identifier if baked else None,
+        point_samples=points.GetNumTimeSamples() if points else 0,
+        has_joint_indices=_has_joint_indices(prim),
+        blend_shape_count=_blend_shape_count(prim),
+    )
 
 
-def _why_not(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> str | None:
-    """Why the patches of a prim cannot be slid, and what to do; None: they can."""
-    if prim.IsInstanceProxy():
-        instance = prim
-        while not instance.IsInstance():
-            instance = instance.GetParent()
-        return f"is inside an instance, whose points are shared; author instanceable = false on {instance.GetPath()}"
-    for prefix in prim.GetPath().GetPrefixes():
-        if prefix in prototypes:
-            return (
-                f"is a prototype of the point instancer {prototypes[prefix]}, whose instances share its points; "
-                "slide a mesh outside it, or put the baked mesh in its place"
-            )
-    if not prim.IsDefined():
-        return "is not defined, there are only overs; is the path right, and does the cache below it open?"
-    if not prim.IsA(UsdGeom.Mesh):
-        return f"is a {prim.GetTypeName() or 'prim without a type'}; {schema.SCHEMA} applies to Mesh only"
-    return None
+def is_skinned(prim: Usd.Prim) -> bool:
+    """Whether UsdSkel moves the points of a mesh."""
+    return _has_joint_indices(prim) or _blend_shape_count(prim) > 0
+
+
+def _has_joint_indices(prim: Usd.Prim) -> bool:
+    joints = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("skel:jointIndices")
+    return bool(joints and joints.HasAuthoredValue())
+
+
+def _blend_shape_count(prim: Usd.Prim) -> int:
+    return len(UsdSkel.BindingAPI(prim).GetBlendShapeTargetsRel().GetTargets())
+
+
+def _instance_of(prim: Usd.Prim) -> str | None:
+    """The instance that a prim is inside of."""
+    if not prim.IsInstanceProxy():
+        return None
+    while not prim.IsInstance():
+        prim = prim.GetParent()
+    return str(prim.GetPath())
 
 
 def _slid_by(prim: Usd.Prim) -> str | None:
     """The `.skinslide` file that computes the points of a mesh."""
-    for spec in UsdGeom.Mesh(prim).GetPointsAttr().GetPropertyStack():
+    points = UsdGeom.PointBased(prim).GetPointsAttr()
+    for spec in points.GetPropertyStack() if points else []:
         if spec.HasInfo("timeSamples") or spec.HasInfo("default"):
             return spec.layer.identifier if is_live(spec.layer) else None
     return None
@@ -137,7 +152,5 @@ def _slid_by(prim: Usd.Prim) -> str | None:
 
 def _nothing(prim_paths: Sequence[str] | None) -> str:
     where = "on the stage" if prim_paths is None else f"at or below {', '.join(map(str, prim_paths))}"
-    return (
-        f"nothing to slide: no mesh {where} has {schema.SCHEMA} applied; "
-        "start with: skinslide setup STAGE -o X.skinslide --prim MESH --patch NAME --faces 0-120"
-    )
+    said = nothing_to_slide(where)
+    return f"{said}; start with: skinslide setup STAGE -o X.skinslide --prim MESH --patch NAME --faces 0-120"

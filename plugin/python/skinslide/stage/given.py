@@ -17,7 +17,6 @@ from pxr import Sdf, Usd, Vt
 from skinslide.arrays.native import as_array
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.stage.opening import open_stage
-from skinslide.stage.values import check_length
 
 StrPath: TypeAlias = str | os.PathLike[str]
 StageLike: TypeAlias = Usd.Stage | StrPath
@@ -84,7 +83,8 @@ def given_faces(name: str, faces: npt.ArrayLike, face_count: int) -> np.ndarray:
     except ValueError as error:  # rows of different lengths
         raise UsageError(f"{name}: {error}") from error
     if chosen.dtype == np.bool_:
-        check_length(name, chosen.size, face_count, "faces")
+        if chosen.size != face_count:
+            raise Fault(f"{name}: {chosen.size} values for {face_count} faces")
         return np.flatnonzero(chosen).astype(np.int32)
     found = np.unique(given_array(name, chosen, np.int32, (-1,)))
     outside = found[(found < 0) | (found >= face_count)]

@@ -1,56 +1,134 @@
-"""Values of attributes: how they change over time, as arrays, and checked."""
+"""Fetches what the core asks for: the values of attributes at a time, and when they were authored."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from typing import Generic, TypeVar
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Protocol
 
 import numpy as np
-from pxr import Usd, UsdGeom
+from pxr import Sdf, Tf, Usd, UsdGeom
 
-from skinslide.problems import MOST_FRAMES, Fault, UsageError, frame_text
+from skinslide.arrays.meaning import DEFAULT_TIME, NOTHING, STILL, Asset, Input, Other, Value
+from skinslide.problems import MOST_FRAMES, Fault, UsageError, usd_message
 
-T = TypeVar("T")
 Span = tuple[float, float]  # first and last moment
 FIRST = Usd.TimeCode.EarliestTime()
-# Layer offsets leave noise of this size on the times of samples that were authored at one time.
-SAME_TIME = 1e-6
+# Of single numbers: an array knows its own.
+_NUMBERS = {
+    "bool": np.bool_,
+    "uchar": np.uint8,
+    "int": np.int32,
+    "uint": np.uint32,
+    "int64": np.int64,
+    "uint64": np.uint64,
+    "half": np.float16,
+    "float": np.float32,
+    "double": np.float64,
+}
 
 
-class Reading(Generic[T]):
-    """A checked value over time, read once where it does not vary.
+class Source:
+    """Where the value of an input comes from on a stage."""
 
-    read     gives the value at a time, or raises Fault
-    varying  those of its sources that may
-    """
+    def __init__(self, prim: Usd.Prim, wanted: Input, patch: str | None = None):
+        self.wanted = wanted
+        self.name = wanted.property(patch)
+        attribute = prim.GetAttribute(self.name)
+        if wanted.is_inherited:
+            primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(self.name)
+            attribute = primvar.GetAttr() if primvar else attribute
+        self.attribute = attribute
+        self.indices = UsdGeom.Primvar(attribute).GetIndicesAttr() if attribute and wanted.is_primvar else None
 
-    def __init__(self, read: Callable[[Usd.TimeCode], T], sources: Iterable[Usd.Attribute]):
-        self._read = read
-        self.varying = [source for source in sources if source and source.ValueMightBeTimeVarying()]
-        self.first = read(FIRST)
+    def first(self) -> Value | None:
+        """The value at the time at which it is taken first."""
+        return self.at(Usd.TimeCode.Default() if self.wanted.when == DEFAULT_TIME else FIRST)
+
+    def at(self, time: Usd.TimeCode) -> Value | None:
+        return read_value(self.attribute, time, self.indices)
+
+    def nothing(self) -> Value:
+        """What stands for a value that was not authored: its name alone."""
+        return Value(self.name, NOTHING, self.wanted.type_name)
 
     @property
     def varies(self) -> bool:
-        return bool(self.varying)
+        return any(self._varying())
 
-    def at(self, time: Usd.TimeCode) -> T:
-        return self._read(time) if self.varying else self.first
+    def times(self, span: Span | None = None) -> list[float]:
+        """When it varies: its samples, and those of its indices."""
+        return [time for attribute in self._varying() for time in sample_times(attribute, span)]
 
-    def times(self, span: Span | None) -> list[float]:
-        return [time for source in self.varying for time in sample_times(source, span)]
+    def samples(self) -> Iterator[tuple[float, Value | None]]:
+        """Its samples, where it may vary."""
+        for attribute in self._varying():
+            for time in attribute.GetTimeSamples():
+                yield time, self.at(Usd.TimeCode(time))
+
+    def _varying(self) -> list[Usd.Attribute]:
+        there = [each for each in (self.attribute, self.indices) if each and self.attribute.HasAuthoredValue()]
+        return [each for each in there if each.ValueMightBeTimeVarying()]
 
 
-def primvar_sources(primvar: UsdGeom.Primvar) -> list[Usd.Attribute]:
-    """The attributes that the value of a primvar comes from; none where it is not authored."""
-    return [primvar.GetAttr(), primvar.GetIndicesAttr()] if primvar else []
+def primvar_source(prim: Usd.Prim, name: str) -> Source:
+    """The source of any primvar of a prim itself, such as primvars:st."""
+    wanted = Input(name.removeprefix("primvars:"), "primvars:", "", 0, True, False, None, None)
+    return Source(prim, wanted)
 
 
-def sample_times(attr: Usd.Attribute, span: Span | None = None) -> list[float]:
+def read_value(
+    attribute: Usd.Attribute, time: Usd.TimeCode, indices: Usd.Attribute | None = None, *, name: str | None = None
+) -> Value | None:
+    """The value of an attribute as it was authored, or None where it was not. Raises Fault where it cannot be read.
+
+    name  in sentences; None: its own
+    """
+    if not attribute or not attribute.HasAuthoredValue():
+        return None
+    if time.IsDefault() and attribute.Get(time) is None:
+        return None
+    type_name = str(attribute.GetTypeName())
+    interpolation = attribute.GetMetadata("interpolation")
+    own = read_value(indices, time) if indices and indices.HasAuthoredValue() else None
+    value = _plain(_get(attribute, time), type_name)
+    if isinstance(value, Asset):
+        value = Asset(_anchored(attribute, time, value))
+    return Value(name or attribute.GetName(), value, type_name, interpolation, own)
+
+
+def _anchored(attribute: Usd.Attribute, time: Usd.TimeCode, path: str) -> str:
+    """Where a file is looked for: beside the layer that names it."""
+    return Sdf.ComputeAssetPathRelativeToLayer(attribute.GetPropertyStack(time)[0].layer, path) if path else ""
+
+
+def _get(attribute: Usd.Attribute, time: Usd.TimeCode) -> object:
+    try:
+        return attribute.Get(time)
+    except Tf.ErrorException as error:
+        raise Fault(f"{attribute.GetName()} cannot be read: {usd_message(error)}") from error
+
+
+def _plain(value: object, type_name: str) -> object:
+    """A value of USD as one of numpy and of the core's own."""
+    if value is None or isinstance(value, str):
+        return value
+    if isinstance(value, Sdf.AssetPath):
+        return Asset(value.path)
+    if isinstance(value, bool | int | float):
+        natural = np.float64 if isinstance(value, float) else np.bool_ if isinstance(value, bool) else np.int64
+        with np.errstate(over="ignore"):
+            return _NUMBERS.get(type_name, natural)(value)
+    array = np.asarray(value) if type(value).__name__.endswith("Array") else None
+    return Other() if array is None or array.dtype.kind not in "biuf" else array
+
+
+def sample_times(attribute: Usd.Attribute, span: Span | None = None) -> list[float]:
     """When a value was authored, in stage time; for a spline its knots and each whole frame between them in a span."""
-    if not attr.HasSpline():
-        return list(attr.GetTimeSamples())
-    knots = sorted(attr.GetSpline().GetKnotsWithInnerLoopsBaked().keys())
+    if not attribute.HasSpline():
+        return list(attribute.GetTimeSamples())
+    knots = sorted(attribute.GetSpline().GetKnotsWithInnerLoopsBaked().keys())
     if not knots:
         return []
     first, last = (
@@ -58,77 +136,36 @@ def sample_times(attr: Usd.Attribute, span: Span | None = None) -> list[float]:
         math.floor(min(knots[-1], span[1] if span else math.inf)),
     )
     if last - first >= MOST_FRAMES:
-        raise UsageError(f"{attr.GetPath()} is a spline over {last - first} frames; name the frames that are wanted")
+        raise UsageError(
+            f"{attribute.GetPath()} is a spline over {last - first} frames; name the frames that are wanted"
+        )
     return [*knots, *map(float, range(first, last + 1))]
 
 
-def merged_times(times: Iterable[float]) -> list[float]:
-    """Times in order; of those that differ by noise only, the one given first."""
-    order = sorted(enumerate(times), key=lambda item: item[1])
-    merged: list[tuple[int, float]] = []
-    for given, time in order:
-        if not merged or time - merged[-1][1] > SAME_TIME:
-            merged.append((given, time))
-        elif given < merged[-1][0]:
-            merged[-1] = (given, time)
-    return [time for _, time in merged]
+class Taker(Protocol):
+    """What inputs are handed to."""
+
+    def take(self, source: Input, value: Value | None) -> None: ...
+
+    def check(self, source: Input, value: Value | None, frame: float) -> None: ...
 
 
-def unchanging(attr: Usd.Attribute, what: str):
-    """The value of an attribute that must not change over time; None where it has none."""
-    first = attr.Get(FIRST)
-    if attr.ValueMightBeTimeVarying():
-        for time in attr.GetTimeSamples():
-            if attr.Get(time) != first:
-                raise Fault(f"{what} changes at frame {frame_text(time)}; it must stay the same over time")
-    return first
+def take(taker: Taker, sources: Iterable[Source]) -> list[str]:
+    """Hands over values, and later samples of what must stay the same. Returns what is wrong."""
+    faults: list[str] = []
+    for source in sources:
+        with noting(faults):
+            taker.take(source.wanted, source.first() or source.nothing())
+            if source.wanted.when == STILL:
+                for frame, value in source.samples():
+                    taker.check(source.wanted, value, frame)
+    return faults
 
 
-def flattened(primvar: UsdGeom.Primvar, time: Usd.TimeCode):
-    """The value of a primvar with its indices applied, or None where it has none."""
-    value = primvar.Get(time)
-    if value is None or not primvar.IsIndexed():
-        return value
-    indices, count = np.asarray(primvar.GetIndices(time)), len(value)
-    bad = np.flatnonzero((indices < 0) | (indices >= count))
-    if bad.size:
-        raise Fault(
-            f"{primvar.GetName()}:indices[{bad[0]}] is {indices[bad[0]]}, but {primvar.GetName()} has {count} values"
-        )
-    return np.asarray(value)[indices]
-
-
-def check_length(what: str, got: int, count: int, of: str) -> None:
-    if got != count:
-        raise Fault(f"{what} has {got} values, but the mesh has {count} {of}")
-
-
-def integers(value, what: str) -> np.ndarray:
-    """An authored int[] as int32 (n,)."""
-    array = np.asarray(value)
-    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
-        raise Fault(f"{what} is not an array of int")
-    small = array.astype(np.int32)
-    if not np.array_equal(small, array):
-        raise Fault(f"{what} has a value that does not fit an int")
-    return small
-
-
-def floats(value, what: str) -> np.ndarray:
-    """An authored float[] as float32 (n,)."""
-    array = np.asarray(value)
-    if array.ndim != 1 or (array.size and array.dtype.kind != "f"):
-        raise Fault(f"{what} is not an array of float")
-    with np.errstate(over="ignore"):
-        return array.astype(np.float32)
-
-
-def positions(value, what: str) -> np.ndarray:
-    """An authored point3f[], or another array of three numbers each, as float32 (n, 3)."""
-    array = np.asarray(value)
-    if array.size == 0:
-        return np.empty((0, 3), np.float32)
-    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind != "f":
-        raise Fault(f"{what} is not an array of points")
-    with np.errstate(over="ignore"):  # whoever needs finite values says which is not
-        return np.array(array, np.float32)
+@contextmanager
+def noting(faults: list[str]) -> Iterator[None]:
+    """Adds to the faults that which is raised."""
+    try:
+        yield
+    except Fault as fault:
+        faults.append(str(fault))

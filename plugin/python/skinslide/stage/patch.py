@@ -1,0 +1,184 @@
+"""One patch of a mesh: fetched from the stage, and meant by the core."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Collection, Iterable
+from functools import cached_property
+
+import numpy as np
+from pxr import Sdf, Usd, UsdGeom
+
+from skinslide.arrays.meaning import (
+    ControlsMeaning,
+    Input,
+    MeshMeaning,
+    PatchMeaning,
+    Subset,
+    Value,
+    input_of,
+    inputs,
+    integers,
+)
+from skinslide.arrays.native import Controls, PatchSetup
+from skinslide.problems import Fault
+from skinslide.stage.textures import give_textures, is_texture, texture_inputs
+from skinslide.stage.values import FIRST, Source, Span, noting, primvar_source, read_value, take
+
+
+class Animation:
+    """What is painted and animated on one patch, over time. Any number of threads may read it.
+
+    faults    what is wrong at the first time
+    textures  those of the first time
+    """
+
+    def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Iterable[Input] = inputs("controls")):
+        self._prim, self._meaning, self._lock = prim, meaning, threading.Lock()
+        self._sources = [Source(prim, each, meaning.name) for each in wanted]
+        self._base, self._idle = ControlsMeaning(meaning), list[ControlsMeaning]()
+        self.faults = take(self._base, self._sources) + self._give(self._base, FIRST)
+        self.textures = [found for each in texture_inputs() if (found := self._base.texture(each))]
+        self._find_varying()
+
+    def _find_varying(self) -> None:
+        """Those that a frame reads anew: where one texture or its coordinates vary, all textures."""
+        st = self._base.coordinates
+        self._coordinates = None if st is None else primvar_source(self._prim, st)
+        textured = [source for source in self._sources if is_texture(source.wanted) and source.first()]
+        self._textured = {source.wanted.name for source in textured}
+        together = [*textured, *([self._coordinates] if self._coordinates else [])]
+        self._textures_vary = any(source.varies for source in together)
+        self._varying = [
+            source for source in self._sources if source.varies or self._textures_vary * (source in textured)
+        ]
+
+    @property
+    def varies(self) -> bool:
+        return bool(self._varying)
+
+    @property
+    def needs_subdivision(self) -> bool:
+        return self._meaning.needs_subdivision
+
+    def times(self, span: Span | None = None, names: Collection[str] | None = None) -> list[float]:
+        """When controls were authored that vary; names: of these inputs alone, with the coordinates of textures."""
+        chosen = [source for source in self._sources if names is None or source.wanted.name in names]
+        if self._coordinates and any(source.wanted.name in self._textured for source in chosen):
+            chosen.append(self._coordinates)
+        return [time for source in chosen for time in source.times(span)]
+
+    @cached_property
+    def setup(self) -> PatchSetup:
+        """The patch with its controls at the first time. Raises Fault."""
+        return self._meaning.setup(self._base)
+
+    def edges(self) -> tuple[np.ndarray | None, np.ndarray | None]:
+        """Painted edges (k, 2) and their factors (k,) at the first time. Raises Fault."""
+        controls = self._base.get()
+        return controls.edges, controls.edge_density
+
+    def at(self, time: Usd.TimeCode = FIRST) -> Controls:
+        """The controls at a time. Raises Fault where a value is not valid."""
+        if not self.varies:
+            return self.setup.controls
+        with self._lock:
+            own = self._idle.pop() if self._idle else None
+        own = own or ControlsMeaning(self._meaning, self._base)
+        try:
+            return self._read(own, time)
+        finally:
+            with self._lock:
+                self._idle.append(own)
+
+    def _read(self, own: ControlsMeaning, time: Usd.TimeCode) -> Controls:
+        for source in self._varying:
+            own.take(source.wanted, source.at(time))
+        faults = self._give(own, time) if self._textures_vary else []
+        if faults:
+            raise Fault(faults[0])
+        return own.get()
+
+    def _give(self, controls: ControlsMeaning, time: Usd.TimeCode) -> list[str]:
+        return give_textures(controls, self._prim, time)
+
+
+def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation | None, list[str]]:
+    """The patch, or everything that is wrong with it."""
+    meaning = PatchMeaning(mesh, name)
+    faults = take_settings(meaning, prim, inputs("patch"))
+    animation = Animation(prim, meaning)
+    faults += animation.faults
+    with noting(faults):
+        if not faults:
+            animation.setup  # noqa: B018
+    return (None if faults else animation), faults
+
+
+def read_faces(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> PatchMeaning:
+    """A patch that knows of its faces and edges alone. Raises Fault."""
+    meaning = PatchMeaning(mesh, name)
+    faults = take_settings(meaning, prim, [each for each in inputs("patch") if each.name in ("patch", "edges")])
+    if faults:
+        raise Fault(faults[0])
+    return meaning
+
+
+def read_pairs(attribute: Usd.Attribute, mesh: MeshMeaning) -> np.ndarray:
+    """Any edges, int32 (n, 2), as the edges of a patch are read. Raises Fault."""
+    name, edges = str(attribute.GetPath()), input_of("patch", "edges")
+    meaning, value = PatchMeaning(mesh, name), read_value(attribute, FIRST, name=name)
+    meaning.take(edges, value)
+    for time in attribute.GetTimeSamples():
+        meaning.check(edges, read_value(attribute, Usd.TimeCode(time), name=name), time)
+    return integers(value).reshape(-1, 2)
+
+
+def read_edges(prim: Usd.Prim, patch: PatchMeaning) -> Animation:
+    """The painted edges of a patch alone, over time. Raises Fault."""
+    animation = Animation(prim, patch, [each for each in inputs("controls") if each.name == "edgeForceDensities"])
+    if animation.faults:
+        raise Fault(animation.faults[0])
+    return animation
+
+
+def primvar_faces(primvar: UsdGeom.Primvar, mesh: MeshMeaning) -> np.ndarray:
+    """The faces that any primvar chooses as that of a patch does, int32, ascending. Raises Fault."""
+    meaning = PatchMeaning(mesh, primvar.GetPrimvarName())
+    value = read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr())
+    meaning.take(input_of("patch", "patch"), value or Value(primvar.GetName(), None, str(primvar.GetTypeName())))
+    return meaning.faces
+
+
+def subset_faces(child: Usd.Prim, mesh: MeshMeaning) -> np.ndarray:
+    """The faces of a GeomSubset, int32, ascending. Raises Fault."""
+    meaning = PatchMeaning(mesh, child.GetName())
+    take_subset(meaning, child)
+    return meaning.faces
+
+
+def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Iterable[Input]) -> list[str]:
+    """Hands over settings, with the faces of the child of the patch's name. Returns what is wrong."""
+    faults = take(meaning, [Source(prim, each, meaning.name) for each in wanted])
+    child = prim.GetChild(meaning.name) if Sdf.Path.IsValidIdentifier(meaning.name) else None
+    with noting(faults):
+        take_subset(meaning, child)
+    return faults
+
+
+def take_subset(meaning: PatchMeaning, child: Usd.Prim | None) -> None:
+    """Hands over the faces of a child prim, or that there is none. Raises Fault."""
+    if not child:
+        meaning.take_subset(None)
+        return
+    is_subset, subset = child.IsA(UsdGeom.Subset), UsdGeom.Subset(child)
+    element = read_value(subset.GetElementTypeAttr(), Usd.TimeCode.Default()) if is_subset else None
+    indices = subset.GetIndicesAttr() if is_subset else None
+    name = f"{child.GetPath()}.indices"
+
+    def at(time: Usd.TimeCode) -> Value | None:
+        return read_value(indices, time, name=name)
+
+    meaning.take_subset(Subset(str(child.GetPath()), child.GetTypeName(), is_subset, element, at(FIRST)))
+    for time in indices.GetTimeSamples() if indices and indices.ValueMightBeTimeVarying() else []:
+        meaning.check_subset(at(Usd.TimeCode(time)), time)
