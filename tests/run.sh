@@ -10,6 +10,7 @@ say "Format and lint"
 git ls-files -z '*.c' '*.h' '*.cpp' | xargs -0 "$venv/bin/clang-format" --dry-run --Werror
 "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .
 PYTHONPATH=plugin/python "$venv/bin/lint-imports" --no-cache --no-logo
+"$venv/bin/mypy" --cache-dir build/mypy
 
 # What CMakePresets.json has by that name, in build/NAME.
 c_tests() {

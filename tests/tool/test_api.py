@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import textwrap
+from dataclasses import fields
 from pathlib import Path
 from typing import get_type_hints
 
@@ -16,6 +17,7 @@ from repository import ROOT
 from skinslide import FrameSpecError, SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI, StageProblems, UsageError
 from skinslide.arrays.meaning import inputs
 from skinslide.author import mirror, paint, setup
+from skinslide.shot import options
 from skinslide.shot.frames import checked_frames
 from skinslide.stage.mesh import read_meshes
 from stages import FRAMES, MESH, PATCH
@@ -405,6 +407,15 @@ def test_keywords_are_those_of_the_function(module, keywords, function):
     hints = get_type_hints(getattr(module, function))
     fixed = {"stage", "prim", "patch", "value", "return"}
     assert get_type_hints(getattr(module, keywords)) == {name: hints[name] for name in hints if name not in fixed}
+
+
+@pytest.mark.parametrize(
+    ("keywords", "table"),
+    [(options.PictureKeywords, options.PictureOptions), (options.MapKeywords, options.MapOptions)],
+)
+def test_keywords_are_the_options(keywords, table):
+    told = {name: reference.__forward_arg__ for name, reference in keywords.__annotations__.items()}
+    assert told == {field.name: field.type for field in fields(table)}
 
 
 # ---- What is given ----

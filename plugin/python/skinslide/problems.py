@@ -15,9 +15,17 @@ MOST_FRAMES = 10_000_000
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing to say about a stage. `prim` is a path, or "" for the stage as a whole."""
+    """One thing to say about a stage.
 
-    severity: str  # "error", "warning" or "note"
+    Attributes:
+        severity: error, warning or note.
+        prim: The path of a prim; empty for the stage as a whole.
+        patch: The name of a patch; None: of no patch.
+        frame: A stage time; None: of no frame.
+        message: What there is to say, in one line.
+    """
+
+    severity: str
     prim: str
     patch: str | None
     frame: float | None
@@ -32,11 +40,16 @@ class Problem:
         return ": ".join([self.severity, *place, self.message])
 
     def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
         return asdict(self)
 
 
 class StageProblems(Exception):
-    """The stage cannot be slid. Raised before anything is written."""
+    """The stage cannot be slid. Raised before anything is written.
+
+    Attributes:
+        problems: What is wrong with it, the errors among it.
+    """
 
     def __init__(self, problems: Sequence[Problem]):
         super().__init__("\n".join(map(str, problems)))
@@ -44,7 +57,11 @@ class StageProblems(Exception):
 
 
 class FrameProblem(Exception):
-    """One frame cannot be slid."""
+    """One frame cannot be slid.
+
+    Attributes:
+        problem: What is wrong with it.
+    """
 
     def __init__(self, problem: Problem):
         super().__init__(str(problem))
@@ -64,7 +81,11 @@ class FrameSpecError(UsageError):
 
 
 class SliderError(RuntimeError):
-    """What the core says, in one line that names patch and element. `status` is its code, such as "BAD_PATCH"."""
+    """What the core says, in one line that names patch and element.
+
+    Attributes:
+        status: The core's code, such as BAD_PATCH.
+    """
 
     def __init__(self, status: str, message: str):
         super().__init__(message)

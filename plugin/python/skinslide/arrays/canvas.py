@@ -48,12 +48,7 @@ class Shape(NamedTuple):
 
 
 class Tessellation:
-    """A mesh made into triangles, with some of its faces outlined. Immutable: any number of threads may draw it.
-
-    st           (sum of counts, 2) at the mesh's corners; None: chequers are squares in space, at rest
-    faces        (n,) the patch
-    subdivision  draws the limit surface; None: the faces
-    """
+    """A mesh made into triangles, with some of its faces outlined. Immutable: any number of threads may draw it."""
 
     def __init__(
         self,
@@ -63,6 +58,15 @@ class Tessellation:
         faces: np.ndarray,
         subdivision: Subdivision | None = None,
     ):
+        """Makes the triangles.
+
+        Args:
+            shape: The faces of the mesh.
+            rest_points: Of the mesh (V, 3).
+            st: At the mesh's corners (sum of counts, 2); None: chequers are squares in space, at rest.
+            faces: Those outlined (n,).
+            subdivision: Of which the limit surface is drawn; None: the faces are.
+        """
         native, out = Arguments(), ffi.new("skinslide_tessellation **")
         mesh = native.mesh(*shape, rest_points, subdivision)
         corners = native.optional(st, np.float32, (len(shape.face_indices), 2), "st")

@@ -70,7 +70,7 @@ def mirror_faces(
 ) -> Mirrored:
     """The faces and vertices on the other side of a mesh that is symmetric about the plane where `axis` is `plane`.
 
-    tolerance  None: 1e-4 of the mesh's largest extent
+    Points may be within `tolerance` of their mirror images; None: 1e-4 of the mesh's largest extent.
     """
     native = Arguments()
     mesh = native.mesh(face_counts, face_indices, rest_points)

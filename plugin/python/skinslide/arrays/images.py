@@ -72,7 +72,7 @@ def map_tiles(corners: Corners) -> np.ndarray:
 def sample_map(corners: Corners, images: Mapping[int, Image]) -> np.ndarray:
     """Values by vertex, float32 (V,): means over corners in the faces; 1 at vertices of none of them.
 
-    images  by the number of their tile; {0: image} covers every texture coordinate by its wraps
+    Images are by the number of their tile; {0: image} covers every texture coordinate by its wraps.
     """
     native, values = Arguments(), np.empty(corners.vertex_count, np.float32)
     tiles = new_array("texture_tile", len(images))

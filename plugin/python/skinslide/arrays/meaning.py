@@ -5,7 +5,7 @@ The manual is `stage.h`: what there is to fetch is asked for, handed over, and c
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
@@ -369,7 +369,7 @@ class Texture(NamedTuple):
 class ControlsMeaning:
     """What is painted and animated on a patch, at one time; for use by one thread at a time.
 
-    base  controls of the patch whose values these begin with, and which stay as they are
+    It begins with the values of a base, controls of the patch which stay as they are.
     """
 
     def __init__(self, patch: PatchMeaning, base: ControlsMeaning | None = None):
@@ -377,7 +377,7 @@ class ControlsMeaning:
         bases = [base.handle] if base else []
         _call(lib.skinslide_stage_controls_create, patch.handle, bases[0] if bases else None, out)
         self._patch = patch
-        self.handle = Handle(out[0], lib.skinslide_stage_controls_destroy, patch.handle, *bases)
+        self.handle: Handle = Handle(out[0], lib.skinslide_stage_controls_destroy, patch.handle, *bases)
 
     def take(self, source: Input, value: Value | None) -> None:
         """Takes an input of the group controls. Raises Fault."""
@@ -441,7 +441,7 @@ class Output(NamedTuple):
     name: str
     type_name: str
     pose_count: int
-    count: int
+    value_count: int
     reason: str | None
     hidden: str | None
     pointer: Any
@@ -485,7 +485,7 @@ class DerivedMeaning:
 
     def value(self, output: Output, cached: Value | None, poses: Sequence[Pose]) -> np.ndarray:
         """The value at a time, float32 (n, 3). Raises Fault."""
-        out = np.empty((output.count, 3), np.float32)
+        out = np.empty((output.value_count, 3), np.float32)
         place = writable("float[]", out)
         _call(lib.skinslide_stage_derived_value, self.handle, output, cached, _Poses(poses), len(poses), place)
         return out
@@ -503,7 +503,7 @@ class _Native:
 
     def __init__(self) -> None:
         self._alive: list[Any] = []
-        self._makers = {
+        self._makers: dict[type, Callable[[Any], Any]] = {
             Value: self._value,
             Subset: self._subset,
             File: self._file,
@@ -596,7 +596,7 @@ def _call(function: Any, *arguments: Any) -> None:
 
 def _copied(pointer: Any, dtype: type, count: int, width: int | None = None) -> np.ndarray:
     size = count * (width or 1) * np.dtype(dtype).itemsize
-    array = np.frombuffer(ffi.buffer(pointer, size), dtype).copy() if size else np.empty(0, dtype)
+    array: np.ndarray = np.frombuffer(ffi.buffer(pointer, size), dtype).copy() if size else np.empty(0, dtype)
     return array if width is None else array.reshape(count, width)
 
 

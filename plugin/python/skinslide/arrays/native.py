@@ -24,25 +24,43 @@ Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo)
 class Controls:
     """What an artist paints and animates on a patch, for a mesh of V vertices and F faces.
 
-    None is 1 everywhere, and of max_distance no limit.
+    Attributes:
+        vertex_density: Force density multipliers (V,), above 0; an edge takes the mean of its ends; None: 1.
+        face_density: The same by face (F,); an edge takes the mean of its faces; None: 1.
+        edges: Pairs of vertices (k, 2), each an edge of the patch; None: none.
+        edge_density: A factor above 0 for each of them (k,), which multiplies the others; None: none.
+        weight: How far each vertex slides (V,), 0 to 1; None: 1.
+        envelope: Scales the slide of the whole patch, 0 to 1.
+        max_distance: How far each vertex may slide along the surface (V,), in the mesh's units; None: no limit.
     """
 
-    vertex_density: np.ndarray | None = None  # (V,)
-    face_density: np.ndarray | None = None  # (F,)
-    edges: np.ndarray | None = None  # (k, 2) vertices
-    edge_density: np.ndarray | None = None  # (k,)
-    weight: np.ndarray | None = None  # (V,), 0..1
+    vertex_density: np.ndarray | None = None
+    face_density: np.ndarray | None = None
+    edges: np.ndarray | None = None
+    edge_density: np.ndarray | None = None
+    weight: np.ndarray | None = None
     envelope: float = 1.0
-    max_distance: np.ndarray | None = None  # (V,), along the surface
+    max_distance: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class PatchSetup:
-    """One patch as an artist sets it up; the settings are the tokens of `SkinSlideAPI`."""
+    """One patch as an artist sets it up; the settings are the tokens of `SkinSlideAPI`.
+
+    Attributes:
+        name: Of the patch, such as elbow_L.
+        faces: Of the mesh (n,), in any order.
+        corners: Vertices (4,) on the outer boundary that go to the corners of the square; None: none.
+        boundary: auto, square or circle: the outline in which the patch is laid out.
+        holes: pinned or free: what happens at the rims of holes.
+        rule: unit, fast or relaxed: where skin slides to.
+        interpolation: auto, linear, meanValue or limit: how a place within a face becomes a point.
+        controls: What is painted.
+    """
 
     name: str
-    faces: np.ndarray  # (n,)
-    corners: np.ndarray | None = None  # (4,) vertices
+    faces: np.ndarray
+    corners: np.ndarray | None = None
     boundary: str = "auto"
     holes: str = "pinned"
     rule: str = "unit"
@@ -52,32 +70,59 @@ class PatchSetup:
 
 @dataclass(frozen=True, eq=False)
 class Subdivision:
-    """How a mesh is subdivided, in the words of UsdGeomMesh; None is none. Sharpness 10 or more is infinitely sharp."""
+    """How a mesh is subdivided, in the words of UsdGeomMesh. Sharpness 10 or more is infinitely sharp.
+
+    Attributes:
+        scheme: catmullClark, loop, bilinear or none.
+        boundary_rule: edgeAndCorner, edgeOnly or none.
+        triangle_rule: catmullClark or smooth.
+        crease_lengths: Vertices of each crease (c,); None: no creases.
+        crease_indices: Vertices (sum of lengths,), crease by crease.
+        crease_sharpnesses: One for each crease (c,), or one for each edge of each crease.
+        corner_indices: Sharp vertices (k,); None: none.
+        corner_sharpnesses: One for each of them (k,).
+        hole_indices: Faces that are holes of the surface (h,); None: none.
+    """
 
     scheme: str = "catmullClark"
     boundary_rule: str = "edgeAndCorner"
     triangle_rule: str = "catmullClark"
-    crease_lengths: np.ndarray | None = None  # (c,) vertices of each crease
-    crease_indices: np.ndarray | None = None  # (sum of lengths,)
-    crease_sharpnesses: np.ndarray | None = None  # (c,), or one for each edge of each crease
-    corner_indices: np.ndarray | None = None  # (k,)
-    corner_sharpnesses: np.ndarray | None = None  # (k,)
-    hole_indices: np.ndarray | None = None  # (h,) faces
+    crease_lengths: np.ndarray | None = None
+    crease_indices: np.ndarray | None = None
+    crease_sharpnesses: np.ndarray | None = None
+    corner_indices: np.ndarray | None = None
+    corner_sharpnesses: np.ndarray | None = None
+    hole_indices: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
 class Lookup:
-    """How rest vertices are looked up, as in `skinslide_workspace_options`. Where they are found is always the same."""
+    """How rest vertices are looked up in a frame. Where they are found is always the same.
 
-    method: str = "auto"  # auto, egl, exact
-    device: int | None = None  # number of one of EGL's devices; None: the first that works
-    resolution: int = 0  # texels along a side; 0: by the patch
+    Attributes:
+        method: auto, egl or exact.
+        device: The number of one of EGL's devices; None: the first that works.
+        resolution: Texels along a side of the texture of faces; 0: by the patch.
+    """
+
+    method: str = "auto"
+    device: int | None = None
+    resolution: int = 0
 
     @staticmethod
     def of(lookup: str | Lookup) -> Lookup:
+        """A lookup of which the method alone may be given.
+
+        Args:
+            lookup: A lookup, or its method.
+
+        Returns:
+            The lookup.
+        """
         return lookup if isinstance(lookup, Lookup) else Lookup(lookup)
 
     def options(self) -> Any:
+        """The core's struct of options. Raises SliderError for what none can have."""
         method, device = enum_value("lookup", self.method, ""), device_number(self.device)
         if not 0 <= self.resolution < 2**31:
             raise SliderError("BAD_ARGUMENT", f"no such resolution: {self.resolution}")
@@ -110,8 +155,7 @@ def device_number(device: int | None) -> int:
 
 
 def tokens(setting: str) -> tuple[str, ...]:
-    """The tokens of a setting: boundary, holes, rule, interpolation, lookup, normals_layout, scheme, boundary_rule,
-    triangle_rule, pixels."""
+    """The tokens of a setting, such as boundary, rule, lookup, scheme or pixels."""
     return tuple(_values_by_token(setting))
 
 
@@ -159,9 +203,9 @@ class Arguments:
 
     def mesh(
         self,
-        face_counts: np.ndarray,
-        face_indices: np.ndarray,
-        points: np.ndarray,
+        face_counts: Any,
+        face_indices: Any,
+        points: Any,
         subdivision: Subdivision | None = None,
     ) -> Any:
         mesh = new("mesh")
@@ -259,7 +303,7 @@ def encoded_name(name: str) -> bytes:
 
 
 def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.ndarray:
-    """values as a contiguous array, or SliderError with both shapes."""
+    """A contiguous array of values, or SliderError with both shapes."""
     try:
         source = np.asarray(values)
     except (TypeError, ValueError) as error:  # rows of different lengths
@@ -312,8 +356,9 @@ def call(function: Any, *arguments: Any) -> None:
 
 def read(kind: type[Record], *structs: Any) -> Record:
     """A record of the fields of structs, text and tokens as str."""
-    fields = ((struct, *each) for struct in structs for each in ffi.typeof(struct).fields)
-    values = {name: _read(field.type, getattr(struct, name)) for struct, name, field in fields}
+    values: dict[str, Any] = {}
+    for struct in structs:
+        values |= {name: _read(field.type, getattr(struct, name)) for name, field in ffi.typeof(struct).fields}
     return kind(*(values[name] for name in kind._fields))
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from skinslide._core import ffi, lib
 from skinslide.arrays.native import (
@@ -57,15 +58,28 @@ __all__ = [
 
 
 class Frame(NamedTuple):
-    """A slid frame: `points` float32 (V, 3); a `PatchResult` for each patch, fields as in `skinslide_patch_result`."""
+    """A slid frame.
+
+    Attributes:
+        points: float32 (V, 3).
+        patches: What happened to each of the slider's patches.
+        embeddings: Of each patch in the plane, float64 (patch vertices, 2), where asked for; else None.
+    """
 
     points: np.ndarray
     patches: tuple[PatchResult, ...]
-    embeddings: tuple[np.ndarray, ...] | None  # float64 (patch vertices, 2) each, where asked for
+    embeddings: tuple[np.ndarray, ...] | None
 
 
 class Diagnostics(NamedTuple):
-    """What a slide did to each vertex, float32 (V,) each, as in `skinslide_diagnostics`."""
+    """What a slide did to each vertex, float32 (V,) each.
+
+    Attributes:
+        stretch_before: RMS of log(length / rest length) over the edges of patches at the vertex, in the cache.
+        stretch_after: The same, slid.
+        slide: How far it slid, in the mesh's units.
+        force_density: The mean multiplier of those edges, as painted.
+    """
 
     stretch_before: np.ndarray
     stretch_after: np.ndarray
@@ -81,23 +95,32 @@ def version() -> str:
 class Slider:
     """A mesh with all its patches. Immutable; any number of threads may slide frames at once.
 
-    face_counts   (F,) vertices of each face
-    face_indices  (sum of counts,) vertices, face by face
-    rest_points   (V, 3) the pose in which nothing slides
-    patches       faces that fall into several connected pieces become several patches, in `Slider.patches`
-    subdivision   how the mesh is subdivided, on which the interpolation limit depends; None: it is not
+    Faces of a set-up that fall into several connected pieces become several patches. `patches` says of each what it is.
     """
 
     def __init__(
         self,
-        face_counts: np.ndarray,
-        face_indices: np.ndarray,
-        rest_points: np.ndarray,
+        face_counts: npt.ArrayLike,
+        face_indices: npt.ArrayLike,
+        rest_points: npt.ArrayLike,
         patches: Sequence[PatchSetup],
         *,
         lookup: str | Lookup = "auto",
         subdivision: Subdivision | None = None,
     ):
+        """Builds every patch at rest.
+
+        Args:
+            face_counts: Vertices of each face (F,).
+            face_indices: Vertices (sum of counts,), face by face.
+            rest_points: The pose in which nothing slides (V, 3).
+            patches: The set-ups.
+            lookup: How rest vertices are looked up: auto, egl, exact, or a Lookup.
+            subdivision: How the mesh is subdivided, on which the interpolation limit depends; None: it is not.
+
+        Raises:
+            SliderError: What cannot be slid; the message names patch and element.
+        """
         native = Arguments()
         mesh = native.mesh(face_counts, face_indices, rest_points, subdivision)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
@@ -114,9 +137,21 @@ class Slider:
         self._lock = threading.Lock()
 
     def slide(
-        self, points: np.ndarray, controls: Sequence[Controls] | None = None, *, embeddings: bool = False
+        self, points: npt.ArrayLike, controls: Sequence[Controls] | None = None, *, embeddings: bool = False
     ) -> Frame:
-        """Slides one frame: points (V, 3) of the deformed mesh; controls, one a set-up, or None: the set-ups' own."""
+        """Slides one frame.
+
+        Args:
+            points: Of the deformed mesh (V, 3).
+            controls: One a set-up; None: the set-ups' own.
+            embeddings: Whether the frame's embeddings are wanted.
+
+        Returns:
+            The frame.
+
+        Raises:
+            SliderError: Points or controls that cannot be; the message names patch and element.
+        """
         native = Arguments()
         cached = native.points(points, self._sizes.vertices, "points")
         given = native.frame_controls(controls, self._names, self._sizes)
@@ -132,13 +167,26 @@ class Slider:
 
     def diagnose(
         self,
-        cached: np.ndarray,
-        slid: np.ndarray,
+        cached: npt.ArrayLike,
+        slid: npt.ArrayLike,
         controls: Sequence[Controls] | None = None,
         *,
         chosen: Sequence[bool] | None = None,
     ) -> Diagnostics:
-        """What a slide from cached to slid, (V, 3) each, did. chosen: the set-ups whose patches count; None: all."""
+        """What a slide did.
+
+        Args:
+            cached: Points before it (V, 3).
+            slid: Points after it (V, 3).
+            controls: One a set-up; None: the set-ups' own.
+            chosen: Of each set-up, whether its patches count; None: all do.
+
+        Returns:
+            What it did to each vertex.
+
+        Raises:
+            SliderError: Points or controls that cannot be.
+        """
         native, count = Arguments(), self._sizes.vertices
         before, after = native.points(cached, count, "cached"), native.points(slid, count, "slid")
         given = native.frame_controls(controls, self._names, self._sizes)
@@ -151,19 +199,51 @@ class Slider:
         return result
 
     def vertices(self, patch: int) -> np.ndarray:
-        """Mesh vertices of a patch, int32, ascending."""
+        """The mesh vertices of a patch.
+
+        Args:
+            patch: Its index in `patches`.
+
+        Returns:
+            int32 (patch vertices,), ascending.
+        """
         return self._patch_array(lib.skinslide_slider_patch_vertices, patch, "vertex_count", np.int32)
 
     def faces(self, patch: int) -> np.ndarray:
-        """Mesh faces of a patch, int32, ascending."""
+        """The mesh faces of a patch.
+
+        Args:
+            patch: Its index in `patches`.
+
+        Returns:
+            int32 (patch faces,), ascending.
+        """
         return self._patch_array(lib.skinslide_slider_patch_faces, patch, "face_count", np.int32)
 
     def embedding(self, patch: int) -> np.ndarray:
-        """The rest embedding of a patch in the unit square, float64 (patch vertices, 2)."""
+        """The rest embedding of a patch in the unit square.
+
+        Args:
+            patch: Its index in `patches`.
+
+        Returns:
+            float64 (patch vertices, 2).
+        """
         return self._patch_array(lib.skinslide_slider_embedding, patch, "vertex_count", np.float64, 2)
 
-    def id_buffer(self, points: np.ndarray, patch: int) -> np.ndarray:
-        """The texture of lookup egl for a frame: uint32 (side, side), rows from v = 0; 1 + patch face, 0 for none."""
+    def id_buffer(self, points: npt.ArrayLike, patch: int) -> np.ndarray:
+        """The texture of faces of the lookup egl for a frame.
+
+        Args:
+            points: Of the deformed mesh (V, 3).
+            patch: Its index in `patches`.
+
+        Returns:
+            uint32 (side, side), rows from v = 0 on: 1 + patch face, 0 for none.
+
+        Raises:
+            SliderError: The slider's lookup has no texture.
+        """
         native, side = Arguments(), ffi.new("int32_t *")
         cached = native.points(points, self._sizes.vertices, "points")
         slid = ffi.new("float[]", 3 * self._sizes.vertices)
@@ -213,7 +293,17 @@ class Slider:
 
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
-    """What a lookup comes to on this machine, and its device; SliderError where it cannot be had."""
+    """What a lookup comes to on this machine, and its device.
+
+    Args:
+        lookup: auto, egl, exact, or a Lookup.
+
+    Returns:
+        The lookup that a slider would have, and why.
+
+    Raises:
+        SliderError: It cannot be had.
+    """
     info, device = new("lookup_info"), new("device_info")
     call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info, device)
     return read(LookupInfo, info[0], device[0])
@@ -227,12 +317,21 @@ def limit_points(
     corners: np.ndarray,
     places: np.ndarray,
 ) -> np.ndarray:
-    """Points of the limit surface of a subdivided mesh, float32 (n, 3).
+    """Points of the limit surface of a subdivided mesh.
 
     A face of n vertices is n quads, one a corner, that meet at its middle.
 
-    corners  (n,) indices of face_indices: which quad
-    places   (n, 2) in 0..1: along the side to the next corner, and to the one before; (1, 1) is the middle of the face
+    Args:
+        face_counts: Vertices of each face (F,).
+        face_indices: Vertices (sum of counts,), face by face.
+        points: Of the mesh (V, 3).
+        subdivision: How it is subdivided.
+        corners: Indices of face_indices (n,): which quad.
+        places: In 0..1 (n, 2): along the side to the next corner, and to the one before; (1, 1) is the middle of the
+            face.
+
+    Returns:
+        float32 (n, 3).
     """
     native = Arguments()
     mesh = native.mesh(face_counts, face_indices, points, subdivision)

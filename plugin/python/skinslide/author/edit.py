@@ -57,8 +57,8 @@ class EditedMesh:
 def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = None) -> Iterator[EditedMesh]:
     """The mesh, for as long as the block authors its patch.
 
-    source  the patch that is read for it, of which faults are said; None: the patch itself
-    Raises TypeError, UsageError, StageProblems for a Fault too; nothing is authored then.
+    Faults are said of `source`, the patch that is read for it; None: of the patch itself. Raises TypeError, UsageError,
+    and StageProblems for a Fault too; nothing is authored then.
     """
     check_target(stage)
     path = given_path("prim", prim)

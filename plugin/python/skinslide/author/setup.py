@@ -61,16 +61,16 @@ def setup(
     """
     if sum(source is not None for source in (faces, subset, primvar)) != 1:
         raise UsageError("one of faces, subset and primvar is needed")
-    ranges = parse_faces(faces) if isinstance(faces, str) else None
     with edited(stage, prim, patch) as mesh:
         applied = SkinSlideAPI.Apply(mesh.prim, patch)
-        if ranges is not None:
-            chosen = _expand(ranges, mesh.topology.face_count)
+        chosen: np.ndarray | None = None
+        if isinstance(faces, str):
+            chosen = _expand(parse_faces(faces), mesh.topology.face_count)
         elif faces is not None:
             chosen = given_faces("faces", faces, mesh.topology.face_count)
         elif subset is not None:
             chosen = _of_subset(applied, subset, mesh.meaning)
-        else:
+        elif primvar is not None:
             chosen = _of_primvar(applied, primvar, mesh.meaning)
         if chosen is not None:
             applied.SetFaces(chosen)
@@ -134,13 +134,10 @@ def _expand(ranges: list[tuple[int, int]], face_count: int) -> np.ndarray:
 
 def _of_subset(patch: SkinSlideAPI, subset: str, mesh: MeshMeaning) -> np.ndarray | None:
     """The faces of a GeomSubset; None where the patch finds them by itself."""
-    child, own = (
-        patch.GetPrim().GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None,
-        patch.GetPatchPrimvar(),
-    )
+    child = patch.GetPrim().GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None
     if not child:
         raise Fault(f"there is no GeomSubset {subset} under the mesh")
-    found = subset_faces(child, mesh)
+    found, own = subset_faces(child, mesh), patch.GetPatchPrimvar()
     return None if subset == patch.GetName() and not (own and own.HasAuthoredValue()) else found
 
 

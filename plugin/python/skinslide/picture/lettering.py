@@ -75,7 +75,7 @@ def _lay(pixels: np.ndarray, card: np.ndarray, place: Viewport, top: int) -> Non
 
 
 def _encoded(light: np.ndarray) -> np.ndarray:
-    """sRGB bytes of linear light."""
+    """Bytes, in sRGB, of linear light."""
     light = np.clip(light, 0, 1)
     encoded = np.where(light < 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.rint(255 * encoded).astype(np.uint8)

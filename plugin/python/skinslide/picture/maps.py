@@ -1,4 +1,4 @@
-"""Maps of what a slide did, in the texture coordinates of each mesh:
+"""Maps of what a slide did, in the texture coordinates of each mesh.
 
 for each time: texture coordinates             read on the loop's thread
     for each kind and each tile: draw, make an OpenEXR file     on a thread of the pool
@@ -11,13 +11,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from threading import Semaphore
-from typing import Any
+from typing import Any, Unpack
 
 from skinslide.arrays.native import Lookup
 from skinslide.picture.meshmaps import KINDS, Atlas, MeshMaps, WrittenMap
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
-from skinslide.shot.options import Frames, MapOptions, Prims, SlideOptions
+from skinslide.shot.options import Frames, MapKeywords, MapOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh
 from skinslide.shot.products import Making, MeshMaking, Shot
 from skinslide.shot.report import BakeReport, MeshReport
@@ -37,14 +37,29 @@ def maps(
     lookup: str | Lookup = "auto",
     jobs: int = 1,
     progress: Progress | None = None,
-    **maps: Any,
+    **maps: Unpack[MapKeywords],
 ) -> MapsReport:
     """Writes maps of stretch before and after, slide distance and force density over the faces of patches.
 
-    stage     a path, or a stage; never written
-    prims, frames, lookup, jobs, progress   as for `bake_to_file`
-    maps      as for `Maps`
-    Raises UsageError, StageProblems, FrameProblem, StageError.
+    Args:
+        stage: The stage, or its path; never written.
+        folder: As for `Maps`.
+        prims: As for `bake_to_file`.
+        frames: As for `bake_to_file`.
+        lookup: As for `bake_to_file`.
+        jobs: As for `bake_to_file`.
+        progress: As for `bake_to_file`.
+        **maps: As for `Maps`.
+
+    Returns:
+        What was slid, and the maps.
+
+    Raises:
+        TypeError: Something else than a stage or prims.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or a file not be written.
+        StageProblems: The stage cannot be slid, or not be drawn.
+        FrameProblem: A frame cannot be slid.
     """
     wanted = Maps(folder, **maps)
     report = slide(Shot.of(stage), SlideOptions.of(prims, frames, lookup, jobs), [wanted], progress)
@@ -56,16 +71,30 @@ def maps(
 class Maps(MapOptions):
     """Maps of stretch before and after, slide distance and force density over the faces of patches.
 
-    Each is an OpenEXR file of one channel, Y, in `folder`, which is made where it is missing: MESH.KIND.FRAME.exr, or
-    MESH.KIND.TILE.FRAME.exr where the faces reach beyond the first tile of a UDIM; each is written whole or not at all.
-    Force density is that of paint, maps and edges, without what is constant, which changes nothing; painting by such a
-    map gives the same densities again, but for what an edge blurs.
+    Each is an OpenEXR file of one channel, Y: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where the faces reach
+    beyond the first tile of a UDIM; each is written whole or not at all. Force density is that of paint, textures and
+    edges, without what is constant, which changes nothing; painting by such a map gives the same densities again, but
+    for what an edge blurs.
+
+    Attributes:
+        folder: Where maps go, made where there is none.
     """
 
     folder: StrPath
 
-    def begin(self, shot: Shot, _options: SlideOptions) -> Making:
-        """Raises UsageError for a folder that cannot be."""
+    def begin(self, shot: Shot, options: SlideOptions) -> Making:
+        """Begins to draw the maps of a shot.
+
+        Args:
+            shot: The shot.
+            options: What is slid.
+
+        Returns:
+            What the loop gives the frames to.
+
+        Raises:
+            UsageError: The folder cannot be.
+        """
         return _Mapping(self, OutputFolder(self.folder, shot.stage, shot.path))
 
 
@@ -96,10 +125,17 @@ class DrawnMaps:
 
 @dataclass
 class MapsReport(BakeReport):
-    """What was slid for the maps, and the maps."""
+    """What was slid for the maps, and the maps.
+
+    Attributes:
+        warnings: What reading the stage warned of.
+        meshes: One for each mesh.
+        made: What was drawn.
+    """
 
     @property
     def maps(self) -> list[WrittenMap]:
+        """The maps, in the order in which they were written."""
         return next(made.maps for made in self.made if isinstance(made, DrawnMaps))
 
 

@@ -39,7 +39,17 @@ class MapName(NamedTuple):
 
 
 class WrittenMap(NamedTuple):
-    """One file, with the least and the greatest value of the vertices drawn."""
+    """One file.
+
+    Attributes:
+        file: Its path.
+        prim: The path of the mesh.
+        kind: stretchBefore, stretchAfter, slide or forceDensity.
+        tile: The number of its UDIM tile; None: the mesh has no other.
+        frame: The stage time; None: the default time.
+        lowest: The least value of the vertices drawn.
+        highest: The greatest.
+    """
 
     file: str
     prim: str

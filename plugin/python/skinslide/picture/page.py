@@ -45,10 +45,15 @@ def page(
 ) -> str:
     """The page, to be written as UTF-8. The same arguments give the same bytes.
 
-    report                 its problems are listed
-    facts                  of the shot as a whole, as they are to be shown
-    time_codes_per_second  of the stage: how fast it plays
-    Raises ValueError where a strip has no frames, or pictures that are not one PNG or JPEG a frame.
+    Args:
+        title: Of the page.
+        strips: What is shown.
+        report: Its problems are listed.
+        facts: Of the shot as a whole, as they are to be shown.
+        time_codes_per_second: Of the stage: how fast it plays.
+
+    Raises:
+        ValueError: A strip has no frames, or pictures that are not one PNG or JPEG a frame.
     """
     for strip in strips:
         _check(strip)
@@ -179,9 +184,9 @@ def _media_type(picture: bytes) -> str | None:
 
 
 def compressed(pixels: np.ndarray) -> bytes:
-    """A rendered picture for a page of many frames: some tenth of its PNG. Colours keep their full resolution.
+    """A rendered picture, uint8 (height, width, 3), for a page of many frames: some tenth of its PNG.
 
-    pixels  uint8 (height, width, 3)
+    Colours keep their full resolution.
     """
     image = Image.fromarray(pixels)
     image.thumbnail((_PICTURE_WIDTH, image.height))

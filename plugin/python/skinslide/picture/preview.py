@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Unpack
 
 from pxr import Sdf, Usd
 
@@ -29,7 +29,7 @@ from skinslide.picture.page import page
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
-from skinslide.shot.options import Frames, PictureOptions, Prims, SlideOptions
+from skinslide.shot.options import Frames, PictureKeywords, PictureOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh
 from skinslide.shot.products import Making, MeshMaking, Shot
 from skinslide.shot.report import BakeReport, MeshReport
@@ -51,13 +51,30 @@ def preview(
     lookup: str | Lookup = "auto",
     jobs: int = 1,
     progress: Progress | None = None,
-    **pictures: Any,
+    **pictures: Unpack[PictureKeywords],
 ) -> PreviewReport:
-    """Draws pictures of every patch into a folder, and a page of them.
+    """Draws pictures of every patch into a folder, and a page of them. Each is written whole or not at all.
 
-    prims, frames, lookup, jobs, progress   as for `bake_to_file`
-    pictures      as for `Pictures`
-    Raises UsageError, StageProblems, FrameProblem, StageError. Each picture is written whole or not at all.
+    Args:
+        stage: The stage, or its path; never written.
+        folder: As for `Pictures`.
+        html: As for `Pictures`.
+        prims: As for `bake_to_file`.
+        frames: As for `bake_to_file`.
+        lookup: As for `bake_to_file`.
+        jobs: As for `bake_to_file`.
+        progress: As for `bake_to_file`.
+        **pictures: As for `Pictures`.
+
+    Returns:
+        What was slid, and the files.
+
+    Raises:
+        TypeError: Something else than a stage or prims.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or a file not be written.
+        StageProblems: The stage cannot be slid, or not be drawn.
+        FrameProblem: A frame cannot be slid.
     """
     wanted = Pictures(folder, html, **pictures)
     report = slide(Shot.of(stage), SlideOptions.of(prims, frames, lookup, jobs), [wanted], progress)
@@ -67,16 +84,31 @@ def preview(
 @documented
 @dataclass(frozen=True)
 class Pictures(PictureOptions):
-    """Pictures of every patch, to be drawn into `folder`, which is made where there is none, with a contact sheet.
+    """Pictures of every patch, before and after side by side, with a contact sheet, and a page of them.
 
-    `html` is a page of all of them, with curves of what happened at each frame: one file, which loads no other.
+    Attributes:
+        folder: Where pictures go, made where there is none; None: nowhere.
+        html: A page of all of them, with curves of what happened at each frame: one file, which loads no other; None:
+            none. One of both is needed.
     """
 
     folder: StrPath | None = None
     html: StrPath | None = None
 
     def begin(self, shot: Shot, options: SlideOptions) -> Making:
-        """Raises UsageError and StageProblems for what cannot be written or drawn."""
+        """Begins to draw a shot.
+
+        Args:
+            shot: The shot.
+            options: What is slid.
+
+        Returns:
+            What the loop gives the frames to.
+
+        Raises:
+            UsageError: The files cannot be written.
+            StageProblems: The stage cannot be drawn.
+        """
         if self.folder is None and self.html is None:
             raise UsageError("no folder for pictures (-o) and no page (--html) is asked for")
         folder = None if self.folder is None else OutputFolder(self.folder, shot.stage, shot.path)
@@ -90,22 +122,32 @@ class Pictures(PictureOptions):
 
 @dataclass
 class PreviewReport(BakeReport):
-    """What was slid for the pictures, and the files."""
+    """What was slid for the pictures, and the files.
+
+    Attributes:
+        warnings: What reading the stage warned of.
+        meshes: One for each mesh.
+        made: What was drawn.
+    """
 
     @property
     def device(self) -> str:
+        """What the pictures were drawn with."""
         return self._drawn.device
 
     @property
     def files(self) -> list[str]:
+        """The files in the folder, in the order in which they were written."""
         return self._drawn.files
 
     @property
     def pictures(self) -> int:
+        """How many were drawn."""
         return self._drawn.pictures
 
     @property
     def seconds(self) -> float:
+        """How long sliding and drawing took."""
         return self._drawn.seconds
 
     @property

@@ -46,17 +46,31 @@ def bake_to_file(
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
-    """Bakes a stage into a layer of overs to be sublayered above it. `output` is written whole or not at all.
+    """Bakes a stage into a layer of overs to be sublayered above it.
 
-    prims     paths of prims, to bake the meshes with patches at and below them; None: every mesh with a patch
-    frames    stage times, or a spec such as "101:109x2"; None: the authored samples; a mesh without samples has one
-              value, written as a default, whatever the frames
-    lookup    auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had
-    jobs      frames slid at once; the result does not depend on it
-    progress  called after each frame with the frames done and in all
-    diagnostics  writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points
-    also      what else is made of the frames, each of which is slid once: `Pictures`, `Maps`
-    Raises UsageError, StageProblems, FrameProblem (also where max_folded or max_clamped is exceeded), StageError.
+    Args:
+        stage: The stage, or its path; never written.
+        output: The layer: .usda, .usdc or .usd, written whole or not at all.
+        prims: Prims, of which the meshes with patches at and below them are baked; None: every mesh with a patch.
+        frames: Stage times, or a spec such as "101:109x2"; None: the authored samples. A mesh without samples has one
+            value, written as a default, whatever the frames.
+        lookup: auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had.
+        jobs: Frames slid at once; the result does not depend on it.
+        progress: Called after each frame with the frames done and in all.
+        max_folded: Faces turned over that a patch may have at a frame; None: any number.
+        max_clamped: Vertices looked up outside every face that a patch may have at a frame; None: any number.
+        diagnostics: Writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points.
+        also: What else is made of the frames, each of which is slid once: `Pictures`, `Maps`.
+
+    Returns:
+        What was done, patch by patch.
+
+    Raises:
+        TypeError: Something else than a stage or prims.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or the layer not be written.
+        StageProblems: The stage cannot be slid.
+        FrameProblem: A frame cannot be slid, or has more than max_folded or max_clamped.
     """
     options = SlideOptions.of(prims, frames, lookup, jobs)
     layer = _Layer(LayerOptions(max_folded, max_clamped, diagnostics), Path(output))
@@ -76,10 +90,31 @@ def bake(
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
-    """Bakes a stage into its edit target, once every frame is known; arguments and exceptions as `bake_to_file`'s.
+    """Bakes a stage into its edit target, once every frame is known.
 
     Takes the place of an earlier bake there, of the same prims. Where the layer holds the cache too, the cache's values
     move to attributes skinSlide:cached:*, from which the next bake into it starts.
+
+    Args:
+        stage: The stage.
+        prims: As for `bake_to_file`.
+        frames: As for `bake_to_file`.
+        lookup: As for `bake_to_file`.
+        jobs: As for `bake_to_file`.
+        progress: As for `bake_to_file`.
+        max_folded: As for `bake_to_file`.
+        max_clamped: As for `bake_to_file`.
+        diagnostics: As for `bake_to_file`.
+        also: As for `bake_to_file`.
+
+    Returns:
+        What was done, patch by patch.
+
+    Raises:
+        TypeError: Something else than a stage or prims.
+        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        StageProblems: The stage cannot be slid.
+        FrameProblem: A frame cannot be slid, or has more than max_folded or max_clamped.
     """
     check_target(stage)
     options = SlideOptions.of(prims, frames, lookup, jobs)

@@ -26,10 +26,24 @@ from skinslide.stage.mesh import PatchedMesh
 
 @dataclass(frozen=True)
 class CheckedPatch:
-    """One piece of a patch. `free` counts the vertices that may slide; the last three are of the rest embedding."""
+    """One piece of a patch.
+
+    Attributes:
+        name: Of the patch.
+        piece: Its number, from 1.
+        pieces: How many the patch has.
+        vertices: Of the piece.
+        edges: Of the piece.
+        faces: Of the piece.
+        free: Vertices that may slide.
+        holes: Boundary loops but the longest.
+        zero_length_edges: Of no length at rest.
+        collapsed_faces: Of no area in the rest embedding.
+        folded_faces: Turned over in the rest embedding.
+    """
 
     name: str
-    piece: int  # from 1
+    piece: int
     pieces: int
     vertices: int
     edges: int
@@ -43,21 +57,42 @@ class CheckedPatch:
 
 @dataclass(frozen=True)
 class CheckedMap:
-    """A map of a patch at the first time. `tiles` are those the patch lies in; 0 is the one image of a map without."""
+    """A texture that is painted by, at the first time.
+
+    Attributes:
+        patch: The name of the patch.
+        name: Of the attribute that names the file.
+        file: As it was found.
+        channel: The one that is used.
+        st: The primvar at which it is sampled.
+        tiles: Those that the patch lies in; 0 is the one image of a texture without.
+        width: Of the largest tile, in texels.
+        height: Of the largest tile, in texels.
+    """
 
     patch: str
-    name: str  # of the attribute
+    name: str
     file: str
     channel: str
     st: str
     tiles: list[int]
-    width: int  # of the largest tile
+    width: int
     height: int
 
 
 @dataclass(frozen=True)
 class CheckedMesh:
-    """A mesh that a bake would slide. `samples` are the stage times it would write."""
+    """A mesh that a bake would slide.
+
+    Attributes:
+        path: Of the prim.
+        points: How many it has.
+        faces: How many it has.
+        rest: Where its rest points were found, such as primvars:Pref.
+        samples: The stage times that would be written.
+        patches: Every piece of every patch.
+        maps: The textures that are painted by.
+    """
 
     path: str
     points: int
@@ -70,7 +105,16 @@ class CheckedMesh:
 
 @dataclass(frozen=True)
 class CheckedLookup:
-    """What a bake would look up with. Where that is exact, the device is the one that egl would have, if any."""
+    """What a bake would look up with.
+
+    Attributes:
+        lookup: egl or exact.
+        reason: Why; empty where it cannot be otherwise.
+        device: What egl draws with, or would; empty where there is none.
+        renderer: As the driver names it.
+        driver: Its version.
+        software: Whether it is a software rasteriser.
+    """
 
     lookup: str
     reason: str
@@ -81,6 +125,17 @@ class CheckedLookup:
 
     @classmethod
     def choose(cls, lookup: Lookup) -> CheckedLookup:
+        """What a lookup comes to on this machine.
+
+        Args:
+            lookup: What is asked for.
+
+        Returns:
+            What a bake would have.
+
+        Raises:
+            SliderError: It cannot be had.
+        """
         chosen = choose_lookup(lookup)
         device = chosen
         if chosen.lookup != "egl":
@@ -90,6 +145,7 @@ class CheckedLookup:
         return cls(chosen.lookup, reason, device.device_name, device.renderer, device.driver, bool(device.software))
 
     def lines(self) -> Iterator[str]:
+        """The same for a terminal."""
         yield f"lookup {self.lookup}" + (f": {self.reason}" if self.reason else "")
         kind = "a software rasteriser" if self.software else "hardware"
         device = f"{self.device}: {self.renderer}, {self.driver}, {kind}" if self.device else "no device"
@@ -98,6 +154,15 @@ class CheckedLookup:
 
 @dataclass(frozen=True)
 class CheckReport:
+    """What a bake would slide, and all there is to say about it.
+
+    Attributes:
+        stage: Its path, or its identifier.
+        meshes: Those that would be slid.
+        problems: Errors, then warnings, then notes.
+        lookup: What would be looked up with.
+    """
+
     stage: str
     meshes: list[CheckedMesh]
     problems: list[Problem]
@@ -105,9 +170,11 @@ class CheckReport:
 
     @property
     def failed(self) -> bool:
+        """Whether there are errors, with which nothing would be baked."""
         return bool(errors(self.problems))
 
     def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
         return asdict(self)
 
     def text(self) -> str:
@@ -141,10 +208,20 @@ def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
 
 
 def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Lookup = "auto") -> CheckReport:
-    """Checks a stage without changing it. Reads every sample; StageError where the stage cannot be opened.
+    """Says what a bake would slide, patch by patch, and every problem. Reads every sample, and changes nothing.
 
-    prims   paths of prims to look at with everything below them; None: the whole stage
-    lookup  what a bake would be asked for; UsageError where it cannot be had
+    Args:
+        stage: The stage, or its path.
+        prims: Prims to look at with everything below them; None: the whole stage.
+        lookup: What a bake would be asked for: auto, egl, exact, or a Lookup.
+
+    Returns:
+        The meshes, and the problems, of which errors would stop a bake.
+
+    Raises:
+        TypeError: Something else than a stage or prims.
+        UsageError: The lookup cannot be had.
+        StageError: The stage cannot be opened.
     """
     try:
         chosen = CheckedLookup.choose(Lookup.of(lookup))

@@ -46,9 +46,9 @@ def described(each: Field[Any], default: Any) -> str:
 
 
 def documented(table: T) -> T:
-    """Adds its options to what a table says of itself."""
+    """Adds its options to the attributes that a table says it has, which are the last it says of itself."""
     lines = [f"    {each.name}: {described(each, each.default)}" for each in fields(table) if "words" in each.metadata]
-    table.__doc__ = "\n".join([inspect.cleandoc(table.__doc__ or ""), "", "Attributes:", *lines])
+    table.__doc__ = "\n".join([inspect.cleandoc(table.__doc__ or ""), *lines])
     return table
 
 

@@ -21,7 +21,18 @@ _PART = re.compile(rf"(?P<first>{_NUMBER})(?:[:-](?P<last>{_NUMBER})(?:x(?P<step
 
 
 def parse_frames(spec: str) -> list[float]:
-    """The frames of a spec, ascending, each once. Ranges include their ends and may descend; steps may be fractions."""
+    """Reads a frame spec.
+
+    Args:
+        spec: `101:109x2` as USD writes ranges, `101-109x2` as farms do, `1001`, or a comma list of these. Ranges
+            include their ends and may descend; steps may be fractions.
+
+    Returns:
+        The frames, ascending, each once.
+
+    Raises:
+        FrameSpecError: The spec is none; the message names the part.
+    """
     frames: set[float] = set()
     left = MOST_FRAMES
     for part in spec.split(","):

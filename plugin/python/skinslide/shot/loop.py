@@ -1,4 +1,4 @@
-"""The loop over a shot: each time of each mesh is read once and slid once, whatever is made of it:
+"""The loop over a shot: each time of each mesh is read once and slid once, whatever is made of it.
 
 ask each product what it can know           where its files go; any error: stop here, nothing is written
 meshes, problems = read the stage           any error: stop here

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 from skinslide.problems import UsageError
 from skinslide.shot import checks
@@ -177,6 +177,20 @@ class PictureOptions(Options):
         super().__post_init__()
 
 
+class PictureKeywords(TypedDict, total=False):
+    """The same as keywords of a function."""
+
+    patches: Names
+    views: Sequence[str] | str
+    camera: PrimLike | None
+    follow: bool
+    size: tuple[int, int]
+    form: str
+    st: str | None
+    squares: float | None
+    most_stretch: float
+
+
 @dataclass(frozen=True, kw_only=True)
 class MapOptions(Options):
     """What maps are drawn."""
@@ -205,3 +219,11 @@ class MapOptions(Options):
         help="the primvar with texture coordinates, in which the maps are drawn and carried on for 4 texels beyond; "
         "where faces overlap in it, as with mirrored halves, the later in the mesh is seen (default: %(default)s)",
     )
+
+
+class MapKeywords(TypedDict, total=False):
+    """The same as keywords of a function."""
+
+    patches: Names
+    size: int
+    st: str

@@ -34,14 +34,27 @@ _NO_STRETCH = 1e-4  # less is not to be seen
 
 @dataclass
 class PatchReport:
-    """One patch over all frames."""
+    """One patch over all frames.
+
+    Attributes:
+        info: What the patch is.
+        frames: Stage times, ascending; None is the default time.
+        results: What happened at each of them.
+    """
 
     info: PatchInfo
     frames: list[float | None] = field(default_factory=list)
     results: list[PatchResult] = field(default_factory=list)
 
     def column(self, name: str) -> np.ndarray:
-        """A field of the results, frame by frame."""
+        """A field of the results, frame by frame.
+
+        Args:
+            name: The field.
+
+        Returns:
+            Its values (frames,).
+        """
         return np.array([getattr(result, name) for result in self.results])
 
     @property
@@ -56,16 +69,18 @@ class PatchReport:
         return worst.stretch_after / worst.stretch_before - 1 if worst.stretch_before > _NO_STRETCH else None
 
     def milliseconds(self) -> dict[str, np.ndarray]:
-        """Time by stage and in total, frame by frame."""
+        """Time by stage of the walk and in total, frame by frame, (frames,) each."""
         stages = {stage: 1e3 * self.column(f"{stage}_seconds") for stage in STAGES}
         return {**stages, "total": np.sum(list(stages.values()), axis=0)}
 
     @property
     def label(self) -> str:
+        """The patch's name, with its piece where it has several."""
         info = self.info
         return info.name if info.piece_count == 1 else f"{info.name} ({info.piece + 1} of {info.piece_count})"
 
     def as_dict(self) -> dict[str, Any]:
+        """The same for JSON, with the largest and the mean of each field of the results."""
         fields = {name: self.column(name) for name in PatchResult._fields}
         worst = self.results[self.worst]
         return {
@@ -79,7 +94,14 @@ class PatchReport:
         }
 
     def problems(self, prim: str) -> list[Problem]:
-        """A warning for each kind of degradation."""
+        """A warning for each kind of degradation.
+
+        Args:
+            prim: The path of the mesh.
+
+        Returns:
+            The warnings.
+        """
         at_rest = [(None, getattr(self.info, name), text) for name, text in _AT_REST.items()]
         at_frames = [self._most(name, text) for name, text in _AT_FRAMES.items()]
         warnings = [*at_rest, *at_frames]
@@ -127,7 +149,14 @@ def _frame_dict(frame: float | None, result: PatchResult) -> dict[str, Any]:
 
 @dataclass
 class MeshReport:
-    """One mesh over all frames."""
+    """One mesh over all frames.
+
+    Attributes:
+        path: Of the prim.
+        vertex_count: Of the mesh.
+        rest_source: Where the rest points were found, such as primvars:Pref.
+        patches: Those that were slid, in the order of the set-ups and their pieces.
+    """
 
     path: str
     vertex_count: int
@@ -136,19 +165,37 @@ class MeshReport:
 
     @classmethod
     def start(cls, path: str, vertex_count: int, rest_source: str, patches: Sequence[PatchInfo]) -> MeshReport:
+        """A report without frames.
+
+        Args:
+            path: Of the prim.
+            vertex_count: Of the mesh.
+            rest_source: Where the rest points were found.
+            patches: What each patch is.
+
+        Returns:
+            The report.
+        """
         return cls(path, vertex_count, rest_source, [PatchReport(info) for info in patches])
 
     def add(self, frame: float | None, results: Sequence[PatchResult]) -> None:
-        """Takes in one frame; None is the default time."""
+        """Takes in one frame.
+
+        Args:
+            frame: The stage time; None is the default time.
+            results: What happened to each patch.
+        """
         for patch, result in zip(self.patches, results, strict=True):
             patch.frames.append(frame)
             patch.results.append(result)
 
     @property
     def frame_count(self) -> int:
+        """How many frames were slid."""
         return max((len(patch.frames) for patch in self.patches), default=0)
 
     def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
         return {
             "prim": self.path,
             "vertex_count": self.vertex_count,
@@ -168,7 +215,13 @@ class Made(Protocol):
 
 @dataclass
 class BakeReport:
-    """Every mesh that was slid. `problems`: what reading the stage warned of, and every degradation."""
+    """Every mesh that was slid.
+
+    Attributes:
+        warnings: What reading the stage warned of.
+        meshes: One for each mesh.
+        made: What was made of the frames beside a layer, such as pictures.
+    """
 
     warnings: list[Problem]
     meshes: list[MeshReport] = field(default_factory=list)
@@ -176,10 +229,12 @@ class BakeReport:
 
     @property
     def frame_count(self) -> int:
+        """How many frames of all meshes were slid."""
         return sum(mesh.frame_count for mesh in self.meshes)
 
     @property
     def problems(self) -> list[Problem]:
+        """The warnings, and every degradation."""
         patches = [(mesh.path, patch) for mesh in self.meshes for patch in mesh.patches]
         return self.warnings + [problem for prim, patch in patches for problem in patch.problems(prim)]
 

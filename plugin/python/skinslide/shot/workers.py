@@ -37,9 +37,15 @@ def work_ahead(
 ) -> Iterator[tuple[Usd.TimeCode, T]]:
     """What the work on each time gives, in the order of times.
 
-    read       what of the stage a time needs, on this thread; gives the work, which is done in the pool
-    in_flight  times read before the first of them is waited for
-    Raises FrameProblem for the first time that cannot be had.
+    Args:
+        mesh: Whose times they are.
+        times: When.
+        read: Reads what of the stage a time needs, on this thread; gives the work, which is done in the pool.
+        pool: Where it is done.
+        in_flight: Times read before the first of them is waited for.
+
+    Raises:
+        FrameProblem: The first time that cannot be had.
     """
     waiting: deque[tuple[Usd.TimeCode, Future[T]]] = deque()
     for time in times:

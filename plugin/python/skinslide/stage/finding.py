@@ -19,7 +19,7 @@ def find_meshes(
 ) -> tuple[list[tuple[Usd.Prim, list[str]]], list[Problem]]:
     """The meshes with patches, each with their names, and what there is to say of every prim that carries a patch.
 
-    prim_paths  None: the whole stage; else prims that are looked at with everything below them
+    Of the whole stage, or of the prims at `prim_paths` and everything below them.
     """
     meshes, problems, seen = [], list(composition_problems(stage, prim_paths)), set()
     prototypes = _instancer_prototypes(stage)

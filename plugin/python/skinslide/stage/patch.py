@@ -29,8 +29,9 @@ from skinslide.stage.values import FIRST, Source, Span, noting, primvar_source, 
 class Animation:
     """What is painted and animated on one patch, over time. Any number of threads may read it.
 
-    faults    what is wrong at the first time
-    textures  those of the first time
+    Attributes:
+        faults: What is wrong at the first time.
+        textures: Those of the first time.
     """
 
     def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Iterable[Input] = inputs("controls")):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom
@@ -83,7 +83,7 @@ def read_value(
 ) -> Value | None:
     """The value of an attribute as it was authored, or None where it was not. Raises Fault where it cannot be read.
 
-    name  in sentences; None: its own
+    Sentences call it `name`; None: by its own.
     """
     if not attribute or not attribute.HasAuthoredValue():
         return None
@@ -147,6 +147,11 @@ class Taker(Protocol):
 
     def take(self, source: Input, value: Value | None) -> None: ...
 
+
+@runtime_checkable
+class Checker(Protocol):
+    """What later samples of inputs that must stay the same are handed to."""
+
     def check(self, source: Input, value: Value | None, frame: float) -> None: ...
 
 
@@ -156,7 +161,7 @@ def take(taker: Taker, sources: Iterable[Source]) -> list[str]:
     for source in sources:
         with noting(faults):
             taker.take(source.wanted, source.first() or source.nothing())
-            if source.wanted.when == STILL:
+            if source.wanted.when == STILL and isinstance(taker, Checker):
                 for frame, value in source.samples():
                     taker.check(source.wanted, value, frame)
     return faults

@@ -36,8 +36,9 @@ class EarlierBake:
     def replace(self, attribute: Sdf.Path, samples: bool) -> None:
         """Makes room for the values of a bake; those that are the cache's are kept beside them.
 
-        attribute  on the stage, which need not have it
-        samples    whether samples will be authored; the default value, which may be the rest pose, then stays
+        Args:
+            attribute: On the stage, which need not have it.
+            samples: Whether samples will be authored; the default value, which may be the rest pose, then stays.
         """
         path = self._target.MapToSpecPath(attribute)
         self._before.keep(path)

@@ -22,7 +22,7 @@ class OverLayer:
     """Collects values for attributes of a stage in a layer of overs, typed as the stage has them."""
 
     def __init__(self, layer: Sdf.Layer, output: Path | None = None):
-        """output  whose fault it is when the layer cannot be saved; None: it is never saved."""
+        """With the output whose fault it is when the layer cannot be saved; None: it is never saved."""
         self.layer, self._output = layer, output
         self._saves_in_parts = not layer.anonymous and not layer.realPath.lower().endswith(".usda")
         self._unsaved = 0

@@ -26,7 +26,7 @@ _ABANDONED = 24 * 60 * 60  # seconds
 def check_output(output: Path, extensions: Sequence[str], made: Path | None = None) -> None:
     """Raises UsageError for an output that cannot be, before any work is done.
 
-    made  a folder that will be made, where it is missing, before the output is written
+    `made` is a folder that will be made, where it is missing, before the output is written.
     """
     if output.suffix.lower() not in extensions:
         raise UsageError(f"output {output}: the name must end in {', '.join(extensions)}")

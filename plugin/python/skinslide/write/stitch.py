@@ -28,13 +28,20 @@ _OWN_FIELDS = {"primChildren", "comment"}
 
 @dataclass(frozen=True)
 class StitchReport:
-    """What a stitched layer holds."""
+    """What a stitched layer holds.
+
+    Attributes:
+        prims: The paths of its meshes.
+        frames: Of all of them, ascending.
+        problems: What is worth knowing of them.
+    """
 
     prims: list[str]
     frames: list[float]
     problems: list[Problem]
 
     def text(self) -> str:
+        """What it holds, and every problem, for a terminal."""
         first_to_last = f", {frame_text(self.frames[0])} to {frame_text(self.frames[-1])}" if self.frames else ""
         meshes = f"{len(self.prims)} mesh{'es' * (len(self.prims) != 1)}"
         return "\n".join([f"{meshes}, {len(self.frames)} frames{first_to_last}", *map(str, self.problems)])
@@ -43,7 +50,17 @@ class StitchReport:
 def stitch(chunks: Iterable[StrPath], output: StrPath) -> StitchReport:
     """Writes one layer with the samples of several that were baked from one stage: the layer of one bake.
 
-    Raises UsageError, StageError for a chunk that cannot be opened, StageProblems for chunks that do not fit together.
+    Args:
+        chunks: The paths of layers that bake wrote, each with other frames.
+        output: The layer: .usda, .usdc or .usd, written whole or not at all.
+
+    Returns:
+        What the layer holds.
+
+    Raises:
+        UsageError: Arguments that cannot be, or a layer that no bake wrote.
+        StageError: A chunk cannot be opened, or the layer not be written.
+        StageProblems: The chunks do not fit together.
     """
     files, stitched = [Path(chunk) for chunk in chunks], Path(output)
     check_output(stitched, EXTENSIONS)
