@@ -43,6 +43,31 @@ def test_type_checkers_are_told_what_there_is():
     assert sorted(own.union(*homes.values())) == skinslide.__all__
 
 
+def test_whoever_calls_is_type_checked(tmp_path):
+    """By what the package says of itself, and not as Any."""
+    script = tmp_path / "call.py"
+    script.write_text(
+        textwrap.dedent("""
+        import numpy as np
+        import skinslide
+
+        slider = skinslide.Slider([4], [0, 1, 2, 3], np.zeros((4, 3)), [skinslide.PatchSetup("all", np.arange(1))])
+        reveal_type(slider.slide(np.zeros((4, 3))).patches[0].stretch_after)
+        reveal_type(slider.patches[0].name)
+        reveal_type(skinslide.choose_lookup().lookup)
+        reveal_type(skinslide.check("shot.usda").meshes[0].patches[0].free)
+        reveal_type(skinslide.bake_to_file("shot.usda", "out.usda", frames=[1]).meshes[0].patches[0].info.piece)
+        skinslide.preview("shot.usda", "pictures", views="stretch", sizes=(1, 1))
+        skinslide.paint_to_file("shot.usda", "out.usda", "/mesh", "all", 2, treshold=1)
+        """)
+    )
+    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "pyproject.toml", "--cache-dir", tmp_path, script]
+    said = subprocess.run(command, capture_output=True, text=True).stdout
+    revealed = re.findall(r'Revealed type is "(.*)"', said)
+    assert revealed == ["float", "str", "str", "int", "int"], said
+    assert re.findall(r'argument "(\w+)"', said) == ["sizes", "treshold"], said
+
+
 def test_no_module_is_in_the_place_of_a_function():
     modules = {each.name for each in pkgutil.iter_modules(skinslide.__path__)}
     assert not modules & set(skinslide.__all__)

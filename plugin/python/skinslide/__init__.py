@@ -21,10 +21,13 @@ if TYPE_CHECKING:
     from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
     from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
     from skinslide.author.api import SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI
+    from skinslide.author.applied import CanApplyResult
     from skinslide.author.mirror import mirror, mirror_to_file
     from skinslide.author.paint import PaintReport, paint, paint_to_file
     from skinslide.author.setup import setup, setup_to_file
-    from skinslide.picture.maps import Maps, MapsReport, maps
+    from skinslide.picture.drawing import DrawnPictures
+    from skinslide.picture.maps import DrawnMaps, Maps, MapsReport, maps
+    from skinslide.picture.meshmaps import WrittenMap
     from skinslide.picture.preview import Pictures, PreviewReport, preview
     from skinslide.problems import (
         FrameProblem,
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BakeReport",
+    "CanApplyResult",
     "CheckReport",
     "CheckedLookup",
     "CheckedMap",
@@ -52,6 +56,8 @@ __all__ = [
     "CheckedPatch",
     "Controls",
     "Diagnostics",
+    "DrawnMaps",
+    "DrawnPictures",
     "Frame",
     "FrameProblem",
     "FrameSpecError",
@@ -78,6 +84,7 @@ __all__ = [
     "StitchReport",
     "Subdivision",
     "UsageError",
+    "WrittenMap",
     "bake",
     "bake_to_file",
     "check",
@@ -101,11 +108,14 @@ _HOMES = {
     "arrays.native": ("Controls", "Lookup", "PatchSetup", "Subdivision"),
     "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult"),
     "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
+    "author.applied": ("CanApplyResult",),
     "author.api": ("SkinSlideAPI", "SkinSlideLiveAPI", "SkinSlideMeshAPI"),
     "author.mirror": ("mirror", "mirror_to_file"),
     "author.paint": ("PaintReport", "paint", "paint_to_file"),
     "author.setup": ("setup", "setup_to_file"),
-    "picture.maps": ("Maps", "MapsReport", "maps"),
+    "picture.drawing": ("DrawnPictures",),
+    "picture.maps": ("DrawnMaps", "Maps", "MapsReport", "maps"),
+    "picture.meshmaps": ("WrittenMap",),
     "picture.preview": ("Pictures", "PreviewReport", "preview"),
     "problems": (
         "FrameProblem",

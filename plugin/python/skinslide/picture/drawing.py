@@ -28,7 +28,14 @@ _ON_A_SHEET = 12  # pictures of each series
 
 @dataclass
 class DrawnPictures:
-    """What a report says of pictures."""
+    """The pictures that were made of a shot, in `BakeReport.made`.
+
+    Attributes:
+        device: What they were drawn with.
+        files: In the folder, in the order in which they were written.
+        pictures: How many were drawn.
+        seconds: How long sliding and drawing took.
+    """
 
     device: str = ""
     files: list[str] = field(default_factory=list)
@@ -36,9 +43,18 @@ class DrawnPictures:
     seconds: float = 0.0
 
     def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
         return asdict(self)
 
-    def lines(self, _meshes: Sequence[MeshReport]) -> list[str]:
+    def lines(self, meshes: Sequence[MeshReport]) -> list[str]:
+        """The same for a terminal.
+
+        Args:
+            meshes: Those that were slid.
+
+        Returns:
+            A line.
+        """
         rate = f"{self.pictures} pictures, {self.pictures / max(self.seconds, 1e-9):.1f} a second"
         return [f"{rate}, drawn with {self.device}"]
 

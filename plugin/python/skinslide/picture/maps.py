@@ -100,16 +100,31 @@ class Maps(MapOptions):
 
 @dataclass
 class DrawnMaps:
-    """What a report says of maps."""
+    """The maps that were made of a shot, in `BakeReport.made`.
+
+    Attributes:
+        folder: Where they are.
+        size: Texels along each side.
+        maps: In the order in which they were written.
+    """
 
     folder: str
     size: int
     maps: list[WrittenMap] = field(default_factory=list)
 
     def as_dict(self) -> dict[str, Any]:
+        """The maps for JSON."""
         return {"maps": [written._asdict() for written in self.maps]}
 
     def lines(self, meshes: Sequence[MeshReport]) -> list[str]:
+        """The same for a terminal.
+
+        Args:
+            meshes: Those that were slid.
+
+        Returns:
+            A line for each kind of map of each mesh, and one of all.
+        """
         kinds = [self._line(mesh.path, kind) for mesh in meshes for kind in KINDS]
         written = f"{self.folder}: {_maps(len(self.maps))} of {self.size} x {self.size} texels written"
         return [*filter(None, kinds), written]
