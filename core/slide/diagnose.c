@@ -109,18 +109,55 @@ static void add_density(diagnosis *d, int32_t part) {
         d->tallies[patch->mesh_vertex[v]].density += d->paint_sum[v] / d->degree[v];
 }
 
-static void write_vertex(const tally *at, const float *cached, const float *slid, int32_t v, const skinslide_diagnostics *out) {
+/* What is told of one mesh vertex. */
+typedef struct measures {
+    float before, after, slide, density;
+} measures;
+
+static measures measure(const tally *at, const float *cached, const float *slid, int32_t v) {
     double edges = at->edge_count > 0 ? at->edge_count : 1, way[3];
     for (int k = 0; k < 3; k++)
         way[k] = (double)slid[3 * (int64_t)v + k] - cached[3 * (int64_t)v + k];
+    return (measures){
+        .before = (float)sqrt(at->before / edges),
+        .after = (float)sqrt(at->after / edges),
+        .slide = (float)ss_length(way),
+        .density = at->patch_count > 0 ? (float)(at->density / at->patch_count) : 1,
+    };
+}
+
+/* Stretches are logarithms of lengths that floats can say. */
+static skinslide_status check_vertex(const measures *own, const skinslide_diagnostics *out, int32_t v, skinslide_error *error) {
+    if (out->slide && !isfinite(own->slide))
+        return ss_fail(error, SKINSLIDE_BAD_POINTS, "slide: vertex %d is not finite: %g", v, own->slide);
+    if (out->force_density && !isfinite(own->density))
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "force density: vertex %d is not finite: %g", v, own->density);
+    return SKINSLIDE_OK;
+}
+
+static void write_vertex(const measures *own, const skinslide_diagnostics *out, int32_t v) {
     if (out->stretch_before)
-        out->stretch_before[v] = (float)sqrt(at->before / edges);
+        out->stretch_before[v] = own->before;
     if (out->stretch_after)
-        out->stretch_after[v] = (float)sqrt(at->after / edges);
+        out->stretch_after[v] = own->after;
     if (out->slide)
-        out->slide[v] = (float)ss_length(way);
+        out->slide[v] = own->slide;
     if (out->force_density)
-        out->force_density[v] = at->patch_count > 0 ? (float)(at->density / at->patch_count) : 1;
+        out->force_density[v] = own->density;
+}
+
+static skinslide_status write(const diagnosis *d, const float *cached, const float *slid, const skinslide_diagnostics *out,
+                              skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t v = 0; v < d->slider->vertex_count && !status; v++) {
+        measures own = measure(&d->tallies[v], cached, slid, v);
+        status = check_vertex(&own, out, v, error);
+    }
+    for (int32_t v = 0; v < d->slider->vertex_count && !status; v++) {
+        measures own = measure(&d->tallies[v], cached, slid, v);
+        write_vertex(&own, out, v);
+    }
+    return status;
 }
 
 skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinslide_controls *controls, const uint8_t *chosen,
@@ -144,8 +181,8 @@ skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinsl
             add_stretch(&d, p, cached, slid);
             add_density(&d, p);
         }
-    for (int32_t v = 0; !status && v < slider->vertex_count; v++)
-        write_vertex(&d.tallies[v], cached, slid, v, diagnostics);
+    if (!status)
+        status = write(&d, cached, slid, diagnostics, error);
     ss_free(&d.memory);
     return status;
 }

@@ -26,30 +26,50 @@ static skinslide_status take_samples(int32_t vertex_count, const skinslide_sampl
     return SKINSLIDE_OK;
 }
 
+/* The rate at which the displacement changes over two samples, and the rate at which that does over three. */
+static double change_of(const skinslide_sample *samples, int count, int64_t i) {
+    double first = samples[1].seconds - samples[0].seconds, here = displacement(&samples[1], i);
+    double before = (here - displacement(&samples[0], i)) / first;
+    if (count == 2)
+        return before;
+    double second = samples[2].seconds - samples[1].seconds, after = (displacement(&samples[2], i) - here) / second;
+    return 2 * (after - before) / (first + second);
+}
+
+static float corrected(const skinslide_sample *samples, int count, float rate, int64_t i) {
+    double change = change_of(samples, count, i);
+    return change == 0 ? rate : (float)(rate + change);
+}
+
+/* What was not finite in the cache may stay so. */
+static skinslide_status check_rates(int32_t vertex_count, const skinslide_sample *samples, int count, const float *rates,
+                                    skinslide_error *error) {
+    for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++) {
+        float rate = corrected(samples, count, rates[i], i);
+        if (!isfinite(rate) && isfinite(rates[i]))
+            return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d is not finite: %g",
+                           count == 2 ? "velocities" : "accelerations", (int)(i / 3), rate);
+    }
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status correct(int32_t vertex_count, const skinslide_sample *given, int count, float *rates,
+                                skinslide_error *error) {
+    skinslide_sample samples[3];
+    skinslide_status status = take_samples(vertex_count, given, count, rates, samples, error);
+    if (!status)
+        status = check_rates(vertex_count, samples, count, rates, error);
+    for (int64_t i = 0; !status && i < 3 * (int64_t)vertex_count; i++)
+        rates[i] = corrected(samples, count, rates[i], i);
+    return status;
+}
+
 skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *given, float *velocities,
                                       skinslide_error *error) {
-    skinslide_sample samples[2];
-    skinslide_status status = take_samples(vertex_count, given, 2, velocities, samples, error);
-    double step = status ? 1 : samples[1].seconds - samples[0].seconds;
-    for (int64_t i = 0; !status && i < 3 * (int64_t)vertex_count; i++) {
-        double rate = (displacement(&samples[1], i) - displacement(&samples[0], i)) / step;
-        velocities[i] = rate == 0 ? velocities[i] : (float)(velocities[i] + rate);
-    }
-    return status;
+    return correct(vertex_count, given, 2, velocities, error);
 }
 
 skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *given, float *accelerations,
                                          skinslide_error *error) {
-    skinslide_sample samples[3];
-    skinslide_status status = take_samples(vertex_count, given, 3, accelerations, samples, error);
-    if (status)
-        return status;
-    double first = samples[1].seconds - samples[0].seconds, second = samples[2].seconds - samples[1].seconds;
-    for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++) {
-        double here = displacement(&samples[1], i);
-        double before = (here - displacement(&samples[0], i)) / first, after = (displacement(&samples[2], i) - here) / second;
-        double rate = 2 * (after - before) / (first + second);
-        accelerations[i] = rate == 0 ? accelerations[i] : (float)(accelerations[i] + rate);
-    }
-    return SKINSLIDE_OK;
+    return correct(vertex_count, given, 3, accelerations, error);
 }

@@ -83,15 +83,38 @@ static bool moves(const double displacement[3]) {
     return displacement[0] != 0 || displacement[1] != 0 || displacement[2] != 0;
 }
 
-static void write_points(const skinslide_workspace *workspace, const float *points, float *slid) {
-    for (int32_t v = 0; v < workspace->slider->vertex_count; v++) {
-        const double *displacement = workspace->sum[v];
-        bool moved = moves(displacement);
-        for (int k = 0; k < 3; k++) {
-            float here = points[3 * (int64_t)v + k];
-            slid[3 * (int64_t)v + k] = moved ? (float)(here + displacement[k]) : here;
-        }
+/* Where a vertex goes. */
+static void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
+    const double *displacement = workspace->sum[vertex];
+    bool moved = moves(displacement);
+    for (int k = 0; k < 3; k++) {
+        float here = points[3 * (int64_t)vertex + k];
+        out[k] = moved ? (float)(here + displacement[k]) : here;
     }
+}
+
+static skinslide_status check_landing(const skinslide_workspace *workspace, const ss_patch *patch, const float *points,
+                                      skinslide_error *error) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        int32_t vertex = patch->mesh_vertex[patch->free_vertex[i]];
+        float to[3];
+        land(workspace, points, vertex, to);
+        if (!isfinite(to[0]) || !isfinite(to[1]) || !isfinite(to[2]))
+            return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d slides to where it is not finite: (%g, %g, %g)",
+                           patch->label, vertex, to[0], to[1], to[2]);
+    }
+    return SKINSLIDE_OK;
+}
+
+/* All of them or, where a float cannot hold one, none. */
+static skinslide_status write_points(const skinslide_workspace *workspace, const float *points, float *slid,
+                                     skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)
+        status = check_landing(workspace, workspace->slider->parts[p].patch, points, error);
+    for (int32_t v = 0; v < workspace->slider->vertex_count && !status; v++)
+        land(workspace, points, v, slid + 3 * (int64_t)v);
+    return status;
 }
 
 /* ---- Measures of the result ---- */
@@ -140,7 +163,8 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->patches[p].lengths);
     }
     blend(workspace);
-    write_points(workspace, points, slid);
+    if ((status = write_points(workspace, points, slid, error)))
+        return status;
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
         measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);

@@ -389,8 +389,8 @@ typedef struct skinslide_patch_result {
  *                 when points are the rest points. A vertex that may slide in several patches moves by the mean of their
  *                 displacements, weighted by weight times envelope.
  *   results   out [patch_count], or NULL
- * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite: names the vertex), BAD_CONTROL, SINGULAR,
- * OUT_OF_MEMORY. One thread a workspace. */
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid to where a float is not: names the
+ * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY. One thread a workspace. */
 SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
@@ -424,8 +424,8 @@ typedef struct skinslide_diagnostics {
  *   cached       in  [vertex_count][3] the points before sliding
  *   slid         in  [vertex_count][3] after
  *   diagnostics  in, its arrays out
- * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite: names the vertex), BAD_CONTROL,
- * OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or a slide longer than a float can say:
+ * names the vertex), BAD_CONTROL (also where a density is more than a float can say), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinslide_controls *controls,
                                                   const uint8_t *chosen, const float *cached, const float *slid,
                                                   const skinslide_diagnostics *diagnostics, skinslide_error *error);
@@ -487,7 +487,8 @@ typedef struct skinslide_sample {
  * sample to the second. Vertices whose displacement does not change keep their bits.
  *   samples     in  [2], ascending in time
  *   velocities  in  the cache's, out the corrected [vertex_count][3]
- * Fails with BAD_ARGUMENT (NULL, a negative count, times that are not finite or do not ascend). */
+ * Fails with BAD_ARGUMENT (NULL, a negative count, times that are not finite or do not ascend), BAD_POINTS (a finite velocity
+ * would not stay so: names the vertex). */
 SKINSLIDE_API skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
                                                     skinslide_error *error);
 
