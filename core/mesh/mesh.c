@@ -61,12 +61,8 @@ skinslide_status ss_take_mesh(const skinslide_mesh **mesh, ss_taken_mesh *own, s
 
 /* ---- Edges: sides sorted by their ends ---- */
 
-typedef struct side {
-    int32_t low, high, corner;
-} side;
-
 static int by_ends(const void *a, const void *b) {
-    const side *x = a, *y = b;
+    const ss_side *x = a, *y = b;
     if (x->low != y->low)
         return x->low < y->low ? -1 : 1;
     if (x->high != y->high)
@@ -74,30 +70,30 @@ static int by_ends(const void *a, const void *b) {
     return x->corner < y->corner ? -1 : x->corner > y->corner;
 }
 
-static void list_sides(const ss_faces *faces, side *sides) {
+static void list_sides(const ss_faces *faces, ss_side *sides) {
     for (int32_t c = 0; c < faces->corner_count; c++) {
         int32_t a = faces->corner_vertex[c], b = faces->corner_vertex[ss_next_corner(faces, c)];
-        sides[c] = (side){a < b ? a : b, a < b ? b : a, c};
+        sides[c] = (ss_side){a < b ? a : b, a < b ? b : a, c};
     }
     qsort(sides, (size_t)faces->corner_count, sizeof *sides, by_ends);
 }
 
+/* Whether the sides of an edge are one, or two that go opposite ways. */
+static bool is_sound(const ss_faces *faces, const ss_side *sides, int32_t count) {
+    return count == 1 || (count == 2 && faces->corner_vertex[sides[0].corner] != faces->corner_vertex[sides[1].corner]);
+}
+
 /* Numbers the edges and pairs their sides. mesh_face names faces in messages. */
-static skinslide_status pair_sides(ss_faces *faces, const side *sides, const int32_t *mesh_face, const char *label,
+static skinslide_status pair_sides(ss_faces *faces, const ss_side *sides, const int32_t *mesh_face, const char *label,
                                    skinslide_error *error) {
     int32_t end;
     for (int32_t i = 0; i < faces->corner_count; i = end) {
         for (end = i; end < faces->corner_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high; end++)
             faces->corner_edge[sides[end].corner] = faces->edge_count;
         faces->edge_count++;
+        if (!is_sound(faces, sides + i, end - i))
+            return ss_refuse_edge(faces, sides + i, end - i, mesh_face, label, error);
         int32_t first = sides[i].corner, second = end - i == 2 ? sides[i + 1].corner : -1;
-        if (end - i > 2)
-            return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: edge %d-%d has %d faces", label, sides[i].low, sides[i].high,
-                           end - i);
-        if (second >= 0 && faces->corner_vertex[first] == faces->corner_vertex[second])
-            return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: faces %d and %d are wound against each other at edge %d-%d", label,
-                           mesh_face[faces->corner_face[first]], mesh_face[faces->corner_face[second]], sides[i].low,
-                           sides[i].high);
         faces->corner_twin[first] = second;
         if (second >= 0)
             faces->corner_twin[second] = first;
@@ -107,7 +103,7 @@ static skinslide_status pair_sides(ss_faces *faces, const side *sides, const int
 
 bool ss_number_edges(ss_faces *faces) {
     ss_memory scratch = {0};
-    side *sides = SS_NEW(&scratch, side, faces->corner_count);
+    ss_side *sides = SS_NEW(&scratch, ss_side, faces->corner_count);
     if (scratch.failed)
         return false;
     list_sides(faces, sides);
@@ -154,7 +150,7 @@ skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen
     faces->corner_face = SS_NEW(memory, int32_t, corners);
     faces->corner_twin = SS_NEW(memory, int32_t, corners);
     faces->corner_edge = SS_NEW(memory, int32_t, corners);
-    side *sides = SS_NEW(&scratch, side, corners);
+    ss_side *sides = SS_NEW(&scratch, ss_side, corners);
     int32_t *sorted = SS_NEW(&scratch, int32_t, corners);
     skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t f = 0, c = 0; f < count && !status; f++) {

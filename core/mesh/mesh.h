@@ -57,6 +57,16 @@ bool ss_number_edges(ss_faces *faces);
  */
 int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack);
 
+/* ---- winding.c ---- */
+
+/* A side of a face, by the ends of its edge. */
+typedef struct ss_side {
+    int32_t low, high, corner;
+} ss_side;
+/* Says what is wrong with an edge that has these sides. Renumbers the edges. */
+skinslide_status ss_refuse_edge(ss_faces *faces, const ss_side *sides, int32_t count, const int32_t *mesh_face,
+                                const char *label, skinslide_error *error);
+
 /* ---- Fans: a face of n corners as n - 2 triangles about its first ---- */
 
 /* Triangle t of the fan of a face, as patch vertices. */

@@ -95,6 +95,38 @@ static void bad_faces_are_named(void **state) {
                   "patch p: faces 0 and 1 are wound against each other at edge 0-1");
 }
 
+/* Once alone, once with a neighbour at each side, once the other way round. */
+static void a_face_twice_is_named(void **state) {
+    (void)state;
+    const char *text = "patch p: faces 0 and 1 have the same vertices";
+    expect_taking(3, 2, (int32_t[]){3, 3}, (int32_t[]){0, 1, 2, 1, 2, 0}, SKINSLIDE_BAD_PATCH, text);
+    expect_taking(4, 3, (int32_t[]){4, 4, 3}, (int32_t[]){0, 1, 2, 3, 3, 0, 1, 2, 1, 0, 2}, SKINSLIDE_BAD_PATCH, text);
+    expect_taking(4, 3, (int32_t[]){4, 4, 3}, (int32_t[]){0, 1, 2, 3, 3, 2, 1, 0, 1, 0, 2}, SKINSLIDE_BAD_PATCH, text);
+    expect_taking(5, 2, (int32_t[]){4, 4}, (int32_t[]){0, 1, 2, 3, 0, 1, 4, 3}, SKINSLIDE_BAD_PATCH,
+                  "patch p: faces 0 and 1 are wound against each other at edge 0-1");
+}
+
+/* A ladder of quads whose last side is glued to the first: vertices 2 i and 2 i + 1 are rung i. */
+static void expect_strip(int32_t rungs, bool twisted, int32_t turned, skinslide_status expected, const char *text) {
+    int32_t counts[16], indices[64];
+    for (int32_t f = 0; f < rungs; f++) {
+        int32_t next = (f + 1) % rungs, twist = twisted && f + 1 == rungs;
+        int32_t face[4] = {2 * f, 2 * f + 1, 2 * next + !twist, 2 * next + twist};
+        counts[f] = 4;
+        for (int32_t k = 0; k < 4; k++)
+            indices[4 * f + k] = face[f == turned ? 3 - k : k];
+    }
+    expect_taking(2 * rungs, rungs, counts, indices, expected, text);
+}
+
+static void one_sided_patches_are_named(void **state) {
+    (void)state;
+    expect_strip(5, true, -1, SKINSLIDE_BAD_PATCH,
+                 "patch p: it has one side only, like a Moebius strip: faces cannot be wound alike at edge 0-1");
+    expect_strip(5, true, 2, SKINSLIDE_BAD_PATCH, "patch p: it has one side only, like a Moebius strip...");
+    expect_strip(5, false, 2, SKINSLIDE_BAD_PATCH, "patch p: faces 1 and 2 are wound against each other at edge 4-5");
+}
+
 static void expect_mesh(skinslide_mesh mesh, skinslide_status expected, const char *text) {
     skinslide_error error;
     assert_fails(ss_check_mesh(&mesh, &error), &error, expected, text);
@@ -148,6 +180,8 @@ int main(void) {
         cmocka_unit_test(edges_are_numbered_by_their_ends),
         cmocka_unit_test(pieces_are_numbered_by_their_lowest_face),
         cmocka_unit_test(bad_faces_are_named),
+        cmocka_unit_test(a_face_twice_is_named),
+        cmocka_unit_test(one_sided_patches_are_named),
         cmocka_unit_test(bad_meshes_are_named),
         cmocka_unit_test(counts_that_would_wrap_are_refused),
         cmocka_unit_test(points_that_are_not_finite_are_named),
