@@ -1,5 +1,5 @@
-/* What else a mesh has that follows from its points: which normals, velocities and accelerations count, which are recomputed, and
- * which are blocked because they cannot be, since stale ones would shade and blur wrongly. */
+/* What else a mesh has that follows from its points: which normals, velocities and accelerations count, which are recomputed,
+ * and which are blocked because they cannot be, since stale ones would shade and blur wrongly. */
 #include "stage.h"
 
 #include <math.h>
@@ -148,13 +148,15 @@ static const char *property_name(skinslide_stage_derived *derived, const skinsli
     return ss_copy_text(&derived->memory, name);
 }
 
-static void add(skinslide_stage_derived *derived, int32_t row, skinslide_normals_layout layout, const char *reason) {
+/* A primvar keeps the type that it has; of the others USD says which. */
+static void add(skinslide_stage_derived *derived, int32_t row, const ss_record *record, skinslide_normals_layout layout,
+                const char *reason) {
     const ss_input *input = &inputs()[row];
     derivation *made = &derived->derivations[derived->count++];
     made->row = row, made->layout = layout;
     made->output = (skinslide_stage_output){
         .name = property_name(derived, &input->shown, ""),
-        .type_name = input->shown.type_name,
+        .type_name = input->shown.is_primvar ? ss_copy_text(&derived->memory, record->value.type_name) : input->shown.type_name,
         .pose_count = reason ? 0 : input->pose_count,
         .count = (int32_t)length_of_mesh(derived->mesh, layout),
         .reason = reason ? ss_copy_text(&derived->memory, reason) : NULL,
@@ -205,7 +207,7 @@ static void take(skinslide_stage_derived *derived, int32_t row, const ss_record 
     if (is_constant)
         return;
     skinslide_status status = judge(derived, row, record, interpolation, times, time_count, &layout, &why);
-    add(derived, row, layout, status ? why.message : NULL);
+    add(derived, row, record, layout, status ? why.message : NULL);
     if (record->indices.type != SKINSLIDE_VALUE_NONE)
         block(derived, row, ":indices", "int[]");
 }

@@ -62,7 +62,8 @@ static const char *patch_of_schema(const char *schema) {
     return strncmp(schema, schema_prefix, sizeof schema_prefix - 1) == 0 ? schema + sizeof schema_prefix - 1 : NULL;
 }
 
-static void list_patches(search *own) {
+/* Returns whether each application of the schema names one. */
+static bool list_patches(search *own) {
     bool nameless = false;
     for (int32_t i = 0; i < own->prim.schema_count; i++) {
         const char *patch = patch_of_schema(own->prim.schemas[i]);
@@ -72,6 +73,7 @@ static void list_patches(search *own) {
     }
     if (nameless)
         say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "%s is applied without a patch's name; apply %s:NAME", SS_SCHEMA, SS_SCHEMA);
+    return !nameless;
 }
 
 /* A property in a namespace of patches, "skinSlide:left:elbow:envelope": of left:elbow, its envelope. */
@@ -173,7 +175,8 @@ static void say_unknown(search *own, const char *patch, int32_t space) {
 
 /* ---- Why not ---- */
 
-static void say_why_not(search *own) {
+/* Returns whether there is no reason. */
+static bool say_why_not(search *own) {
     const skinslide_stage_prim *prim = &own->prim;
     const char *type = prim->type_name && *prim->type_name ? prim->type_name : "prim without a type";
     int32_t before = own->finding.problem_count;
@@ -201,7 +204,7 @@ static void say_why_not(search *own) {
     else if (!prim->point_samples && (prim->has_joint_indices || prim->blend_shape_count))
         say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
             "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)");
-    own->finding.slides = own->finding.problem_count == before;
+    return own->finding.problem_count == before;
 }
 
 /* ---- The finding ---- */
@@ -221,7 +224,7 @@ static skinslide_status prepare(search *own, const skinslide_stage_prim *prim, s
 static void look(search *own) {
     if (own->prim.uncomposed)
         say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "USD could not compose this: %s", own->prim.uncomposed);
-    list_patches(own);
+    bool named = list_patches(own);
     if (own->memory.failed)
         return;
     if (own->prim.is_mesh)
@@ -230,7 +233,7 @@ static void look(search *own) {
         for (int32_t space = 0; space < SPACES; space++)
             say_unknown(own, own->patches[i], space);
     if (own->finding.patch_count)
-        say_why_not(own);
+        own->finding.slides = say_why_not(own) && named;
     own->finding.patches = own->patches;
     own->finding.problems = own->problems;
 }

@@ -1,5 +1,5 @@
-/* All that is read, in one table: what SkinSlideAPI declares, what is painted, and what USD has of a mesh. To add an attribute is
- * to add it to the schema and a row here, and to let skinslide_controls or skinslide_patch_setup have its place. */
+/* All that is read, in one table: what SkinSlideAPI declares, what is painted, and what USD has of a mesh. To add an attribute
+ * is to add it to the schema and a row here, and to let skinslide_controls or skinslide_patch_setup have its place. */
 #include "stage.h"
 
 #include "schema.inc"

@@ -1,5 +1,5 @@
-/* How a mesh is subdivided when it is rendered: scheme, rules, creases, corners and holes. How its arrays fit each other and the
- * mesh the core asks when it builds limit surfaces. */
+/* How a mesh is subdivided when it is rendered: scheme, rules, creases, corners and holes. How its arrays fit each other and
+ * the mesh the core asks when it builds limit surfaces. */
 #include "stage.h"
 
 static const ss_input *inputs(void) {

@@ -1,5 +1,5 @@
-/* One map of a patch: an image, or the tiles of a UDIM, sampled at the mesh's texture coordinates. Files are the reader's to find
- * and to read: here is what they are asked for, and what they come to.
+/* One map of a patch: an image, or the tiles of a UDIM, sampled at the mesh's texture coordinates. Files are the reader's to
+ * find and to read: here is what they are asked for, and what they come to.
  *
  *     take (asset) ─► find_tiles (coordinates) ─► give (file) for each tile ─► values */
 #include "stage.h"

@@ -1,4 +1,5 @@
-/* Records: what a reader hands over, as arrays of one type, checked, and with the sentences that say what is wrong with them. */
+/* Records: what a reader hands over, as arrays of one type, checked, and with the sentences that say what is wrong with
+ * them. */
 #include "stage.h"
 
 #include "half.h"

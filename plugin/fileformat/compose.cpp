@@ -1,13 +1,19 @@
 #include "compose.h"
 
 #include "names.h"
+#include "sources.h"
 
 #include "pxr/base/gf/half.h"
 #include "pxr/base/gf/math.h"
+#include "pxr/base/gf/vec2d.h"
+#include "pxr/base/gf/vec2f.h"
+#include "pxr/base/gf/vec2h.h"
 #include "pxr/base/gf/vec3d.h"
 #include "pxr/base/gf/vec3f.h"
 #include "pxr/base/gf/vec3h.h"
+#include "pxr/base/tf/errorMark.h"
 #include "pxr/base/vt/array.h"
+#include "pxr/base/vt/dictionary.h"
 #include "pxr/usd/ar/resolver.h"
 #include "pxr/usd/ar/resolverContext.h"
 #include "pxr/usd/pcp/layerStack.h"
@@ -15,6 +21,7 @@
 #include "pxr/usd/pcp/mapExpression.h"
 #include "pxr/usd/pcp/node.h"
 #include "pxr/usd/pcp/primIndex.h"
+#include "pxr/usd/sdf/layerUtils.h"
 #include "pxr/usd/sdf/listOp.h"
 #include "pxr/usd/sdf/schema.h"
 
@@ -55,11 +62,12 @@ VtValue lerp(double alpha, const VtValue &lower, const VtValue &upper) {
         return lower;
     if (alpha == 1)
         return upper;
-    if (lerpArray<GfVec3f>(alpha, lower, upper, &value) || lerpArray<float>(alpha, lower, upper, &value) ||
-        lerpScalar<float>(alpha, lower, upper, &value) || lerpScalar<double>(alpha, lower, upper, &value) ||
-        lerpScalar<GfHalf>(alpha, lower, upper, &value) || lerpArray<double>(alpha, lower, upper, &value) ||
-        lerpArray<GfHalf>(alpha, lower, upper, &value) || lerpArray<GfVec3d>(alpha, lower, upper, &value) ||
-        lerpArray<GfVec3h>(alpha, lower, upper, &value))
+    if (lerpArray<GfVec3f>(alpha, lower, upper, &value) || lerpArray<GfVec2f>(alpha, lower, upper, &value) ||
+        lerpArray<GfVec2d>(alpha, lower, upper, &value) || lerpArray<GfVec2h>(alpha, lower, upper, &value) ||
+        lerpArray<float>(alpha, lower, upper, &value) || lerpScalar<float>(alpha, lower, upper, &value) ||
+        lerpScalar<double>(alpha, lower, upper, &value) || lerpScalar<GfHalf>(alpha, lower, upper, &value) ||
+        lerpArray<double>(alpha, lower, upper, &value) || lerpArray<GfHalf>(alpha, lower, upper, &value) ||
+        lerpArray<GfVec3d>(alpha, lower, upper, &value) || lerpArray<GfVec3h>(alpha, lower, upper, &value))
         return value;
     return lower;
 }
@@ -143,6 +151,17 @@ VtValue Attribute::at(double time) const {
     return sampleAt(_layer, _path, _toRoot, time);
 }
 
+SdfLayerRefPtr Attribute::bakedLayer() const {
+    static const std::string mark = "skinslide"; // as the tool writes it
+    const std::pair<SdfLayerRefPtr, SdfPath> opinions[] = {{_layer, _path}, {_defaultLayer, _defaultPath}};
+    for (const auto &[layer, path] : opinions) {
+        VtDictionary data;
+        if (layer && layer->HasField(path, SdfFieldKeys->CustomData, &data) && data.count(mark))
+            return layer;
+    }
+    return nullptr;
+}
+
 VtValue Attribute::metadata(const TfToken &field) const {
     VtValue value;
     for (const auto &[layer, path] : _specs) {
@@ -157,13 +176,54 @@ TfToken Attribute::token(const TfToken &field, const TfToken &fallback) const {
     return value.IsHolding<TfToken>() ? value.UncheckedGet<TfToken>() : fallback;
 }
 
+std::string Anchor::path(const Attribute &attribute, const SdfAssetPath &asset) const {
+    std::string path = evaluate(asset.GetAssetPath(), root->GetExpressionVariables());
+    if (path.empty())
+        return path;
+    return attribute.layer() == root ? ArGetResolver().CreateIdentifier(path, ArResolvedPath(resolvedPath))
+                                     : SdfComputeAssetPathRelativeToLayer(attribute.layer(), path);
+}
+
+// ---- Clips ----
+
+namespace {
+
+// The manifest and the prim of each set of clips that are authored at a prim.
+std::vector<std::pair<SdfLayerRefPtr, SdfPath>> manifestsAt(const SdfLayerRefPtr &layer, const SdfPath &path) {
+    std::vector<std::pair<SdfLayerRefPtr, SdfPath>> manifests;
+    VtDictionary sets;
+    layer->HasField(path, names().clips, &sets);
+    for (const auto &[name, value] : sets) {
+        const VtDictionary set = value.IsHolding<VtDictionary>() ? value.UncheckedGet<VtDictionary>() : VtDictionary();
+        std::string prim = VtDictionaryGet<std::string>(set, "primPath", VtDefault = "");
+        std::string file = VtDictionaryGet<SdfAssetPath>(set, "manifestAssetPath", VtDefault = SdfAssetPath()).GetAssetPath();
+        TfErrorMark mark;
+        SdfLayerRefPtr manifest =
+            file.empty() ? nullptr : SdfLayer::FindOrOpen(SdfComputeAssetPathRelativeToLayer(layer, file));
+        mark.Clear();
+        manifests.emplace_back(manifest, SdfPath::IsValidPathString(prim) ? SdfPath(prim) : SdfPath());
+    }
+    return manifests;
+}
+
+} // namespace
+
+bool ClipSite::mayHave(const SdfPath &attribute) const {
+    return std::any_of(manifests.begin(), manifests.end(), [&](const std::pair<SdfLayerRefPtr, SdfPath> &set) {
+        const auto &[manifest, prim] = set;
+        if (!manifest || prim.IsEmpty())
+            return attribute.GetNameToken() == names().points;
+        return manifest->GetSpecType(attribute.ReplacePrefix(path, prim)) == SdfSpecTypeAttribute;
+    });
+}
+
 // ---- Prim ----
 
 Prim::Prim(const PcpPrimIndex &index, std::vector<ClipSite> inheritedClips)
     : _index(&index), _clips(std::move(inheritedClips)) {
     visit([this](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &node) {
         if (layer->HasField(path, names().clips))
-            _clips.push_back({node.GetLayerStack(), path});
+            _clips.push_back({node.GetLayerStack(), path, manifestsAt(layer, path)});
         return true;
     });
 }
@@ -233,10 +293,16 @@ TfTokenVector Prim::childNames() const {
     return order;
 }
 
-bool Prim::clipsApply(const PcpNodeRef &node) const {
+bool Prim::clipsApply(const PcpNodeRef &node, const SdfPath &attribute) const {
     return std::any_of(_clips.begin(), _clips.end(), [&](const ClipSite &site) {
-        return site.layerStack == node.GetLayerStack() && node.GetPath().HasPrefix(site.path);
+        return site.layerStack == node.GetLayerStack() && node.GetPath().HasPrefix(site.path) && site.mayHave(attribute);
     });
+}
+
+TfTokenVector Prim::propertyNames() const {
+    TfTokenVector order;
+    _index->ComputePrimPropertyNames(&order);
+    return order;
 }
 
 Attribute Prim::attribute(const TfToken &name) const {
@@ -259,17 +325,8 @@ Attribute Prim::attribute(const TfToken &name) const {
         }
         // Clips are weaker than samples and splines of the site they are authored at, and stronger than its defaults.
         bool timed = found._source == Attribute::Source::Samples || found._source == Attribute::Source::Spline;
-        found._clipped = found._clipped || (!before && !(found._resolved && timed) && clipsApply(node));
+        found._clipped = found._clipped || (!before && !(found._resolved && timed) && clipsApply(node, path));
     }
-    return found;
-}
-
-bool Prim::hasProperty(const TfToken &name) const {
-    bool found = false;
-    visit([&](const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &) {
-        found = layer->HasSpec(path.AppendProperty(name));
-        return !found;
-    });
     return found;
 }
 
@@ -307,15 +364,14 @@ SdfPathVector Composition::targets(const SdfPath &relationship) {
     return paths;
 }
 
-std::vector<std::string> Composition::errors() const {
-    std::vector<std::string> messages;
-    std::set<std::string> seen;
+std::vector<std::pair<SdfPath, std::string>> Composition::errors() const {
+    std::vector<std::pair<SdfPath, std::string>> errors;
     for (const PcpErrorBasePtr &error : _errors) {
-        std::string message = error->ToString();
-        if (seen.insert(message).second)
-            messages.push_back(message);
+        std::pair<SdfPath, std::string> said(error->rootSite.path, error->ToString());
+        if (std::find(errors.begin(), errors.end(), said) == errors.end())
+            errors.push_back(said);
     }
-    return messages;
+    return errors;
 }
 
 } // namespace skinslide

@@ -11,6 +11,7 @@
 #include "pxr/base/vt/value.h"
 #include "pxr/usd/pcp/cache.h"
 #include "pxr/usd/pcp/errors.h"
+#include "pxr/usd/sdf/assetPath.h"
 #include "pxr/usd/sdf/layer.h"
 #include "pxr/usd/sdf/layerOffset.h"
 #include "pxr/usd/sdf/path.h"
@@ -23,6 +24,17 @@
 
 namespace skinslide {
 using namespace PXR_NS;
+
+class Attribute;
+
+// What asset paths are relative to: the layer that authors them or, of the root, the file that it is a copy of.
+struct Anchor {
+    SdfLayerRefPtr root;
+    std::string resolvedPath;
+
+    // Empty where the path is, or is an expression that gives none.
+    std::string path(const Attribute &attribute, const SdfAssetPath &asset) const;
+};
 
 // A composed attribute: where its value comes from. Keeps the layers it needs, but nothing of the composition.
 class Attribute {
@@ -56,6 +68,8 @@ class Attribute {
     const SdfLayerRefPtr &layer() const {
         return _layer;
     }
+    // The layer of an earlier bake that its value, or its default, comes from; null where there is none.
+    SdfLayerRefPtr bakedLayer() const;
     VtValue metadata(const TfToken &field) const;
     TfToken token(const TfToken &field, const TfToken &fallback) const;
 
@@ -73,10 +87,15 @@ class Attribute {
     std::vector<std::pair<SdfLayerRefPtr, SdfPath>> _specs; // strong to weak
 };
 
-// Where value clips were authored: they hold for that site and below.
+// Value clips, which hold for the site where they were authored and below.
 struct ClipSite {
     PcpLayerStackRefPtr layerStack;
     SdfPath path;
+    // What each set has values of, as its manifest says, at a prim that stands for the site. Of a set without one nobody knows:
+    // it is then of points.
+    std::vector<std::pair<SdfLayerRefPtr, SdfPath>> manifests;
+
+    bool mayHave(const SdfPath &attribute) const; // below the site
 };
 
 // A composed prim, for as long as its Composition lives.
@@ -95,8 +114,8 @@ class Prim {
     }
     std::vector<std::string> apiSchemas() const;
     TfTokenVector childNames() const;
+    TfTokenVector propertyNames() const;
     Attribute attribute(const TfToken &name) const;
-    bool hasProperty(const TfToken &name) const;
     const std::vector<ClipSite> &clips() const {
         return _clips;
     }
@@ -104,7 +123,7 @@ class Prim {
   private:
     using Visit = std::function<bool(const SdfLayerRefPtr &layer, const SdfPath &path, const PcpNodeRef &node)>;
     void visit(const Visit &visit) const; // strong to weak, until it returns false
-    bool clipsApply(const PcpNodeRef &node) const;
+    bool clipsApply(const PcpNodeRef &node, const SdfPath &attribute) const;
 
     const PcpPrimIndex *_index;
     std::vector<ClipSite> _clips;
@@ -124,11 +143,11 @@ class Composition {
     const SdfLayerRefPtr &root() const {
         return _root;
     }
-    const std::string &resolvedPath() const {
-        return _resolvedPath;
+    Anchor anchor() const {
+        return {_root, _resolvedPath};
     }
-    // What could not be composed, each once.
-    std::vector<std::string> errors() const;
+    // What could not be composed, each once, with the prim.
+    std::vector<std::pair<SdfPath, std::string>> errors() const;
     SdfLayerHandleSet usedLayers() const {
         return _cache->GetUsedLayers();
     }

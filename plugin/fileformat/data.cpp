@@ -29,6 +29,11 @@ SdfAttributeSpecHandle declare(const SdfLayerRefPtr &layer, const SdfPath &prim,
     return attribute;
 }
 
+// No value, so that none of a weaker layer is read.
+void block(const SdfLayerRefPtr &layer, const SdfPath &prim, const TfToken &name, const TfToken &type) {
+    declare(layer, prim, name, type)->SetDefaultValue(VtValue(SdfValueBlock()));
+}
+
 } // namespace
 
 DataRefPtr Data::create(const std::vector<std::shared_ptr<LiveMesh>> &meshes, const SdfLayerRefPtr &shown,
@@ -45,30 +50,30 @@ void Data::add(const SdfPath &prim, const TfToken &name, const TfToken &type, co
     declare(shown, prim, name, type);
     if (times.empty()) // the computed default stands for that of the text
         shown->EraseField(prim.AppendProperty(name), SdfFieldKeys->Default);
-    _computed[prim.AppendProperty(name)] = {times, std::move(at)};
+    _computed[prim.AppendProperty(name)] = {times, std::move(at), SdfSchema::GetInstance().FindType(type).GetDefaultValue()};
 }
 
-void Data::addMesh(const std::shared_ptr<LiveMesh> &mesh, const SdfLayerRefPtr &shown) {
-    const PatchedMesh &source = mesh->source();
+void Data::addMesh(const std::shared_ptr<LiveMesh> &live, const SdfLayerRefPtr &shown) {
+    const PatchedMesh &mesh = live->mesh();
     auto compute = [&](const TfToken &name, const char *type, const std::vector<double> &times, Compute at) {
-        add(source.path, name, TfToken(type), times, std::move(at), shown);
+        add(mesh.path, name, TfToken(type), times, std::move(at), shown);
     };
-    compute(names().points, "point3f[]", source.times, [mesh](double time) { return mesh->points(time); });
-    compute(names().extent, "float3[]", source.times, [mesh](double time) { return mesh->extent(time); });
-    if (source.hasNormals) {
-        TfToken name(source.normals.name());
-        std::vector<double> own = source.normals.attribute().times();
-        compute(name, "normal3f[]", source.times.empty() ? own : source.times,
-                [mesh](double time) { return mesh->normals(time); });
-        if (!source.normals.attribute().metadata(names().interpolation).IsEmpty())
-            shown->SetField(source.path.AppendProperty(name), names().interpolation, VtValue(source.normalsInterpolation));
+    compute(names().points, "point3f[]", mesh.times, [live](double time) { return live->points(time); });
+    compute(names().extent, "float3[]", mesh.times, [live](double time) { return live->extent(time); });
+    for (const Derived &derived : mesh.derived) {
+        TfToken name(derived.output->name);
+        if (!derived.output->pose_count) {
+            block(shown, mesh.path, name, TfToken(derived.output->type_name));
+            continue;
+        }
+        // Normals may move over points that do not.
+        const Attribute &cached = derived.cached.attribute();
+        compute(name, derived.output->type_name, mesh.times.empty() ? cached.times() : mesh.times,
+                [live, &derived](double time) { return live->derived(derived, time); });
+        VtValue interpolation = cached.metadata(names().interpolation);
+        if (!interpolation.IsEmpty())
+            shown->SetField(mesh.path.AppendProperty(name), names().interpolation, interpolation);
     }
-    for (const Rate &rate : source.rates) {
-        compute(TfToken(rate.attribute.name()), "vector3f[]", source.times,
-                [mesh, rate](double time) { return mesh->rate(rate, time); });
-    }
-    for (const auto &[name, type] : source.blocked)
-        declare(shown, source.path, name, type)->SetDefaultValue(VtValue(SdfValueBlock()));
 }
 
 // ---- Which attributes and fields are computed ----
@@ -85,12 +90,18 @@ const Data::Computed *Data::computedField(const SdfPath &path, const TfToken &fi
     return attribute && attribute->times.empty() == (field == SdfFieldKeys->Default) ? attribute : nullptr;
 }
 
+// Of the declared type, but for a block, and where the cache has something else that could not be slid.
+VtValue Data::valueAt(const Computed &attribute, double time) {
+    VtValue value = attribute.at(time), cast = VtValue::CastToTypeOf(value, attribute.standard);
+    return cast.IsEmpty() ? value : cast;
+}
+
 VtValue Data::fieldValue(const Computed &attribute) {
     if (attribute.times.empty())
-        return attribute.at(Attribute::defaultTime);
+        return valueAt(attribute, Attribute::defaultTime);
     SdfTimeSampleMap samples;
     for (double time : attribute.times)
-        samples[time] = attribute.at(time);
+        samples[time] = valueAt(attribute, time);
     return VtValue::Take(samples);
 }
 
@@ -140,9 +151,10 @@ VtValue Data::Get(const SdfPath &path, const TfToken &field) const {
 }
 
 const std::type_info &Data::GetTypeid(const SdfPath &path, const TfToken &field) const {
-    if (!computedField(path, field))
+    const Computed *attribute = computedField(path, field);
+    if (!attribute)
         return SdfData::GetTypeid(path, field);
-    return field == SdfFieldKeys->Default ? typeid(VtVec3fArray) : typeid(SdfTimeSampleMap);
+    return field == SdfFieldKeys->Default ? attribute->standard.GetTypeid() : typeid(SdfTimeSampleMap);
 }
 
 std::vector<TfToken> Data::List(const SdfPath &path) const {
@@ -216,7 +228,7 @@ bool Data::QueryTimeSample(const SdfPath &path, double time, SdfAbstractDataValu
     const Computed *attribute = computed(path);
     if (!attribute)
         return SdfData::QueryTimeSample(path, time, value);
-    return hasSample(*attribute, time) && (!value || value->StoreValue(attribute->at(time)));
+    return hasSample(*attribute, time) && (!value || value->StoreValue(valueAt(*attribute, time)));
 }
 
 bool Data::QueryTimeSample(const SdfPath &path, double time, VtValue *value) const {
@@ -226,7 +238,7 @@ bool Data::QueryTimeSample(const SdfPath &path, double time, VtValue *value) con
     if (!hasSample(*attribute, time))
         return false;
     if (value)
-        *value = attribute->at(time);
+        *value = valueAt(*attribute, time);
     return true;
 }
 
@@ -234,7 +246,7 @@ const std::type_info &Data::QueryTimeSampleTypeid(const SdfPath &path, double ti
     const Computed *attribute = computed(path);
     if (!attribute)
         return SdfData::QueryTimeSampleTypeid(path, time);
-    return hasSample(*attribute, time) ? typeid(VtVec3fArray) : typeid(void);
+    return hasSample(*attribute, time) ? attribute->standard.GetTypeid() : typeid(void);
 }
 
 } // namespace skinslide

@@ -53,14 +53,16 @@ class Data : public SdfData {
     struct Computed {
         std::vector<double> times; // ascending; none: a default
         Compute at;
+        VtValue standard; // of the declared type
     };
     const Computed *computed(const SdfPath &path) const;
     // The computed attribute that has this field, or null.
     const Computed *computedField(const SdfPath &path, const TfToken &field) const;
+    static VtValue valueAt(const Computed &attribute, double time);
     static VtValue fieldValue(const Computed &attribute);
     static bool hasSample(const Computed &attribute, double time);
 
-    void addMesh(const std::shared_ptr<LiveMesh> &mesh, const SdfLayerRefPtr &shown);
+    void addMesh(const std::shared_ptr<LiveMesh> &live, const SdfLayerRefPtr &shown);
     void add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at,
              const SdfLayerRefPtr &shown);
 

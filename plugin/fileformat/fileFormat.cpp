@@ -94,17 +94,15 @@ void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath,
         adoptRate(shown, sources);
         adoptRate(anchored, sources);
     }
-    if (!metadataOnly && params.live) {
+    if (!metadataOnly && params.computes) {
         Composition composition(anchored, resolvedPath);
         std::string name = TfGetBaseName(resolvedPath);
-        for (const std::shared_ptr<const PatchedMesh> &source : readMeshes(composition, params, &problems)) {
-            meshes.push_back(std::make_shared<LiveMesh>(source, params, name));
-            for (const Patch &patch : source->patches)
-                sources.paths.merge(patch.files());
+        for (const std::shared_ptr<const PatchedMesh> &mesh : readMeshes(composition, params, &problems)) {
+            meshes.push_back(std::make_shared<LiveMesh>(mesh, params.live.lookup, name));
+            for (const Patch &patch : mesh->patches)
+                sources.paths.insert(patch.files().begin(), patch.files().end());
         }
         nested = nestedIn(composition);
-        std::vector<std::string> errors = composition.errors();
-        problems.insert(problems.end(), errors.begin(), errors.end());
     }
     DataRefPtr data = Data::create(meshes, shown, [](const SdfLayer &from) { return _GetLayerData(from); });
     data->dependencies = std::move(sources.paths);

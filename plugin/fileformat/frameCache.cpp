@@ -3,10 +3,7 @@
 #include "environment.h"
 #include "fault.h"
 
-#include "pxr/base/gf/vec3f.h"
 #include "pxr/base/tf/diagnostic.h"
-#include "pxr/base/vt/array.h"
-#include "pxr/base/vt/types.h"
 
 #include <cstring>
 
@@ -17,11 +14,6 @@ uint64_t bitsOf(double time) {
     uint64_t bits = 0;
     std::memcpy(&bits, &time, sizeof bits);
     return bits;
-}
-
-size_t sizeOf(const Frame &frame) {
-    size_t points = frame.points.IsHolding<VtVec3fArray>() ? frame.points.UncheckedGet<VtVec3fArray>().size() : 0;
-    return sizeof frame + points * sizeof(GfVec3f);
 }
 
 size_t capacityInBytes() {
@@ -72,7 +64,7 @@ std::shared_ptr<const Frame> FrameCache::get(const void *owner, double time, con
 
 void FrameCache::keep(const Key &key, std::shared_ptr<const Frame> frame) {
     Entry &entry = _entries[key];
-    entry.bytes = sizeOf(*frame);
+    entry.bytes = sizeof *frame + frame->bytes;
     entry.frame = std::move(frame);
     entry.used = _order.insert(_order.end(), key);
     _bytes += entry.bytes;

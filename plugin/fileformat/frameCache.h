@@ -4,6 +4,9 @@
 
 #include "pxr/pxr.h"
 
+#include "pxr/base/gf/vec3f.h"
+#include "pxr/base/vt/array.h"
+#include "pxr/base/vt/types.h"
 #include "pxr/base/vt/value.h"
 
 #include <condition_variable>
@@ -19,8 +22,9 @@ namespace skinslide {
 using namespace PXR_NS;
 
 struct Frame {
-    VtValue points;    // slid, or the cache's own
-    bool slid = false; // false: the frame could not be solved
+    VtValue points;      // slid, or the cache's own
+    VtVec3fArray cached; // before sliding; empty where the frame could not be solved
+    size_t bytes = 0;    // that are kept for it alone
 };
 
 class FrameCache {

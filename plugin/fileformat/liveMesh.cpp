@@ -32,42 +32,24 @@ class Counted {
     }
 };
 
-void check(skinslide_status status, const skinslide_error &error) {
-    if (status != SKINSLIDE_OK)
-        throw Fault(error.message);
-}
-
-const float *floatsOf(const VtVec3fArray &points) {
-    return reinterpret_cast<const float *>(points.cdata());
-}
-
-float *floatsOf(VtVec3fArray *points) {
-    return reinterpret_cast<float *>(points->data());
-}
-
-VtValue orBlock(const VtValue &value) {
-    return value.IsEmpty() ? VtValue(SdfValueBlock()) : value;
-}
-
 // float triples where it can be, so that the type is the one the layer declares.
 VtValue asDeclared(const VtValue &value) {
-    try {
-        return value.IsEmpty() ? VtValue(SdfValueBlock()) : VtValue(positions(value, ""));
-    } catch (const Fault &) {
-        return value;
-    }
+    if (value.IsEmpty())
+        return VtValue(SdfValueBlock());
+    Record record("", value);
+    VtVec3fArray out(static_cast<size_t>(skinslide_value_length(record)));
+    return skinslide_value_positions(record, floatsOf(&out), nullptr) == SKINSLIDE_OK ? VtValue(out) : value;
 }
 
 } // namespace
 
-LiveMesh::LiveMesh(std::shared_ptr<const PatchedMesh> source, const Params &params, std::string layerName)
-    : _source(std::move(source)), _lookup(params.lookup), _layerName(std::move(layerName)) {
+LiveMesh::LiveMesh(std::shared_ptr<const PatchedMesh> mesh, skinslide_lookup lookup, std::string layerName)
+    : _mesh(std::move(mesh)), _lookup(lookup), _layerName(std::move(layerName)) {
 }
 
 LiveMesh::~LiveMesh() {
     FrameCache::shared().drop(this);
-    for (skinslide_workspace *workspace : _idle)
-        skinslide_workspace_destroy(workspace);
+    _idle.clear();
     skinslide_slider_destroy(_slider);
 }
 
@@ -78,37 +60,19 @@ void LiveMesh::say(double time, const std::string &message) {
         if (!_said.insert(_problem.empty() ? frameText(time) : "").second)
             return;
     }
-    TF_WARN("%s: %s: frame %s: %s", _layerName.c_str(), _source->path.GetText(), frameText(time).c_str(), message.c_str());
+    TF_WARN("%s: %s: frame %s: %s", _layerName.c_str(), _mesh->path.GetText(), frameText(time).c_str(), message.c_str());
 }
 
 // ---- The slider ----
 
-skinslide_mesh LiveMesh::nativeMesh() const {
-    const Topology &topology = _source->topology;
-    skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
-    mesh.vertex_count = static_cast<int32_t>(topology.vertexCount);
-    mesh.face_count = static_cast<int32_t>(topology.faceCount());
-    mesh.index_count = static_cast<int32_t>(topology.faceIndices.size());
-    mesh.face_counts = topology.faceCounts.data();
-    mesh.face_indices = topology.faceIndices.data();
-    mesh.rest_points = floatsOf(_source->rest);
-    return mesh;
-}
-
 void LiveMesh::build() {
-    std::vector<Controls> controls;
     std::vector<skinslide_patch_setup> setups;
-    controls.reserve(_source->patches.size());
     try {
-        for (const Patch &patch : _source->patches) {
-            controls.push_back(patch.controlsAt(Attribute::first, _source->topology));
-            setups.push_back(patch.native(controls.back()));
-        }
-        skinslide_mesh mesh = nativeMesh();
-        skinslide_subdivision subdivision = _source->subdivision.native();
-        mesh.subdivision = _source->subdivision.any() ? &subdivision : nullptr;
-        skinslide_error error = {};
-        check(skinslide_slider_create(&mesh, setups.data(), static_cast<int32_t>(setups.size()), &_slider, &error), error);
+        for (const Patch &patch : _mesh->patches)
+            setups.push_back(patch.setup());
+        skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
+        call(skinslide_stage_mesh_get, _mesh->mesh.get(), &mesh);
+        call(skinslide_slider_create, &mesh, setups.data(), static_cast<int32_t>(setups.size()), &_slider);
     } catch (const std::exception &bad) {
         std::lock_guard<std::mutex> lock(_mutex);
         _problem = bad.what();
@@ -124,8 +88,7 @@ void LiveMesh::giveUp(const std::string &problem) {
 
 skinslide_workspace_options LiveMesh::workspaceOptions() {
     skinslide_workspace_options options = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
-    auto found = std::find(lookupTokens.begin(), lookupTokens.end(), _lookup);
-    options.lookup = static_cast<skinslide_lookup>(found - lookupTokens.begin());
+    options.lookup = _lookup;
     try {
         options.device = countFromEnvironment("SKINSLIDE_EGL_DEVICE", SKINSLIDE_ANY_DEVICE);
     } catch (const Fault &bad) {
@@ -142,14 +105,14 @@ const skinslide_slider *LiveMesh::slider() {
     return _slider;
 }
 
-skinslide_workspace *LiveMesh::takeWorkspace() {
+LiveMesh::Work LiveMesh::takeWork() {
     const skinslide_slider *slider = this->slider();
     {
         std::lock_guard<std::mutex> lock(_mutex);
         if (!_idle.empty()) {
-            skinslide_workspace *workspace = _idle.back();
+            Work work = std::move(_idle.back());
             _idle.pop_back();
-            return workspace;
+            return work;
         }
     }
     skinslide_workspace_options options = workspaceOptions();
@@ -157,56 +120,69 @@ skinslide_workspace *LiveMesh::takeWorkspace() {
     skinslide_error error = {};
     if (skinslide_workspace_create(slider, &options, &workspace, &error) != SKINSLIDE_OK)
         giveUp(error.message);
-    return workspace;
+    Work work;
+    work.workspace.reset(workspace);
+    for (const Patch &patch : _mesh->patches)
+        work.controls.push_back(_mesh->controlsVary() ? patch.frames() : nullptr);
+    return work;
 }
 
-void LiveMesh::giveBack(skinslide_workspace *workspace) {
+void LiveMesh::giveBack(Work work) {
     std::lock_guard<std::mutex> lock(_mutex);
-    _idle.push_back(workspace);
+    _idle.push_back(std::move(work));
 }
 
 // ---- Frames ----
 
-VtVec3fArray LiveMesh::cachedPoints(double time) const {
-    VtVec3fArray points = positions(_source->points.at(time), "points");
-    if (points.empty())
-        throw Fault("points has no value");
-    if (points.size() != _source->topology.vertexCount)
-        throw fault("points has %zu values, but %zu at first; the count must stay the same", points.size(),
-                    _source->topology.vertexCount);
+// Floats, converted where they are none: otherwise they are the layer's own, and cost no memory.
+VtVec3fArray LiveMesh::cachedPoints(const Record &record) const {
+    call(skinslide_stage_points, _mesh->mesh.get(), record, nullptr);
+    if (record.value().IsHolding<VtVec3fArray>())
+        return record.value().UncheckedGet<VtVec3fArray>();
+    VtVec3fArray points(record.value().GetArraySize());
+    call(skinslide_stage_points, _mesh->mesh.get(), record, floatsOf(&points));
     return points;
 }
 
-VtVec3fArray LiveMesh::slide(double time) {
-    VtVec3fArray cached = cachedPoints(time), slid(cached.size());
-    std::vector<Controls> controls;
-    std::vector<skinslide_controls> native;
-    if (_source->controlsVary()) {
-        controls.reserve(_source->patches.size());
-        for (const Patch &patch : _source->patches) {
-            controls.push_back(patch.controlsAt(time, _source->topology));
-            native.push_back(controls.back().native());
+// Of each patch; none where none varies.
+std::vector<skinslide_controls> LiveMesh::controlsAt(double time, const Work &work) const {
+    std::vector<skinslide_controls> controls;
+    for (size_t i = 0; _mesh->controlsVary() && i < _mesh->patches.size(); i++) {
+        const Patch &patch = _mesh->patches[i];
+        try {
+            controls.push_back(patch.controlsAt(time, work.controls[i].get()));
+        } catch (const Fault &bad) {
+            throw Fault("patch " + patch.name() + ": " + bad.what());
         }
     }
-    skinslide_workspace *workspace = takeWorkspace();
-    skinslide_error error = {};
-    skinslide_status status = SKINSLIDE_OK;
-    {
+    return controls;
+}
+
+Frame LiveMesh::slide(double time) {
+    Record record = _mesh->points.at(time);
+    VtVec3fArray cached = cachedPoints(record), slid(cached.size());
+    Work work = takeWork();
+    try {
+        std::vector<skinslide_controls> controls = controlsAt(time, work);
         Counted counted;
-        status = skinslide_slide(workspace, floatsOf(cached), native.empty() ? nullptr : native.data(), floatsOf(&slid),
-                                 nullptr, &error);
+        call(skinslide_slide, work.workspace.get(), floatsOf(cached), controls.empty() ? nullptr : controls.data(),
+             floatsOf(&slid), nullptr);
+    } catch (const Fault &) {
+        giveBack(std::move(work));
+        throw;
     }
-    giveBack(workspace);
-    check(status, error);
-    return slid;
+    giveBack(std::move(work));
+    int arrays = record.value().IsHolding<VtVec3fArray>() ? 1 : 2;
+    return {VtValue(slid), cached, arrays * slid.size() * sizeof(GfVec3f)};
 }
 
 Frame LiveMesh::solve(double time) {
     try {
-        return {VtValue(slide(time)), true};
+        return slide(time);
     } catch (const std::exception &bad) {
         say(time, std::string(bad.what()) + "; the points are those of the cache");
-        return {asDeclared(_source->points.at(time)), false};
+        VtValue points = asDeclared(_mesh->points.attribute().at(time));
+        return {points, {}, points.IsArrayValued() ? points.GetArraySize() * sizeof(GfVec3f) : 0};
     }
 }
 
@@ -231,102 +207,30 @@ VtValue LiveMesh::extent(double time) {
     return VtValue(VtVec3fArray{range.GetMin(), range.GetMax()});
 }
 
-// The points of a time before and after; false where they could not be solved.
-bool LiveMesh::pose(double time, Pose *pose) {
-    std::shared_ptr<const Frame> found = frame(time);
-    if (!found->slid)
-        return false;
-    *pose = {cachedPoints(time), found->points.UncheckedGet<VtVec3fArray>()};
-    return true;
-}
-
 // ---- What follows from points ----
 
-namespace {
-
-skinslide_normals_layout layoutOf(const TfToken &interpolation) {
-    if (interpolation == names().vertex || interpolation == names().varying)
-        return SKINSLIDE_NORMALS_VERTEX;
-    if (interpolation == names().faceVarying)
-        return SKINSLIDE_NORMALS_FACE_VARYING;
-    if (interpolation == names().uniform)
-        return SKINSLIDE_NORMALS_UNIFORM;
-    throw fault("interpolation %s is none that normals can have", interpolation.GetText());
-}
-
-size_t countFor(skinslide_normals_layout layout, const Topology &topology) {
-    return layout == SKINSLIDE_NORMALS_VERTEX         ? topology.vertexCount
-           : layout == SKINSLIDE_NORMALS_FACE_VARYING ? topology.faceIndices.size()
-                                                      : topology.faceCount();
-}
-
-} // namespace
-
-VtValue LiveMesh::normals(double time) {
-    VtValue cached;
-    try {
-        cached = _source->normals.flattened(time);
+VtValue LiveMesh::derived(const Derived &derived, double time) {
+    const skinslide_stage_output *output = derived.output;
+    double times[3];
+    int32_t count = skinslide_stage_derived_times(_mesh->derivation.get(), output, time, times);
+    std::vector<std::shared_ptr<const Frame>> frames;
+    std::vector<skinslide_stage_pose> poses;
+    for (int32_t i = 0; i < count; i++) {
         // Normals may move over points that do not.
-        Pose at;
-        if (cached.IsEmpty() || !pose(_source->times.empty() ? Attribute::defaultTime : time, &at))
-            return asDeclared(cached);
-        VtVec3fArray normals = positions(cached, _source->normals.name());
-        skinslide_normals_layout layout = layoutOf(_source->normalsInterpolation);
-        checkLength(_source->normals.name(), normals.size(), countFor(layout, _source->topology), "of them to carry");
-        skinslide_mesh mesh = nativeMesh();
-        skinslide_error error = {};
-        check(skinslide_normals(&mesh, floatsOf(at.cached), floatsOf(at.slid), layout, _source->leftHanded, floatsOf(&normals),
-                                &error),
-              error);
-        return VtValue(normals);
-    } catch (const std::exception &bad) {
-        say(time, "normals left as they are: " + std::string(bad.what()));
-        return asDeclared(cached);
+        frames.push_back(frame(_mesh->times.empty() ? Attribute::defaultTime : times[i]));
+        if (frames.back()->cached.empty())
+            return asDeclared(derived.cached.attribute().at(time));
+        poses.push_back(
+            {times[i], floatsOf(frames.back()->cached), floatsOf(frames.back()->points.UncheckedGet<VtVec3fArray>())});
     }
-}
-
-// The times for a first (2) or second (3) difference: the authored ones next to `time` on either side, with it between them
-// for a second difference; at an end of the cache it and those nearest to it.
-std::vector<double> LiveMesh::samplesAround(double time, size_t count) const {
-    const std::vector<double> &times = _source->pointsTimes;
-    std::vector<double> before(times.begin(), std::lower_bound(times.begin(), times.end(), time - sameTime));
-    std::vector<double> after(std::upper_bound(times.begin(), times.end(), time + sameTime), times.end());
-    if (!before.empty() && !after.empty()) {
-        if (count == 2)
-            return {before.back(), after.front()};
-        return {before.back(), time, after.front()};
-    }
-    std::vector<double> around{time};
-    if (!after.empty())
-        around.insert(around.end(), after.begin(), after.begin() + std::min(after.size(), count - 1));
-    else
-        around.insert(around.begin(), before.end() - std::min(before.size(), count - 1), before.end());
-    return around;
-}
-
-VtValue LiveMesh::rate(const Rate &rate, double time) {
-    VtValue cached = rate.attribute.at(time);
     try {
-        std::vector<Pose> poses;
-        std::vector<skinslide_sample> samples;
-        for (double at : samplesAround(time, rate.sampleCount)) {
-            poses.emplace_back();
-            if (!pose(at, &poses.back()))
-                return asDeclared(cached);
-            samples.push_back({sizeof(skinslide_sample), at / _source->timeCodesPerSecond, floatsOf(poses.back().cached),
-                               floatsOf(poses.back().slid)});
-        }
-        VtVec3fArray rates = positions(cached, rate.attribute.name());
-        checkLength(rate.attribute.name(), rates.size(), _source->topology.vertexCount, "points");
-        if (samples.size() != rate.sampleCount)
-            throw Fault("there are too few samples of points");
-        auto function = rate.sampleCount == 2 ? skinslide_velocities : skinslide_accelerations;
-        skinslide_error error = {};
-        check(function(static_cast<int32_t>(rates.size()), samples.data(), floatsOf(&rates), &error), error);
-        return VtValue(rates);
+        VtVec3fArray out(static_cast<size_t>(output->count));
+        call(skinslide_stage_derived_value, _mesh->derivation.get(), output, derived.cached.at(time), poses.data(), count,
+             floatsOf(&out));
+        return VtValue(out);
     } catch (const std::exception &bad) {
-        say(time, rate.attribute.name() + " left as they are: " + bad.what());
-        return orBlock(asDeclared(cached));
+        say(time, std::string(output->name) + " cannot be recomputed, so they are blocked here: " + bad.what());
+        return VtValue(SdfValueBlock());
     }
 }
 

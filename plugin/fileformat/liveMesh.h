@@ -13,47 +13,48 @@ namespace skinslide {
 class LiveMesh {
   public:
     // layerName  for messages
-    LiveMesh(std::shared_ptr<const PatchedMesh> source, const Params &params, std::string layerName);
+    LiveMesh(std::shared_ptr<const PatchedMesh> mesh, skinslide_lookup lookup, std::string layerName);
     ~LiveMesh();
     LiveMesh(const LiveMesh &) = delete;
     LiveMesh &operator=(const LiveMesh &) = delete;
 
-    const PatchedMesh &source() const {
-        return *_source;
+    const PatchedMesh &mesh() const {
+        return *_mesh;
     }
-    // Each gives the value at a time of the layer, Attribute::defaultTime where the mesh has no samples. Where something fails
-    // there is one message for the mesh and time, and the cache's own value.
+    // Each gives the value at a time of the layer, Attribute::defaultTime where the mesh has no samples. Where the points
+    // cannot be slid there is one message for the mesh and time, and the cache's own value; where what follows from them cannot
+    // be recomputed, a message and a block.
     VtValue points(double time);
     VtValue extent(double time);
-    VtValue normals(double time);
-    VtValue rate(const Rate &rate, double time);
+    VtValue derived(const Derived &derived, double time);
 
   private:
-    struct Pose {
-        VtVec3fArray cached, slid;
+    // The memory of one thread's work on a frame.
+    struct Work {
+        std::unique_ptr<skinslide_workspace, Destroyer<skinslide_workspace, skinslide_workspace_destroy>> workspace;
+        std::vector<ControlsHandle> controls; // of each patch, where any varies
     };
     std::shared_ptr<const Frame> frame(double time);
     Frame solve(double time);
-    VtVec3fArray slide(double time);
-    VtVec3fArray cachedPoints(double time) const;
-    bool pose(double time, Pose *pose);
+    Frame slide(double time);
+    VtVec3fArray cachedPoints(const Record &record) const;
+    std::vector<skinslide_controls> controlsAt(double time, const Work &work) const;
     const skinslide_slider *slider();
     void build();
     [[noreturn]] void giveUp(const std::string &problem);
     skinslide_workspace_options workspaceOptions();
-    skinslide_workspace *takeWorkspace();
-    void giveBack(skinslide_workspace *workspace);
-    skinslide_mesh nativeMesh() const;
-    std::vector<double> samplesAround(double time, size_t count) const;
+    Work takeWork();
+    void giveBack(Work work);
     void say(double time, const std::string &message);
 
-    const std::shared_ptr<const PatchedMesh> _source;
-    const std::string _lookup, _layerName;
+    const std::shared_ptr<const PatchedMesh> _mesh;
+    const skinslide_lookup _lookup;
+    const std::string _layerName;
     std::once_flag _built;
     skinslide_slider *_slider = nullptr;
     std::string _problem; // why there is no slider, or no workspace
     std::mutex _mutex;    // of what follows
-    std::vector<skinslide_workspace *> _idle;
+    std::vector<Work> _idle;
     std::set<std::string> _said;
 };
 

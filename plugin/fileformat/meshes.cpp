@@ -1,12 +1,9 @@
 #include "meshes.h"
 
-#include "fault.h"
 #include "names.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <set>
 
 namespace skinslide {
 
@@ -16,21 +13,20 @@ bool PatchedMesh::controlsVary() const {
 
 namespace {
 
+using Finding = std::unique_ptr<skinslide_stage_finding, Destroyer<skinslide_stage_finding, skinslide_stage_finding_destroy>>;
+
 // ---- Finding meshes ----
 
-struct Found {
+// A prim that mentions the schema, and what is known of it while the layer is walked.
+struct Candidate {
     Prim prim;
-    std::vector<std::string> patches;
-    std::string whyNot; // empty: it can be slid
+    std::vector<std::string> schemas;
+    bool defined;
+    SdfPath instance;
 };
 
-std::vector<std::string> patchNames(const Prim &prim) {
-    std::vector<std::string> patches;
-    for (const std::string &schema : prim.apiSchemas()) {
-        if (TfStringStartsWith(schema, names().schemaPrefix))
-            patches.push_back(schema.substr(names().schemaPrefix.size()));
-    }
-    return patches;
+bool mentionsSchema(const std::string &name) {
+    return TfStringStartsWith(name, skinslide_stage_schema());
 }
 
 // Walks the composed layer once.
@@ -39,16 +35,20 @@ class Search {
     explicit Search(Composition &composition) : _composition(composition) {
         _defined[SdfPath::AbsoluteRootPath()] = true;
         composition.traverse([this](const Prim &prim) { return visit(prim); });
-        for (Found &found : _found) {
-            SdfPath instancer = prototypeOf(found.prim.path());
-            if (found.whyNot.empty() && !instancer.IsEmpty())
-                found.whyNot = TfStringPrintf("is a prototype of the point instancer %s, whose instances share its points",
-                                              instancer.GetText());
-        }
     }
 
-    const std::vector<Found> &found() const {
+    const std::vector<Candidate> &found() const {
         return _found;
+    }
+
+    // The point instancer that a prim is, or is below, a prototype of; empty where there is none.
+    SdfPath instancerOf(const SdfPath &path) const {
+        for (const SdfPath &prefix : path.GetPrefixes()) {
+            auto found = _prototypes.find(prefix);
+            if (found != _prototypes.end())
+                return found->second;
+        }
+        return SdfPath();
     }
 
   private:
@@ -61,41 +61,23 @@ class Search {
         _instance[prim.path()] = !_instance[parent].IsEmpty() ? _instance[parent]
                                  : prim.instanceable()        ? prim.path()
                                                               : SdfPath();
-        TfToken type = prim.typeName();
-        if (type == names().pointInstancer) {
+        if (prim.typeName() == names().pointInstancer) {
             for (const SdfPath &target : _composition.targets(prim.path().AppendProperty(names().prototypes)))
                 _prototypes[target] = prim.path();
         }
-        std::vector<std::string> patches = patchNames(prim);
-        if (!patches.empty())
-            _found.push_back({prim, patches, whyNot(prim, type)});
+        consider(prim);
         return true;
     }
 
-    std::string whyNot(const Prim &prim, const TfToken &type) {
-        const SdfPath &instance = _instance[prim.path().GetParentPath()];
-        if (!instance.IsEmpty())
-            return TfStringPrintf("is inside an instance, whose points are shared; author instanceable = false on %s",
-                                  instance.GetText());
-        if (!_defined[prim.path()])
-            return "is not defined, there are only overs; is the path right, and does the cache below it open?";
-        if (type != names().mesh)
-            return TfStringPrintf("is a %s; SkinSlideAPI applies to Mesh only",
-                                  type.IsEmpty() ? "prim without a type" : type.GetText());
-        return "";
-    }
-
-    SdfPath prototypeOf(const SdfPath &path) const {
-        for (const SdfPath &prefix : path.GetPrefixes()) {
-            auto found = _prototypes.find(prefix);
-            if (found != _prototypes.end())
-                return found->second;
-        }
-        return SdfPath();
+    // Names of properties are not looked at: those that count for nothing keep no mesh from being slid, and check says them.
+    void consider(const Prim &prim) {
+        std::vector<std::string> schemas = prim.apiSchemas();
+        if (std::any_of(schemas.begin(), schemas.end(), mentionsSchema))
+            _found.push_back({prim, schemas, _defined[prim.path()], _instance[prim.path().GetParentPath()]});
     }
 
     Composition &_composition;
-    std::vector<Found> _found;
+    std::vector<Candidate> _found;
     std::map<SdfPath, bool> _defined;
     std::map<SdfPath, SdfPath> _instance, _prototypes;
 };
@@ -106,203 +88,177 @@ std::string slidBy(const Attribute &points) {
     if (!layer || layer->GetFileFormat()->GetFormatId() != TfToken("skinslide"))
         return "";
     std::vector<std::string> ignored;
-    return Params::fromArguments(layer->GetFileFormatArguments(), &ignored).live ? layer->GetIdentifier() : "";
+    return Params::fromArguments(layer->GetFileFormatArguments(), &ignored).computes ? layer->GetIdentifier() : "";
+}
+
+std::string bakedBy(const Composition &composition, const Attribute &points) {
+    SdfLayerRefPtr layer = points.bakedLayer();
+    return !layer ? "" : layer == composition.root() ? composition.anchor().resolvedPath : layer->GetIdentifier();
+}
+
+int32_t blendShapes(Composition &composition, const Prim &prim) {
+    TfTokenVector properties = prim.propertyNames();
+    if (std::find(properties.begin(), properties.end(), names().blendShapes) == properties.end())
+        return 0;
+    return static_cast<int32_t>(composition.targets(prim.path().AppendProperty(names().blendShapes)).size());
+}
+
+Finding find(Composition &composition, const Search &search, const Candidate &candidate, const std::string &other) {
+    const Prim &prim = candidate.prim;
+    Attribute points = prim.attribute(names().points);
+    TfToken type = prim.typeName();
+    std::string instance = candidate.instance.GetString(), instancer = search.instancerOf(prim.path()).GetString();
+    std::string bake = bakedBy(composition, points);
+    std::vector<const char *> schemas;
+    for (const std::string &schema : candidate.schemas)
+        schemas.push_back(schema.c_str());
+    auto orNull = [](const std::string &text) { return text.empty() ? nullptr : text.c_str(); };
+    skinslide_stage_prim facts = SKINSLIDE_STAGE_PRIM_DEFAULT;
+    facts.type_name = type.GetText(), facts.is_mesh = type == names().mesh, facts.is_defined = candidate.defined;
+    facts.instance = orNull(instance), facts.instancer = orNull(instancer);
+    facts.slid_by = orNull(other), facts.baked_by = orNull(bake);
+    facts.point_samples = points.source() == Attribute::Source::Samples || points.clipped();
+    facts.has_joint_indices = ownerOf(composition, prim, names().jointIndices).attribute(names().jointIndices).authored();
+    facts.blend_shape_count = blendShapes(composition, prim);
+    facts.schema_count = static_cast<int32_t>(schemas.size()), facts.schemas = schemas.data();
+    skinslide_stage_finding *finding = nullptr;
+    call(skinslide_stage_find, &facts, &finding);
+    return Finding(finding);
+}
+
+void say(const SdfPath &prim, const skinslide_stage_finding &finding, std::vector<std::string> *problems) {
+    for (int32_t i = 0; i < finding.problem_count; i++) {
+        const skinslide_stage_problem *problem = finding.problems[i];
+        std::string where = prim == SdfPath::AbsoluteRootPath() ? "" : prim.GetString() + ": ";
+        if (problem->patch)
+            where += std::string("patch ") + problem->patch + ": ";
+        problems->push_back(where + problem->message);
+    }
+}
+
+void sayUncomposed(const Composition &composition, std::vector<std::string> *problems) {
+    for (const auto &[prim, message] : composition.errors()) {
+        std::string line = TfStringJoin(TfStringTokenize(message), " ");
+        skinslide_stage_prim facts = SKINSLIDE_STAGE_PRIM_DEFAULT;
+        facts.uncomposed = line.c_str();
+        skinslide_stage_finding *finding = nullptr;
+        call(skinslide_stage_find, &facts, &finding);
+        say(prim, *Finding(finding), problems);
+    }
 }
 
 // ---- Reading one mesh ----
 
-bool isSkinned(Composition &composition, const Prim &prim) {
-    if (prim.hasProperty(names().blendShapes))
-        return true;
-    for (const SdfPath &path : prim.path().GetPrefixes()) {
-        if (composition.prim(path).attribute(names().jointIndices).authored())
-            return true;
-    }
-    return false;
+void readGroup(Composition &composition, const Prim &prim, skinslide_stage_group group, skinslide_stage_mesh *mesh) {
+    for (const Property &property : properties(composition, prim, group))
+        property.give(mesh, skinslide_stage_mesh_take, skinslide_stage_mesh_check);
 }
 
-VtVec3fArray firstPoints(Composition &composition, const Prim &prim, const Attribute &points) {
-    if (points.clipped())
-        throw Fault("points come from value clips, which a .skinslide file cannot read; bake the stage instead");
-    if (points.source() == Attribute::Source::Spline)
-        throw Fault("points come from a spline, which a .skinslide file cannot read; bake the stage instead");
-    if (points.source() != Attribute::Source::Samples && isSkinned(composition, prim))
-        throw Fault("points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)");
-    VtVec3fArray first = positions(points.at(Attribute::first), "points");
-    if (first.empty())
-        throw Fault("points has no value");
-    return first;
-}
-
-void fitFaces(Topology *topology) {
-    size_t total = 0;
-    for (size_t face = 0; face < topology->faceCount(); face++) {
-        if (topology->faceCounts[face] < 0)
-            throw fault("face %zu has %d vertices", face, topology->faceCounts[face]);
-        topology->faceStart.push_back(total);
-        total += static_cast<size_t>(topology->faceCounts[face]);
-    }
-    topology->faceStart.push_back(total);
-    if (total != topology->faceIndices.size())
-        throw fault("faceVertexCounts add up to %zu, but faceVertexIndices has %zu values", total,
-                    topology->faceIndices.size());
-    for (size_t face = 0; face < topology->faceCount(); face++) {
-        for (size_t corner = topology->faceStart[face]; corner < topology->faceStart[face + 1]; corner++) {
-            int32_t point = topology->faceIndices[corner];
-            if (point < 0 || static_cast<size_t>(point) >= topology->vertexCount)
-                throw fault("face %zu has point %d, but the mesh has %zu points", face, point, topology->vertexCount);
-        }
-    }
-}
-
-Topology readTopology(const Prim &prim, size_t vertexCount) {
-    auto read = [&](const TfToken &name) {
-        std::vector<int32_t> values = integers(unchanging(prim.attribute(name), name.GetString()), name.GetString());
-        if (values.empty())
-            throw fault("%s has no value", name.GetText());
-        return values;
-    };
-    Topology topology;
-    topology.vertexCount = vertexCount;
-    topology.faceCounts = read(names().faceCounts);
-    topology.faceIndices = read(names().faceIndices);
-    fitFaces(&topology);
-    return topology;
-}
-
-VtValue findRest(const Prim &prim, const Attribute &points, std::string *source) {
-    Attribute own = prim.attribute(names().restPoints);
-    *source = own.name();
-    if (own.authored())
-        return own.at(Attribute::first);
-    for (const TfToken &name : names().restPrimvars) {
-        Primvar primvar(prim, name);
-        *source = primvar.name();
-        if (primvar.authored())
-            return primvar.flattened(Attribute::first);
-    }
-    *source = "points (default)";
-    return points.at(Attribute::defaultTime);
-}
-
-VtVec3fArray readRest(const Prim &prim, const Attribute &points, size_t vertexCount) {
-    std::string source;
-    VtValue value = findRest(prim, points, &source);
-    if (value.IsEmpty())
-        throw Fault("has no rest points: points has samples but no default value, so author the rest pose as "
-                    "skinSlide:restPoints or primvars:rest (point3f[], vertex)");
-    VtVec3fArray rest = positions(value, source);
-    if (rest.size() != vertexCount)
-        throw fault("rest points: %s has %zu values, but points has %zu", source.c_str(), rest.size(), vertexCount);
-    for (size_t i = 0; i < rest.size(); i++) {
-        const GfVec3f &point = rest.cdata()[i];
-        if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
-            throw fault("rest points: %s[%zu] is (%g, %g, %g)", source.c_str(), i, point[0], point[1], point[2]);
-    }
-    return rest;
-}
-
-// primvars:normals win over normals; a constant does not follow from points.
-void readNormals(const Prim &prim, PatchedMesh *source) {
-    Primvar primvar(prim, names().normalsPrimvar);
-    bool isPrimvar = primvar.authored();
-    source->normals = isPrimvar ? primvar : Primvar(prim, names().normals);
-    const Attribute &attribute = source->normals.attribute();
-    source->normalsInterpolation = attribute.token(names().interpolation, isPrimvar ? names().constant : names().vertex);
-    source->hasNormals = attribute.authored() && source->normalsInterpolation != names().constant;
-    if (source->hasNormals && isPrimvar && primvar.indexed())
-        source->blocked.emplace_back(TfToken("primvars:normals:indices"), TfToken("int[]"));
-}
-
-// Stale velocities would give wrong motion blur: those that cannot be recomputed are blocked.
-void readRates(const Prim &prim, PatchedMesh *source) {
-    size_t sampleCount = 2;
-    for (const TfToken &name : {names().velocities, names().accelerations}) {
-        Attribute attribute = prim.attribute(name);
-        if (attribute.authored()) {
-            if (source->pointsTimes.size() >= sampleCount && attribute.times() == source->points.times())
-                source->rates.push_back({attribute, sampleCount});
-            else
-                source->blocked.emplace_back(name, TfToken("vector3f[]"));
-        }
-        sampleCount++;
-    }
-}
-
-std::vector<Patch> readPatches(Composition &composition, const Found &found, const Topology &topology, const Params &params,
-                               std::vector<std::string> *problems) {
+std::vector<Patch> readPatches(Composition &composition, const Prim &prim, const skinslide_stage_finding &finding,
+                               const skinslide_stage_mesh *mesh, const Params &params, std::vector<std::string> *problems) {
     std::vector<Patch> patches;
-    for (const std::string &name : found.patches) {
+    for (int32_t i = 0; i < finding.patch_count; i++) {
         try {
-            patches.emplace_back(composition, found.prim, name, topology, params);
+            patches.emplace_back(composition, prim, mesh, finding.patches[i], params.live);
         } catch (const Fault &bad) {
-            problems->push_back(TfStringPrintf("%s: patch %s: %s", found.prim.path().GetText(), name.c_str(), bad.what()));
+            problems->push_back(TfStringPrintf("%s: patch %s: %s", prim.path().GetText(), finding.patches[i], bad.what()));
         }
     }
     return patches;
 }
 
-// Throws Fault, or adds problems and returns null.
-std::shared_ptr<const PatchedMesh> readSource(Composition &composition, const Found &found, const Params &params,
-                                              std::vector<std::string> *problems) {
-    auto source = std::make_shared<PatchedMesh>();
-    const Prim &prim = found.prim;
-    source->path = prim.path();
-    source->points = prim.attribute(names().points);
-    VtVec3fArray first = firstPoints(composition, prim, source->points);
-    source->topology = readTopology(prim, first.size());
-    source->rest = readRest(prim, source->points, first.size());
-    source->patches = readPatches(composition, found, source->topology, params, problems);
-    if (source->patches.size() != found.patches.size())
-        return nullptr;
-    if (std::any_of(source->patches.begin(), source->patches.end(),
-                    [](const Patch &patch) { return patch.needsSubdivision(); }))
-        source->subdivision = Subdivision(prim);
-    source->pointsTimes = mergedTimes(source->points.times());
-    // Points first: where times differ by noise, theirs gives a sample as it was authored.
-    std::vector<double> times = source->pointsTimes;
-    for (const Patch &patch : source->patches) {
+// The samples of points first: where times differ by noise, theirs gives a sample as it was authored.
+std::vector<double> timesOf(const PatchedMesh &mesh) {
+    std::vector<double> times = mesh.points.attribute().times();
+    for (const Patch &patch : mesh.patches) {
         std::vector<double> more = patch.times();
         times.insert(times.end(), more.begin(), more.end());
     }
-    source->times = mergedTimes(times);
-    source->timeCodesPerSecond = composition.root()->GetTimeCodesPerSecond();
-    VtValue orientation = prim.attribute(names().orientation).at(Attribute::defaultTime);
-    source->leftHanded = orientation.IsHolding<TfToken>() && orientation.UncheckedGet<TfToken>() == names().leftHanded;
-    readNormals(prim, source.get());
-    readRates(prim, source.get());
-    return source;
+    return mergedTimes(times);
+}
+
+void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh) {
+    std::vector<double> pointTimes = mesh->points.attribute().times();
+    skinslide_stage_derived *derived = nullptr;
+    call(skinslide_stage_derived_create, mesh->mesh.get(), pointTimes.data(), static_cast<int64_t>(pointTimes.size()),
+         composition.root()->GetTimeCodesPerSecond(), &derived);
+    mesh->derivation.reset(derived);
+    std::vector<Property> cached = properties(composition, prim, SKINSLIDE_STAGE_DERIVED);
+    for (const Property &property : cached) {
+        std::vector<double> times = property.attribute().times();
+        call(skinslide_stage_derived_take, derived, property.input(), property.first(), times.data(),
+             static_cast<int64_t>(times.size()));
+    }
+    for (const Property &property : cached) {
+        for (double time : property.attribute().times())
+            call(skinslide_stage_derived_check, derived, property.input(), property.at(time));
+    }
+    for (int32_t i = 0; const skinslide_stage_output *output = skinslide_stage_derived_output(derived, i); i++) {
+        auto own = std::find_if(cached.begin(), cached.end(),
+                                [&](const Property &property) { return property.attribute().name() == output->name; });
+        mesh->derived.push_back({output, own == cached.end() ? Property() : *own});
+    }
+}
+
+void sayBlocked(const PatchedMesh &mesh, std::vector<std::string> *problems) {
+    for (const Derived &derived : mesh.derived) {
+        if (derived.output->reason)
+            problems->push_back(TfStringPrintf("%s: %s cannot be recomputed, so they are blocked: %s", mesh.path.GetText(),
+                                               derived.output->name, derived.output->reason));
+    }
+}
+
+// Throws Fault, or adds problems and returns null.
+std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim &prim, const skinslide_stage_finding &finding,
+                                            const Params &params, std::vector<std::string> *problems) {
+    auto mesh = std::make_shared<PatchedMesh>();
+    mesh->path = prim.path();
+    mesh->points = Property(composition, prim, skinslide_stage_next_input(SKINSLIDE_STAGE_MESH, nullptr));
+    skinslide_stage_mesh *handle = nullptr;
+    call(skinslide_stage_mesh_create, &handle);
+    mesh->mesh.reset(handle);
+    readGroup(composition, prim, SKINSLIDE_STAGE_MESH, handle);
+    mesh->patches = readPatches(composition, prim, finding, handle, params, problems);
+    if (mesh->patches.size() != static_cast<size_t>(finding.patch_count))
+        return nullptr;
+    if (std::any_of(mesh->patches.begin(), mesh->patches.end(), [](const Patch &patch) { return patch.needsSubdivision(); }))
+        readGroup(composition, prim, SKINSLIDE_STAGE_SUBDIVISION, handle);
+    mesh->times = timesOf(*mesh);
+    readDerived(composition, prim, mesh.get());
+    sayBlocked(*mesh, problems);
+    return mesh;
 }
 
 } // namespace
 
 std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composition, const Params &params,
                                                            std::vector<std::string> *problems) {
-    std::vector<std::shared_ptr<const PatchedMesh>> sources;
+    std::vector<std::shared_ptr<const PatchedMesh>> meshes;
     Search search(composition);
-    auto say = [&](const Found &found, const std::string &message) {
-        problems->push_back(found.prim.path().GetString() + ": " + message);
-    };
-    for (const Found &found : search.found()) {
-        std::string other = slidBy(found.prim.attribute(names().points));
-        if (!found.whyNot.empty()) {
-            say(found, found.whyNot);
-        } else if (!other.empty()) {
-            // Without opinions of its own on the mesh a file just passes on what the other computes.
-            if (composition.root()->GetPrimAtPath(found.prim.path()))
-                say(found, "is slid already, by " + other + "; set it up there, or reference the cache itself");
-        } else {
-            try {
-                if (std::shared_ptr<const PatchedMesh> source = readSource(composition, found, params, problems))
-                    sources.push_back(source);
-            } catch (const Fault &bad) {
-                say(found, bad.what());
-            }
+    bool any = false;
+    for (const Candidate &candidate : search.found()) {
+        const Prim &prim = candidate.prim;
+        std::string other = slidBy(prim.attribute(names().points));
+        Finding finding = find(composition, search, candidate, other);
+        any = any || finding->patch_count || finding->problem_count;
+        // Without opinions of its own on the mesh a file just passes on what another computes.
+        if (!other.empty() && !composition.root()->GetPrimAtPath(prim.path()))
+            continue;
+        say(prim.path(), *finding, problems);
+        try {
+            if (!finding->slides)
+                continue;
+            if (std::shared_ptr<const PatchedMesh> mesh = readMesh(composition, prim, *finding, params, problems))
+                meshes.push_back(mesh);
+        } catch (const Fault &bad) {
+            problems->push_back(prim.path().GetString() + ": " + bad.what());
         }
     }
-    if (search.found().empty())
-        problems->push_back("nothing to slide: no mesh has SkinSlideAPI applied");
-    return sources;
+    skinslide_error error;
+    if (!any && skinslide_stage_nothing(nullptr, &error))
+        problems->push_back(error.message);
+    sayUncomposed(composition, problems);
+    return meshes;
 }
 
 } // namespace skinslide

@@ -1,38 +1,27 @@
-// The meshes that a composed layer slides, read as `skinslide bake` reads them from a stage.
+// The meshes that a composed layer slides: found, fetched, and handed to the core.
 #ifndef SKINSLIDE_FORMAT_MESHES_H
 #define SKINSLIDE_FORMAT_MESHES_H
 
+#include "params.h"
 #include "patches.h"
-#include "subdivision.h"
-
-#include <memory>
 
 namespace skinslide {
 
-// Velocities or accelerations that are recomputed: from the difference of displacements over so many samples.
-struct Rate {
-    Attribute attribute;
-    size_t sampleCount;
+// An attribute that follows from points.
+struct Derived {
+    const skinslide_stage_output *output; // of the mesh's handle
+    Property cached;                      // of the cache; of what is only blocked, nothing
 };
 
 // One mesh with its patches: immutable, and free of the composition it was read from. Times are the layer's.
 struct PatchedMesh {
     SdfPath path;
-    Topology topology;
-    Subdivision subdivision; // none where no patch needs it
-    VtVec3fArray rest;
+    MeshHandle mesh;
     std::vector<Patch> patches;
-    Attribute points;
-    std::vector<double> pointsTimes; // the authored samples of points
-    std::vector<double> times;       // those, and those of animated controls; none where there are only defaults
-    double timeCodesPerSecond;
-    bool leftHanded;
-
-    bool hasNormals = false;
-    Primvar normals; // or the attribute `normals`, which has no indices
-    TfToken normalsInterpolation;
-    std::vector<Rate> rates;
-    std::vector<std::pair<TfToken, TfToken>> blocked; // name and type: what cannot be recomputed
+    Property points;
+    std::vector<double> times; // the authored samples of points and of animated controls; none where there are only defaults
+    DerivedHandle derivation;
+    std::vector<Derived> derived;
 
     bool controlsVary() const;
 };

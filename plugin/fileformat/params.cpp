@@ -1,15 +1,13 @@
 #include "params.h"
 
-#include "names.h"
+#include "values.h"
 
 #include "pxr/base/tf/diagnostic.h"
 #include "pxr/base/tf/stringUtils.h"
 #include "pxr/usd/sdf/types.h"
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 
 namespace skinslide {
 namespace {
@@ -37,88 +35,86 @@ std::string decode(const std::string &encoded) {
     return value;
 }
 
-std::string choices(const std::vector<std::string> &tokens) {
-    return TfStringJoin(tokens.begin(), tokens.end(), ", ");
+const std::string computesArgument = "live";
+
+// The inputs of the core that are live: each is an argument by its name alone.
+template <class Visit> void forEachInput(Visit visit) {
+    const skinslide_stage_input *input = nullptr;
+    while ((input = skinslide_stage_next_input(SKINSLIDE_STAGE_LIVE, input)))
+        visit(input);
 }
 
-void takeToken(const std::string &name, const std::string &value, const std::vector<std::string> &allowed, std::string *token,
-               std::vector<std::string> *problems) {
-    if (std::find(allowed.begin(), allowed.end(), value) != allowed.end())
-        *token = value;
-    else
-        problems->push_back(TfStringPrintf("skinSlide:live:%s is '%s'; it must be one of %s", name.c_str(), value.c_str(),
-                                           choices(allowed).c_str()));
+TfToken attributeOf(const skinslide_stage_input *input) {
+    return TfToken(std::string(input->prefix) + input->name);
 }
 
-void takeEnvelope(const std::string &value, double *envelope, std::vector<std::string> *problems) {
+// A number where the text is one and a number is wanted.
+VtValue valueOf(const skinslide_stage_input *input, const std::string &text) {
     double number = 0;
-    auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (error == std::errc() && end == value.data() + value.size() && std::isfinite(number))
-        *envelope = number;
-    else
-        problems->push_back(TfStringPrintf("skinSlide:live:envelope is '%s'; it must be a number", value.c_str()));
+    auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    bool isNumber = !input->tokens && error == std::errc() && end == text.data() + text.size();
+    return isNumber ? VtValue(number) : VtValue(text);
 }
 
-// Said where the prim is composed, as no argument could tell.
-void sayType(const TfToken &attribute, const VtValue &value, const char *wanted) {
-    if (!value.IsHolding<SdfValueBlock>())
-        TF_WARN("%s is a %s; it must be %s", attribute.GetText(), value.GetTypeName().c_str(), wanted);
-}
-
-void addEnvelope(const Params::ComposeAttribute &compose, SdfFileFormat::FileFormatArguments *arguments) {
-    VtValue value;
-    if (!compose(names().liveEnvelope, &value) || value.IsEmpty())
-        return;
-    if (value.CanCast<double>())
-        (*arguments)[names().envelopeArgument] = encode(TfStringify(value.Cast<double>().Get<double>()));
-    else
-        sayType(names().liveEnvelope, value, "a number");
-}
-
-void addToken(const TfToken &attribute, const std::string &argument, const Params::ComposeAttribute &compose,
-              SdfFileFormat::FileFormatArguments *arguments) {
-    VtValue value;
-    if (!compose(attribute, &value) || value.IsEmpty())
-        return;
+// Text for an argument; false for what has none.
+bool textOf(const VtValue &value, std::string *text) {
+    const VtValue number = VtValue::Cast<double>(value);
     if (value.IsHolding<TfToken>())
-        (*arguments)[argument] = encode(value.UncheckedGet<TfToken>().GetString());
+        *text = value.UncheckedGet<TfToken>().GetString();
     else if (value.IsHolding<std::string>())
-        (*arguments)[argument] = encode(value.UncheckedGet<std::string>());
+        *text = value.UncheckedGet<std::string>();
+    else if (!number.IsEmpty())
+        *text = TfStringify(number.UncheckedGet<double>());
     else
-        sayType(attribute, value, "a token");
+        return false;
+    return true;
 }
 
 } // namespace
 
 Params Params::fromArguments(const SdfFileFormat::FileFormatArguments &arguments, std::vector<std::string> *problems) {
     Params params;
-    auto given = [&](const std::string &name, std::string *value) {
-        auto found = arguments.find(name);
-        *value = found == arguments.end() ? "" : decode(found->second);
-        return found != arguments.end();
-    };
-    std::string value;
-    if (given(names().liveArgument, &value))
-        params.live = value != "0";
-    if (given(names().envelopeArgument, &value))
-        takeEnvelope(value, &params.envelope, problems);
-    if (given(names().interpolationArgument, &value))
-        takeToken("interpolation", value, interpolationTokens, &params.interpolation, problems);
-    if (given(names().lookupArgument, &value))
-        takeToken("lookup", value, lookupTokens, &params.lookup, problems);
+    auto computes = arguments.find(computesArgument);
+    params.computes = computes == arguments.end() || decode(computes->second) != "0";
+    forEachInput([&](const skinslide_stage_input *input) {
+        auto given = arguments.find(input->name);
+        if (given == arguments.end())
+            return;
+        try {
+            Record record(attributeOf(input).GetString(), valueOf(input, decode(given->second)));
+            call(skinslide_stage_live_take, &params.live, input, record);
+        } catch (const Fault &bad) {
+            problems->push_back(bad.what());
+        }
+    });
     return params;
 }
 
 SdfFileFormat::FileFormatArguments Params::argumentsFromAttributes(const ComposeAttribute &compose) {
     SdfFileFormat::FileFormatArguments arguments;
-    addEnvelope(compose, &arguments);
-    addToken(names().liveInterpolation, names().interpolationArgument, compose, &arguments);
-    addToken(names().liveLookup, names().lookupArgument, compose, &arguments);
+    forEachInput([&](const skinslide_stage_input *input) {
+        VtValue value;
+        std::string text;
+        if (!compose(attributeOf(input), &value) || value.IsEmpty() || value.IsHolding<SdfValueBlock>())
+            return;
+        if (textOf(value, &text)) {
+            arguments[input->name] = encode(text);
+            return;
+        }
+        try { // said here, as no argument could tell
+            skinslide_stage_live unused = SKINSLIDE_STAGE_LIVE_DEFAULT;
+            call(skinslide_stage_live_take, &unused, input, Record(attributeOf(input).GetString(), value));
+        } catch (const Fault &bad) {
+            TF_WARN("%s", bad.what());
+        }
+    });
     return arguments;
 }
 
 bool Params::isAttribute(const TfToken &name) {
-    return name == names().liveEnvelope || name == names().liveInterpolation || name == names().liveLookup;
+    bool is = false;
+    forEachInput([&](const skinslide_stage_input *input) { is = is || name == attributeOf(input); });
+    return is;
 }
 
 } // namespace skinslide

@@ -8,6 +8,8 @@
 #include "pxr/base/vt/value.h"
 #include "pxr/usd/sdf/fileFormat.h"
 
+#include "skinslide/stage.h"
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,10 +18,8 @@ namespace skinslide {
 using namespace PXR_NS;
 
 struct Params {
-    bool live = true;          // false: the layer is its text, with nothing computed
-    double envelope = 1;       // scales the envelope of every patch
-    std::string interpolation; // of every patch, in place of its own; empty: its own
-    std::string lookup = "auto";
+    bool computes = true; // false: the layer is its text, with nothing computed
+    skinslide_stage_live live = SKINSLIDE_STAGE_LIVE_DEFAULT;
 
     // Values that cannot be used are left out, and said in `problems`.
     static Params fromArguments(const SdfFileFormat::FileFormatArguments &arguments, std::vector<std::string> *problems);

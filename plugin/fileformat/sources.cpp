@@ -59,6 +59,7 @@ SdfLayerRefPtr readText(const std::string &resolvedPath) {
 SdfLayerRefPtr anchoredCopy(const SdfLayerRefPtr &text, const std::string &resolvedPath) {
     SdfLayerRefPtr layer = SdfLayer::CreateAnonymous(TfGetBaseName(resolvedPath) + ".usda");
     layer->TransferContent(text);
+    const SdfLayerOffsetVector offsets = layer->GetSubLayerOffsets(); // which an update loses
     for (const std::string &asset : layer->GetCompositionAssetDependencies()) {
         std::string evaluated = evaluate(asset, layer->GetExpressionVariables());
         if (evaluated.empty())
@@ -67,6 +68,8 @@ SdfLayerRefPtr anchoredCopy(const SdfLayerRefPtr &text, const std::string &resol
         if (anchored != asset)
             layer->UpdateCompositionAssetDependency(asset, anchored);
     }
+    for (size_t i = 0; i < offsets.size(); i++)
+        layer->SetSubLayerOffset(offsets[i], static_cast<int>(i));
     return layer;
 }
 

@@ -30,8 +30,8 @@ struct Sources {
 };
 
 // Follows every composition arc of a file's text, in the resolver context that is bound. Throws Fault where it leads back to a
-// file that this thread is reading: a layer that is opened while it is being read waits for itself for ever, so .skinslide files
-// on the way are read as text and never opened.
+// file that this thread is reading: a layer that is opened while it is being read waits for itself for ever, so .skinslide
+// files on the way are read as text and never opened.
 Sources findSources(const SdfLayerRefPtr &text, const std::string &resolvedPath);
 
 // A layer without a rate counts as 24 a second, and what it leads to is scaled to that: gives it the rate of the first source.

@@ -1,6 +1,5 @@
 #include "values.h"
 
-#include "fault.h"
 #include "names.h"
 
 #include "pxr/base/gf/half.h"
@@ -9,186 +8,181 @@
 #include "pxr/base/gf/vec2h.h"
 #include "pxr/base/gf/vec3d.h"
 #include "pxr/base/gf/vec3h.h"
+#include "pxr/base/gf/vec4d.h"
+#include "pxr/base/gf/vec4f.h"
+#include "pxr/base/gf/vec4h.h"
+#include "pxr/usd/sdf/assetPath.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace skinslide {
+
+// ---- Records ----
+
 namespace {
 
-template <class T, class Out> bool copyArray(const VtValue &value, Out *out) {
-    if (!value.IsHolding<VtArray<T>>())
+template <class T> bool takeNumbers(skinslide_value_type type, int32_t width, const VtValue &value, skinslide_value *record) {
+    if (value.IsHolding<VtArray<T>>()) {
+        const VtArray<T> &array = value.UncheckedGet<VtArray<T>>();
+        record->data = array.cdata(), record->count = static_cast<int64_t>(array.size()), record->is_array = 1;
+    } else if (value.IsHolding<T>()) {
+        record->data = &value.UncheckedGet<T>(), record->count = 1, record->is_array = 0;
+    } else {
         return false;
-    const VtArray<T> &array = value.UncheckedGet<VtArray<T>>();
-    out->reserve(array.size());
-    for (const T &element : array)
-        out->push_back(static_cast<typename Out::value_type>(element));
+    }
+    record->type = type, record->width = width;
     return true;
 }
 
-template <class T> bool copyPairs(const VtValue &value, std::vector<float> *out) {
-    if (!value.IsHolding<VtArray<T>>())
-        return false;
-    for (const T &pair : value.UncheckedGet<VtArray<T>>()) {
-        out->push_back(static_cast<float>(pair[0]));
-        out->push_back(static_cast<float>(pair[1]));
-    }
-    return true;
-}
-
-template <class T> bool copyPositive(const VtValue &value, const std::string &what, std::vector<bool> *out) {
-    if (!value.IsHolding<VtArray<T>>())
-        return false;
-    const VtArray<T> &array = value.UncheckedGet<VtArray<T>>();
-    for (size_t i = 0; i < array.size(); i++) {
-        if (!std::isfinite(static_cast<double>(array.cdata()[i])))
-            throw fault("%s[%zu] is %g", what.c_str(), i, static_cast<double>(array.cdata()[i]));
-        out->push_back(array.cdata()[i] > T(0));
-    }
-    return true;
-}
-
-template <class T> bool gather(const std::vector<int32_t> &indices, const std::string &name, VtValue *value) {
-    if (!value->IsHolding<VtArray<T>>())
-        return false;
-    const VtArray<T> &from = value->UncheckedGet<VtArray<T>>();
-    VtArray<T> to(indices.size());
-    for (size_t i = 0; i < indices.size(); i++) {
-        if (indices[i] < 0 || static_cast<size_t>(indices[i]) >= from.size())
-            throw fault("%s:indices[%zu] is %d, but %s has %zu values", name.c_str(), i, indices[i], name.c_str(), from.size());
-        to[i] = from.cdata()[indices[i]];
-    }
-    *value = VtValue::Take(to);
-    return true;
+bool takeNumbers(const VtValue &value, skinslide_value *record) {
+    return takeNumbers<float>(SKINSLIDE_VALUE_FLOAT, 1, value, record) ||
+           takeNumbers<GfVec3f>(SKINSLIDE_VALUE_FLOAT, 3, value, record) ||
+           takeNumbers<int>(SKINSLIDE_VALUE_INT32, 1, value, record) ||
+           takeNumbers<bool>(SKINSLIDE_VALUE_BOOL, 1, value, record) ||
+           takeNumbers<double>(SKINSLIDE_VALUE_DOUBLE, 1, value, record) ||
+           takeNumbers<GfHalf>(SKINSLIDE_VALUE_HALF, 1, value, record) ||
+           takeNumbers<unsigned char>(SKINSLIDE_VALUE_UINT8, 1, value, record) ||
+           takeNumbers<unsigned>(SKINSLIDE_VALUE_UINT32, 1, value, record) ||
+           takeNumbers<int64_t>(SKINSLIDE_VALUE_INT64, 1, value, record) ||
+           takeNumbers<uint64_t>(SKINSLIDE_VALUE_UINT64, 1, value, record) ||
+           takeNumbers<GfVec2f>(SKINSLIDE_VALUE_FLOAT, 2, value, record) ||
+           takeNumbers<GfVec2d>(SKINSLIDE_VALUE_DOUBLE, 2, value, record) ||
+           takeNumbers<GfVec2h>(SKINSLIDE_VALUE_HALF, 2, value, record) ||
+           takeNumbers<GfVec3d>(SKINSLIDE_VALUE_DOUBLE, 3, value, record) ||
+           takeNumbers<GfVec3h>(SKINSLIDE_VALUE_HALF, 3, value, record) ||
+           takeNumbers<GfVec4f>(SKINSLIDE_VALUE_FLOAT, 4, value, record) ||
+           takeNumbers<GfVec4d>(SKINSLIDE_VALUE_DOUBLE, 4, value, record) ||
+           takeNumbers<GfVec4h>(SKINSLIDE_VALUE_HALF, 4, value, record);
 }
 
 } // namespace
 
-std::vector<int32_t> integers(const VtValue &value, const std::string &what) {
-    std::vector<int32_t> out;
-    if (!value.IsEmpty() && !copyArray<int>(value, &out) && !copyArray<unsigned>(value, &out) &&
-        !copyArray<int64_t>(value, &out) && !copyArray<uint64_t>(value, &out) && !copyArray<unsigned char>(value, &out))
-        throw fault("%s is not an array of int", what.c_str());
-    return out;
-}
-
-std::vector<float> floats(const VtValue &value, const std::string &what) {
-    std::vector<float> out;
-    if (value.IsHolding<float>())
-        out.push_back(value.UncheckedGet<float>());
-    else if (!value.IsEmpty() && !copyArray<float>(value, &out) && !copyArray<double>(value, &out) &&
-             !copyArray<GfHalf>(value, &out))
-        throw fault("%s is not an array of float", what.c_str());
-    return out;
-}
-
-VtVec3fArray positions(const VtValue &value, const std::string &what) {
-    VtVec3fArray out;
-    if (value.IsHolding<VtVec3fArray>())
-        return value.UncheckedGet<VtVec3fArray>();
-    auto convert = [&](const auto &array) {
-        for (const auto &point : array)
-            out.push_back(GfVec3f(point));
-    };
-    if (value.IsHolding<VtArray<GfVec3d>>())
-        convert(value.UncheckedGet<VtArray<GfVec3d>>());
-    else if (value.IsHolding<VtArray<GfVec3h>>())
-        convert(value.UncheckedGet<VtArray<GfVec3h>>());
-    else if (!value.IsEmpty())
-        throw fault("%s is not an array of points", what.c_str());
-    return out;
-}
-
-std::vector<float> pairs(const VtValue &value, const std::string &what, const TfToken &type) {
-    std::vector<float> out;
-    if (!value.IsEmpty() && !copyPairs<GfVec2f>(value, &out) && !copyPairs<GfVec2d>(value, &out) &&
-        !copyPairs<GfVec2h>(value, &out))
-        throw fault("%s is %s; a map needs pairs of floats", what.c_str(), type.GetText());
-    return out;
-}
-
-std::vector<bool> positive(const VtValue &value, const std::string &what) {
-    std::vector<bool> out;
-    if (!copyPositive<bool>(value, what, &out) && !copyPositive<int>(value, what, &out) &&
-        !copyPositive<float>(value, what, &out))
-        throw fault("%s must be bool[], int[] or float[]", what.c_str());
-    return out;
-}
-
-void checkLength(const std::string &what, size_t got, size_t count, const char *of) {
-    if (got != count)
-        throw fault("%s has %zu values, but the mesh has %zu %s", what.c_str(), got, count, of);
-}
-
-VtValue unchanging(const Attribute &attribute, const std::string &what) {
-    VtValue first = attribute.at(Attribute::first);
-    if (attribute.varies()) {
-        for (double time : attribute.times()) {
-            if (attribute.at(time) != first)
-                throw fault("%s changes at frame %s; it must stay the same over time", what.c_str(), frameText(time).c_str());
-        }
+Record::Record(const Attribute &attribute, double time, const Anchor *anchor, const Attribute *indices)
+    : _value(attribute.at(time)), _name(attribute.name()), _typeName(attribute.typeName().GetString()) {
+    if (_value.IsHolding<SdfAssetPath>() && anchor)
+        _text = anchor->path(attribute, _value.UncheckedGet<SdfAssetPath>());
+    take();
+    if (_value.IsEmpty() && attribute.authored() && !std::isnan(time))
+        _record.type = SKINSLIDE_VALUE_BLOCKED;
+    _interpolation = attribute.token(names().interpolation, TfToken());
+    _record.interpolation = _interpolation.IsEmpty() ? nullptr : _interpolation.GetText();
+    if (indices) {
+        _indices = std::make_unique<Record>(*indices, time);
+        _record.indices = *_indices;
     }
-    return first;
 }
 
-std::vector<double> mergedTimes(const std::vector<double> &times) {
-    std::vector<size_t> order(times.size()), kept;
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return times[a] < times[b]; });
-    for (size_t given : order) {
-        if (kept.empty() || times[given] - times[kept.back()] > sameTime)
-            kept.push_back(given);
-        else if (given < kept.back())
-            kept.back() = given;
+Record::Record(const std::string &name, const VtValue &value) : _value(value), _name(name) {
+    if (!value.IsEmpty())
+        _typeName = SdfSchema::GetInstance().FindType(value).GetAsToken().GetString();
+    take();
+}
+
+void Record::rename(const std::string &name) {
+    _name = name;
+    _record.name = _name.c_str();
+}
+
+void Record::take() {
+    _record.name = _name.c_str();
+    _record.type_name = _typeName.empty() ? nullptr : _typeName.c_str();
+    if (_value.IsEmpty() || takeNumbers(_value, &_record))
+        return;
+    bool isAsset = _value.IsHolding<SdfAssetPath>(), isToken = _value.IsHolding<TfToken>();
+    if (isToken || _value.IsHolding<std::string>())
+        _text = isToken ? _value.UncheckedGet<TfToken>().GetString() : _value.UncheckedGet<std::string>();
+    if (isAsset || isToken || _value.IsHolding<std::string>()) {
+        _record.type = isAsset ? SKINSLIDE_VALUE_ASSET : SKINSLIDE_VALUE_TEXT;
+        _record.data = _text.c_str(), _record.count = 1;
+        return;
     }
-    std::vector<double> merged;
-    for (size_t given : kept)
-        merged.push_back(times[given]);
-    return merged;
+    _record.type = SKINSLIDE_VALUE_OTHER;
+    _record.is_array = _value.IsArrayValued();
+    _record.count = _value.IsArrayValued() ? static_cast<int64_t>(_value.GetArraySize()) : 1;
 }
 
-std::string frameText(double time) {
-    if (std::isnan(time))
-        return "default";
-    std::string text = TfStringPrintf("%.6f", time);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.')
-        text.pop_back();
-    return text == "-0" ? "0" : text;
+// ---- Properties ----
+
+namespace {
+
+TfToken indicesOf(const TfToken &primvar) {
+    return TfToken(primvar.GetString() + ":indices");
 }
 
-Primvar::Primvar(const Prim &prim, const TfToken &name)
-    : _values(prim.attribute(name)), _indices(prim.attribute(TfToken(name.GetString() + ":indices"))) {
+} // namespace
+
+Property::Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch)
+    : _input(input), _anchor(composition.anchor()) {
+    TfToken name(input->prefix + (patch.empty() ? "" : patch + ":") + input->name);
+    Prim owner = input->is_inherited ? ownerOf(composition, prim, name) : prim;
+    _values = owner.attribute(name);
+    if (input->is_primvar)
+        _indices = owner.attribute(indicesOf(name));
+    refuseWhatCannotBeRead();
 }
 
-TfToken Primvar::interpolation() const {
-    return _values.token(names().interpolation, names().constant);
+Property::Property(Composition &composition, const Prim &prim, const TfToken &primvar)
+    : _values(prim.attribute(primvar)), _indices(prim.attribute(indicesOf(primvar))), _anchor(composition.anchor()) {
+    refuseWhatCannotBeRead();
 }
 
-std::vector<double> Primvar::times() const {
+void Property::refuseWhatCannotBeRead() const {
+    for (const Attribute *attribute : {&_values, &_indices}) {
+        const char *name = attribute->name().c_str();
+        if (attribute->clipped())
+            throw fault("%s %s from value clips, which a .skinslide file cannot read; bake the stage instead", name,
+                        attribute->name() == names().points ? "come" : "comes");
+        if (attribute->source() == Attribute::Source::Spline)
+            throw fault("%s is a spline, which a .skinslide file cannot read; bake the stage instead, or sample it", name);
+    }
+}
+
+std::vector<double> Property::times() const {
     std::vector<double> times;
-    for (const Attribute *source : {&_values, &_indices}) {
-        if (source->varies()) {
-            std::vector<double> own = source->times();
+    for (const Attribute *attribute : {&_values, &_indices}) {
+        if (_values.authored() && attribute->varies()) {
+            std::vector<double> own = attribute->times();
             times.insert(times.end(), own.begin(), own.end());
         }
     }
     return times;
 }
 
-VtValue Primvar::flattened(double time) const {
-    VtValue value = _values.at(time);
-    if (value.IsEmpty() || !indexed())
-        return value;
-    std::vector<int32_t> indices = integers(_indices.at(time), name() + ":indices");
-    if (!gather<float>(indices, name(), &value) && !gather<GfVec3f>(indices, name(), &value) &&
-        !gather<bool>(indices, name(), &value) && !gather<int>(indices, name(), &value) &&
-        !gather<GfVec3d>(indices, name(), &value) && !gather<GfVec3h>(indices, name(), &value) &&
-        !gather<GfVec2f>(indices, name(), &value) && !gather<GfVec2d>(indices, name(), &value) &&
-        !gather<GfVec2h>(indices, name(), &value))
-        throw fault("%s has indices, which its type cannot have here", name().c_str());
-    return value;
+std::vector<Property> properties(Composition &composition, const Prim &prim, skinslide_stage_group group,
+                                 const std::string &patch) {
+    std::vector<Property> found;
+    const skinslide_stage_input *input = nullptr;
+    while ((input = skinslide_stage_next_input(group, input)))
+        found.emplace_back(composition, prim, input, patch);
+    return found;
+}
+
+Prim ownerOf(Composition &composition, const Prim &prim, const TfToken &primvar) {
+    if (prim.attribute(primvar).authored())
+        return prim;
+    for (SdfPath path = prim.path().GetParentPath(); path.IsPrimPath(); path = path.GetParentPath()) {
+        Prim ancestor = composition.prim(path);
+        Attribute found = ancestor.attribute(primvar);
+        if (found.authored())
+            return found.token(names().interpolation, names().constant) == names().constant ? ancestor : prim;
+    }
+    return prim;
+}
+
+// ---- Times ----
+
+std::vector<double> mergedTimes(std::vector<double> times) {
+    int64_t count = static_cast<int64_t>(times.size());
+    call(skinslide_stage_merge_times, times.data(), &count);
+    times.resize(static_cast<size_t>(count));
+    return times;
+}
+
+std::string frameText(double time) {
+    char text[32] = "default";
+    if (!std::isnan(time))
+        skinslide_stage_frame_text(time, text);
+    return text;
 }
 
 } // namespace skinslide

@@ -1,70 +1,140 @@
-// Values of attributes as arrays, checked: what they hold, how many, and how they change over time.
+// What the core asks for, fetched from a composed prim and handed over as its records. Nothing is checked here, and nothing
+// meant.
 #ifndef SKINSLIDE_FORMAT_VALUES_H
 #define SKINSLIDE_FORMAT_VALUES_H
 
 #include "compose.h"
+#include "fault.h"
 
 #include "pxr/base/gf/vec3f.h"
 #include "pxr/base/vt/array.h"
 #include "pxr/base/vt/types.h"
 
-#include <cstdint>
+#include "skinslide/stage.h"
+
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace skinslide {
 
-// Each throws Fault where the value is not such an array. An empty value is an empty array.
-std::vector<int32_t> integers(const VtValue &value, const std::string &what);
-std::vector<float> floats(const VtValue &value, const std::string &what); // also of one float
-VtVec3fArray positions(const VtValue &value, const std::string &what);
+// Owns a handle of the core.
+template <class T, void (*destroy)(T *)> struct Destroyer {
+    void operator()(T *handle) const {
+        destroy(handle);
+    }
+};
+using MeshHandle = std::unique_ptr<skinslide_stage_mesh, Destroyer<skinslide_stage_mesh, skinslide_stage_mesh_destroy>>;
+using PatchHandle = std::unique_ptr<skinslide_stage_patch, Destroyer<skinslide_stage_patch, skinslide_stage_patch_destroy>>;
+using ControlsHandle =
+    std::unique_ptr<skinslide_stage_controls, Destroyer<skinslide_stage_controls, skinslide_stage_controls_destroy>>;
+using DerivedHandle =
+    std::unique_ptr<skinslide_stage_derived, Destroyer<skinslide_stage_derived, skinslide_stage_derived_destroy>>;
 
-// A texCoord2f[], or another array of two numbers each, as twice as many floats. type  is named where it is none.
-std::vector<float> pairs(const VtValue &value, const std::string &what, const TfToken &type);
+// Calls a function of the core; throws Fault with its sentence where it fails.
+template <class Function, class... Arguments> void call(Function function, Arguments &&...arguments) {
+    skinslide_error error = {};
+    if (function(std::forward<Arguments>(arguments)..., &error) != SKINSLIDE_OK)
+        throw Fault(error.message);
+}
 
-// Values > 0 of a bool[], int[] or float[].
-std::vector<bool> positive(const VtValue &value, const std::string &what);
+// What an attribute has at a time, as a record that points into this.
+class Record {
+  public:
+    // anchor   what paths of files are relative to; null: they are as they should be
+    // indices  of an indexed primvar
+    Record(const Attribute &attribute, double time, const Anchor *anchor = nullptr, const Attribute *indices = nullptr);
+    // Of something that is no attribute.
+    Record(const std::string &name, const VtValue &value);
+    Record(const Record &) = delete;
+    Record &operator=(const Record &) = delete;
 
-void checkLength(const std::string &what, size_t got, size_t count, const char *of);
+    operator const skinslide_value *() const {
+        return &_record;
+    }
+    const VtValue &value() const {
+        return _value;
+    }
+    void rename(const std::string &name);
 
-// The value of an attribute that must stay the same over time; empty where it has none.
-VtValue unchanging(const Attribute &attribute, const std::string &what);
+  private:
+    void take();
 
-// Times in order; of those that differ by noise of layer offsets only, the one given first.
-std::vector<double> mergedTimes(const std::vector<double> &times);
-constexpr double sameTime = 1e-6;
+    skinslide_value _record = SKINSLIDE_VALUE_DEFAULT;
+    VtValue _value;
+    std::string _name, _typeName, _text;
+    TfToken _interpolation;
+    std::unique_ptr<Record> _indices;
+};
+
+// A property of a prim that the core asks for, with its indices.
+class Property {
+  public:
+    Property() = default;
+    // patch  whose input it is; empty: the mesh's own
+    // Throws Fault where it is authored as something that this reader cannot read.
+    Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch = "");
+    // A primvar that is no input, by its full name.
+    Property(Composition &composition, const Prim &prim, const TfToken &primvar);
+
+    const skinslide_stage_input *input() const {
+        return _input;
+    }
+    const Attribute &attribute() const {
+        return _values;
+    }
+    const Anchor &anchor() const {
+        return _anchor;
+    }
+    bool varies() const {
+        return _values.authored() && (_values.varies() || _indices.varies());
+    }
+    std::vector<double> times() const; // of values and of indices, where they vary
+    Record at(double time) const {
+        return Record(_values, time, &_anchor, _indices.authored() ? &_indices : nullptr);
+    }
+    Record first() const {
+        return at(_input && _input->when == SKINSLIDE_STAGE_DEFAULT_TIME ? Attribute::defaultTime : Attribute::first);
+    }
+    // Hands the value over, and later samples of what must stay the same. Throws Fault.
+    template <class Handle, class Take, class Check> void give(Handle *handle, Take take, Check check) const {
+        call(take, handle, _input, first());
+        if (_input->when == SKINSLIDE_STAGE_STILL) {
+            for (double time : times())
+                call(check, handle, _input, at(time), time);
+        }
+    }
+
+  private:
+    void refuseWhatCannotBeRead() const;
+
+    const skinslide_stage_input *_input = nullptr;
+    Attribute _values, _indices;
+    Anchor _anchor;
+};
+
+// Every property of a group, in the order in which the core wants them. Throws Fault.
+std::vector<Property> properties(Composition &composition, const Prim &prim, skinslide_stage_group group,
+                                 const std::string &patch = "");
+
+// The prim that an inherited primvar comes from: the nearest ancestor that has any, where that is constant; else the prim
+// itself.
+Prim ownerOf(Composition &composition, const Prim &prim, const TfToken &primvar);
+
+// Times in order, each once, as the core merges them.
+std::vector<double> mergedTimes(std::vector<double> times);
 
 // 1012 for 1012.0 and 1012.25 for 1012.25; "default" where it is the default time.
 std::string frameText(double time);
 
-// A primvar with its indices.
-class Primvar {
-  public:
-    Primvar() = default;
-    Primvar(const Prim &prim, const TfToken &name); // with its primvars: prefix
+inline const float *floatsOf(const VtVec3fArray &points) {
+    return reinterpret_cast<const float *>(points.cdata());
+}
 
-    const Attribute &attribute() const {
-        return _values;
-    }
-    bool authored() const {
-        return _values.authored();
-    }
-    bool indexed() const {
-        return _indices.authored();
-    }
-    bool varies() const {
-        return _values.varies() || _indices.varies();
-    }
-    std::string name() const {
-        return _values.name();
-    }
-    TfToken interpolation() const;
-    std::vector<double> times() const; // of values and of indices, where they vary
-    VtValue flattened(double time) const;
-
-  private:
-    Attribute _values, _indices;
-};
+inline float *floatsOf(VtVec3fArray *points) {
+    return reinterpret_cast<float *>(points->data());
+}
 
 } // namespace skinslide
 

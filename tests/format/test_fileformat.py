@@ -311,7 +311,7 @@ def test_editing_anything_else_does_not(tmp_path, path):
             'uniform token skinSlide:live:interpolation = "a b&c:d=%41@"',
             "skinSlide:live:interpolation is 'a b&c:d=%41@'",
         ),
-        ("uniform float skinSlide:live:envelope = inf", "skinSlide:live:envelope is 'inf'"),
+        ("uniform float skinSlide:live:envelope = inf", "skinSlide:live:envelope is inf"),
         ('uniform token skinSlide:live:lookup = "quick"', "it must be one of auto, egl, exact"),
     ],
 )

@@ -168,9 +168,9 @@ def shot(folder: Path, live: str) -> Path:
 @pytest.mark.parametrize(
     ("live", "message"),
     [
-        ('string skinSlide:live:envelope = "half"', "skinSlide:live:envelope is a string; it must be a number"),
-        ("float[] skinSlide:live:envelope = [0.5]", "skinSlide:live:envelope is a VtArray<float>; it must be a number"),
-        ("int skinSlide:live:interpolation = 1", "skinSlide:live:interpolation is a int; it must be a token"),
+        ('string skinSlide:live:envelope = "half"', "skinSlide:live:envelope is 'half'; it must be a float"),
+        ("float[] skinSlide:live:envelope = [0.5]", "skinSlide:live:envelope is [0.5]; it must be a float"),
+        ("int skinSlide:live:interpolation = 1", "skinSlide:live:interpolation is '1'; it must be one of auto, linear"),
     ],
 )
 def test_a_live_attribute_of_a_wrong_type_is_said(tmp_path, live, message):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bad_stages import BAD
-from differences import LAYER, TOOL
+from differences import TOOL
 from digests import BLOCKED, Contents, differences
 from good_stages import GOOD
 from readers import Sentence, baked, cached, command, opened
@@ -21,7 +21,7 @@ def no_device(monkeypatch):
 
 def test_each_row_has_a_name_of_its_own():
     names = [row.name for row in [*GOOD, *BAD]]
-    assert len(names) == len(set(names)) and {*TOOL, *LAYER} <= set(names)
+    assert len(names) == len(set(names)) and set(TOOL) <= set(names)
 
 
 def moved(bake: Contents, cache: Contents) -> bool:
@@ -33,7 +33,7 @@ def moved(bake: Contents, cache: Contents) -> bool:
     )
 
 
-@pytest.mark.parametrize("row", marked(GOOD, TOOL, LAYER))
+@pytest.mark.parametrize("row", marked(GOOD, TOOL))
 def test_a_layer_holds_what_a_bake_does(row, tmp_path):
     path = made(row, tmp_path)
     bake, warned = baked(path)
@@ -73,7 +73,7 @@ def test_the_tool_refuses(row, tmp_path, capfd):
     assert output.read_text() == "what was there before" and set(tmp_path.iterdir()) == {*before, output}
 
 
-@pytest.mark.parametrize("row", marked(BAD, LAYER))
+@pytest.mark.parametrize("row", marked(BAD))
 def test_a_layer_refuses(row, tmp_path):
     """It opens, says why, and gives the points of the cache: of the frame, or of all."""
     path = made(row, tmp_path)

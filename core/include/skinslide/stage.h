@@ -5,14 +5,15 @@
  * same in every reader. What there is to fetch it asks for, so that a reader need not change when the schema grows.
  *
  * How a reader uses it, in order
- *     1. A prim that mentions the schema: its facts to skinslide_stage_find, which gives the patches it carries, why they cannot
- *        be slid, and what to warn of.
+ *     1. A prim that mentions the schema: its facts to skinslide_stage_find, which gives the patches it carries, why they
+ *        cannot be slid, and what to warn of.
  *     2. skinslide_stage_mesh_create, and each input of the group MESH to skinslide_stage_mesh_take.
- *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, and the child
- *        prim of the patch's name to skinslide_stage_patch_take_subset.
+ *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, and the
+ *        child prim of the patch's name to skinslide_stage_patch_take_subset.
  *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
  *        skinslide_stage_controls_take; then, for textures, the texture coordinates and the files that it asks for.
- *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the group SUBDIVISION to skinslide_stage_mesh_take.
+ *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the inputs of the group SUBDIVISION to
+ *        skinslide_stage_mesh_take.
  *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes.
  *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
  *        that of step 4, is given those that do, and skinslide_stage_controls_get gives what skinslide_slide takes.
@@ -37,7 +38,7 @@ extern "C" {
 #endif
 #endif
 
-/* ---- Records --------------------------------------------------------------------------------------------------------------- */
+/* ---- Records ------------------------------------------------------------------------------------------------------------- */
 
 /* What a record holds. */
 typedef enum skinslide_value_type {
@@ -52,9 +53,9 @@ typedef enum skinslide_value_type {
     SKINSLIDE_VALUE_HALF, /* uint16_t, the bits of an IEEE 754 binary16 */
     SKINSLIDE_VALUE_FLOAT,
     SKINSLIDE_VALUE_DOUBLE,
-    SKINSLIDE_VALUE_TEXT, /* a token or a string: data is the text itself, UTF-8 and ended by 0 */
+    SKINSLIDE_VALUE_TEXT,  /* a token or a string: data is the text itself, UTF-8 and ended by 0 */
     SKINSLIDE_VALUE_ASSET, /* the path of a file, given as TEXT is: one that no longer depends on the layer that authored it */
-    SKINSLIDE_VALUE_OTHER /* a value of another kind: data is not read, and type_name says what it is */
+    SKINSLIDE_VALUE_OTHER  /* a value of another kind: data is not read, and type_name says what it is */
 } skinslide_value_type;
 
 /* One value of a property at one time. Start from SKINSLIDE_VALUE_DEFAULT: none. */
@@ -77,16 +78,16 @@ typedef struct skinslide_value {
 /* The elements of a record, indices applied; 0 where it has no value. */
 SKINSLIDE_API int64_t skinslide_value_length(const skinslide_value *value);
 
-/* The elements as int32_t, as float, and as positions: an array of whole numbers; of halves, floats or doubles; of three of them
- * each. A record of no value is an empty array.
+/* The elements as int32_t, as float, and as positions: an array of whole numbers; of halves, floats or doubles; of three of
+ * them each. A record of no value is an empty array.
  *   out  out [skinslide_value_length], for positions [..][3]; NULL: the record is only checked
- * Each fails with BAD_CONTROL ("NAME is not an array of int", "of float", "of points"; a whole number that does not fit; an index
- * that is out of range: names it), BAD_ARGUMENT. */
+ * Each fails with BAD_CONTROL ("NAME is not an array of int", "of float", "of points"; a whole number that does not fit; an
+ * index that is out of range: names it), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_value_integers(const skinslide_value *value, int32_t *out, skinslide_error *error);
 SKINSLIDE_API skinslide_status skinslide_value_floats(const skinslide_value *value, float *out, skinslide_error *error);
 SKINSLIDE_API skinslide_status skinslide_value_positions(const skinslide_value *value, float *out, skinslide_error *error);
 
-/* ---- What there is to fetch ------------------------------------------------------------------------------------------------ */
+/* ---- What there is to fetch ---------------------------------------------------------------------------------------------- */
 
 typedef enum skinslide_stage_group {
     SKINSLIDE_STAGE_MESH,        /* to skinslide_stage_mesh_take */
@@ -123,7 +124,7 @@ typedef struct skinslide_stage_input {
 SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_input(skinslide_stage_group group,
                                                                       const skinslide_stage_input *before);
 
-/* ---- Prims ----------------------------------------------------------------------------------------------------------------- */
+/* ---- Prims --------------------------------------------------------------------------------------------------------------- */
 
 /* "SkinSlideAPI": a prim that has it applied, as SkinSlideAPI:PATCH, carries a patch. A static string. */
 SKINSLIDE_API const char *skinslide_stage_schema(void);
@@ -164,7 +165,7 @@ typedef struct skinslide_stage_problem {
 } skinslide_stage_problem;
 
 typedef struct skinslide_stage_finding {
-    int32_t slides; /* 1: it carries patches, and nothing of these facts keeps them from being slid */
+    int32_t slides; /* 1: it carries patches, and none of these facts keeps them from being slid */
     int32_t patch_count;
     int32_t problem_count;
     const char *const *patches;                     /* [patch_count] their names, in the order of the schemas */
@@ -184,7 +185,7 @@ SKINSLIDE_API void skinslide_stage_finding_destroy(skinslide_stage_finding *find
  *   where  in  "on the stage"; NULL: nowhere in particular */
 SKINSLIDE_API skinslide_status skinslide_stage_nothing(const char *where, skinslide_error *error);
 
-/* ---- Meshes ---------------------------------------------------------------------------------------------------------------- */
+/* ---- Meshes -------------------------------------------------------------------------------------------------------------- */
 
 /* One mesh of a scene: its faces, its rest points, how it is subdivided. */
 typedef struct skinslide_stage_mesh skinslide_stage_mesh;
@@ -245,7 +246,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_coordinates(const skinslide_stage
 SKINSLIDE_API skinslide_status skinslide_stage_painted(const skinslide_stage_mesh *mesh, const skinslide_value *value,
                                                        double *numbers, skinslide_error *error);
 
-/* ---- Patches --------------------------------------------------------------------------------------------------------------- */
+/* ---- Patches ------------------------------------------------------------------------------------------------------------- */
 
 /* What a shot sets from outside, for every patch of a file. Start from SKINSLIDE_STAGE_LIVE_DEFAULT: nothing. */
 typedef struct skinslide_stage_live {
@@ -320,7 +321,7 @@ SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_p
 /* Whether its interpolation depends on how the mesh is subdivided. */
 SKINSLIDE_API int32_t skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch);
 
-/* ---- Controls -------------------------------------------------------------------------------------------------------------- */
+/* ---- Controls ------------------------------------------------------------------------------------------------------------ */
 
 /* What is painted and animated on a patch, at one time: memory that one frame after another uses. */
 typedef struct skinslide_stage_controls skinslide_stage_controls;
@@ -344,9 +345,10 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_take(skinslide_stage_con
                                                              const skinslide_stage_input *input, const skinslide_value *value,
                                                              skinslide_error *error);
 
-/* Textures are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, whose name this
- * gives, "primvars:st", or NULL where there is no texture; and each file that skinslide_stage_controls_need asks for. Where the
- * primvar or an asset varies, a frame brings every asset and the primvar again. The name lives as long as the patch. */
+/* Textures are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, whose name
+ * this gives, "primvars:st", or NULL where there is no texture; and each file that skinslide_stage_controls_need asks for.
+ * Where the primvar or an asset varies, a frame brings every asset and the primvar again. The name lives as long as the
+ * patch. */
 SKINSLIDE_API const char *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls);
 
 /* Takes the texture coordinates of all textures. Fails with BAD_CONTROL (none: says which setting names them; as
@@ -378,13 +380,14 @@ typedef struct skinslide_stage_file {
 #define SKINSLIDE_STAGE_FILE_DEFAULT                                                                                           \
     { sizeof(skinslide_stage_file), 0, 0, 0, 0 }
 
-/* Whether the image of a file is held from the time before, for the texture that is asked for: its bytes are then not needed. */
+/* Whether the image of a file is held from the time before, for the texture that is asked for: its bytes are then not
+ * needed. */
 SKINSLIDE_API int32_t skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path);
 
 /* Takes the file that is asked for, and with its last file samples the texture. Where that fails, its others are asked for no
  * more.
- * Fails with BAD_CONTROL (no such file, not readable, too large, coordinates that are not finite, a texture that is not finite or
- * not a force density somewhere), BAD_IMAGE, UNSUPPORTED (as skinslide_exr_decode), BAD_ARGUMENT, OUT_OF_MEMORY. */
+ * Fails with BAD_CONTROL (no such file, not readable, too large, coordinates that are not finite, a texture that is not finite
+ * or not a force density somewhere), BAD_IMAGE, UNSUPPORTED (as skinslide_exr_decode), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *controls,
                                                              const skinslide_stage_file *file, skinslide_error *error);
 
@@ -409,8 +412,8 @@ SKINSLIDE_API const skinslide_stage_texture *skinslide_stage_controls_texture(co
                                                                               const skinslide_stage_input *input);
 
 /* The controls as the slider takes them; the arrays are those of the handle, of its patch or of its base.
- * Fails with BAD_CONTROL (paint times a texture that is no force density: names the point), BAD_ARGUMENT (a value was refused, a
- * texture is not complete), OUT_OF_MEMORY. */
+ * Fails with BAD_CONTROL (paint times a texture that is no force density: names the point), BAD_ARGUMENT (a value was refused,
+ * a texture is not complete), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
                                                             skinslide_error *error);
 
@@ -419,11 +422,11 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_cont
 SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, skinslide_stage_controls *controls,
                                                          skinslide_patch_setup *out, skinslide_error *error);
 
-/* ---- Times ----------------------------------------------------------------------------------------------------------------- */
+/* ---- Times --------------------------------------------------------------------------------------------------------------- */
 
-/* Puts times in order; of those that differ by no more than the noise that layer offsets leave, 1e-6, the one given first stays.
- * Give the samples of points first, then those of each patch's controls that vary in the order of its inputs, with the samples
- * of indices and of texture coordinates.
+/* Puts times in order; of those that differ by no more than the noise that layer offsets leave, 1e-6, the one given first
+ * stays. Give the samples of points first, then those of each patch's controls that vary in the order of its inputs, with the
+ * samples of indices and of texture coordinates.
  *   times  in  [count], finite; out  those that stay
  *   count  in out
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
@@ -433,7 +436,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_merge_times(double *times, int64_
  *   text  out, of 32 bytes */
 SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
 
-/* ---- What follows from points ---------------------------------------------------------------------------------------------- */
+/* ---- What follows from points -------------------------------------------------------------------------------------------- */
 
 /* Normals, velocities and accelerations that a mesh has beside its points. */
 typedef struct skinslide_stage_derived skinslide_stage_derived;
@@ -457,8 +460,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_take(skinslide_stage_deri
                                                             const skinslide_stage_input *input, const skinslide_value *value,
                                                             const double *times, int64_t time_count, skinslide_error *error);
 
-/* Looks at a later sample of an input, once all inputs are taken: a type or a length that it cannot have blocks its output, at all
- * times. What else keeps it from being recomputed skinslide_stage_derived_value says.
+/* Looks at a later sample of an input, once all inputs are taken: a type or a length that it cannot have blocks its output, at
+ * all times. What else keeps it from being recomputed skinslide_stage_derived_value says.
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
                                                              const skinslide_stage_input *input, const skinslide_value *value,
@@ -467,7 +470,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_check(skinslide_stage_der
 /* An attribute to write beside the points. */
 typedef struct skinslide_stage_output {
     const char *name;      /* "primvars:normals" */
-    const char *type_name; /* "normal3f[]" */
+    const char *type_name; /* "normal3f[]"; of a primvar, as its record says */
     int32_t pose_count;    /* poses that a value of it takes: 1, 2 or 3; 0: it is blocked at all times */
     int32_t count;         /* elements of a value */
     const char *reason;    /* why it is blocked; NULL of what is blocked without a warning, and of what is not */
@@ -478,8 +481,8 @@ typedef struct skinslide_stage_output {
 SKINSLIDE_API const skinslide_stage_output *skinslide_stage_derived_output(const skinslide_stage_derived *derived,
                                                                            int32_t number);
 
-/* The times of the poses that the value of an output at a time takes: the time itself or, of rates, the samples of points next to
- * it on either side, with it between them for a second difference; at an end it and those nearest to it.
+/* The times of the poses that the value of an output at a time takes: the time itself or, of rates, the samples of points next
+ * to it on either side, with it between them for a second difference; at an end it and those nearest to it.
  *   times  out [pose_count] ascending. Returns how many there are: fewer where there are too few samples. */
 SKINSLIDE_API int32_t skinslide_stage_derived_times(const skinslide_stage_derived *derived,
                                                     const skinslide_stage_output *output, double time, double times[3]);
@@ -495,8 +498,8 @@ typedef struct skinslide_stage_pose {
  *   value  in  the cache's, of the input that the output is of
  *   poses  in  [pose_count] at the times that skinslide_stage_derived_times gives
  *   out    out [count][3]
- * Fails with BAD_POINTS (no value, of a wrong type or length, too few samples of points), BAD_ARGUMENT, OUT_OF_MEMORY. It is then
- * to be blocked at all times: where a sample is missing, its neighbours would be taken instead. */
+ * Fails with BAD_POINTS (no value, of a wrong type or length, too few samples of points), BAD_ARGUMENT, OUT_OF_MEMORY. It is
+ * then to be blocked at all times: where a sample is missing, its neighbours would be taken instead. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *derived,
                                                              const skinslide_stage_output *output, const skinslide_value *value,
                                                              const skinslide_stage_pose *poses, int32_t pose_count, float *out,

@@ -100,9 +100,11 @@ static void primvars_win_and_lose_their_indices(void **state) {
     const int32_t zeros[CORNERS] = {0};
     const skinslide_value indices = array_of("primvars:normals:indices", SKINSLIDE_VALUE_INT32, 1, CORNERS, zeros);
     skinslide_value primvar = painted_as(indexed_by(vectors("primvars:normals", 1), &indices), "faceVarying");
+    primvar.type_name = "vector3f[]";
     take(&s, "primvars:", "normals", primvar, frames, 4);
     take(&s, "", "normals", vectors("normals", VERTICES), frames, 4);
     expect(&s, 0, "primvars:normals", 1, NULL);
+    assert_string_equal(skinslide_stage_derived_output(s.derived, 0)->type_name, "vector3f[]"); /* as it came */
     assert_string_equal(skinslide_stage_derived_output(s.derived, 0)->hidden, "normals");
     expect(&s, 1, "primvars:normals:indices", 0, NULL);
     assert_string_equal(skinslide_stage_derived_output(s.derived, 1)->type_name, "int[]");

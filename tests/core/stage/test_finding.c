@@ -113,7 +113,7 @@ static void a_schema_without_a_name_is_an_error(void **state) {
         skinslide_stage_prim prim = WITH(bare[i], "SkinSlideAPI:elbow");
         skinslide_stage_finding *finding = find(&prim);
         assert_int_equal(finding->patch_count, 1);
-        assert_true(finding->slides);
+        assert_false(finding->slides);
         expect_problem(finding, 0, SKINSLIDE_SEVERITY_ERROR, NULL,
                        "SkinSlideAPI is applied without a patch's name; apply SkinSlideAPI:NAME");
         skinslide_stage_finding_destroy(finding);

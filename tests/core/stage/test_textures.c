@@ -1,4 +1,5 @@
-/* Textures of a patch: what is asked for, what the values are and multiply, what is held from frame to frame, and what fails. */
+/* Textures of a patch: what is asked for, what the values are and multiply, what is held from frame to frame, and what
+ * fails. */
 #include "records.h"
 #include "skinslide/paint.h"
 
