@@ -167,11 +167,36 @@ const char *crash_at(const ss_topology &topology, int32_t face) {
     return is_near_non_manifold(level, vertices) ? "a crease, near where the mesh is not manifold" : nullptr;
 }
 
+/* Faces around a vertex, and vertices of a face, that surfaces are made for: what they take grows with the cube. 256 take a third of
+ * a second a frame, and where creases tell all of them apart 2 GB. */
+const int most_around = 256;
+
+/* The first vertex of a face with more faces than that, or -1. */
+int crowded_vertex(const ss_topology &topology, const Far::ConstIndexArray &vertices) {
+    Far::TopologyLevel level = topology.refiner->GetLevel(0);
+    auto is_crowded = [&](int vertex) { return level.GetVertexFaces(vertex).size() > most_around; };
+    auto found = std::find_if(vertices.begin(), vertices.end(), is_crowded);
+    return found == vertices.end() || topology.refiner->GetSchemeType() == Sdc::SCHEME_BILINEAR ? -1 : *found;
+}
+
+skinslide_status refuse_crowd(const ss_topology &topology, int32_t face, const char *label, skinslide_error *error) {
+    Far::TopologyLevel level = topology.refiner->GetLevel(0);
+    Far::ConstIndexArray vertices = level.GetFaceVertices(face);
+    int vertex = crowded_vertex(topology, vertices);
+    if (vertices.size() > most_around)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: face %d has %d vertices; limit surfaces are made for %d at most",
+                       label, face, vertices.size(), most_around);
+    if (vertex >= 0)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: vertex %d has %d faces; limit surfaces are made for %d at most",
+                       label, vertex, level.GetVertexFaces(vertex).size(), most_around);
+    return SKINSLIDE_OK;
+}
+
 /* OpenSubdiv is asked last: where it crashes at a face, it may do so when asked. */
 ss_face_surface kind_of(const ss_topology &topology, int32_t face) {
     if (topology.is_hole[size_t(face)])
         return SS_SURFACE_NONE;
-    if (crash_at(topology, face))
+    if (refuse_crowd(topology, face, "", nullptr) || crash_at(topology, face))
         return SS_SURFACE_REFUSED;
     return topology.factory->FaceHasLimitSurface(face) ? SS_SURFACE : SS_SURFACE_NONE;
 }
@@ -190,6 +215,8 @@ skinslide_status build_surfaces(const ss_topology &topology, const int32_t *face
     surfaces.vertex_start.assign(1, 0);
     for (int32_t f = 0; f < count; f++) {
         Surface &surface = surfaces.faces[size_t(f)];
+        if (skinslide_status status = refuse_crowd(topology, faces[f], label, error))
+            return status;
         if (const char *why = crash_at(topology, faces[f]))
             return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: face %d has %s; OpenSubdiv before 3.5.1 cannot subdivide it",
                            label, faces[f], why);

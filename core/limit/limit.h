@@ -28,11 +28,11 @@ void ss_topology_destroy(ss_topology *topology);
 typedef enum ss_face_surface {
     SS_SURFACE,         /* the face has a limit surface */
     SS_SURFACE_NONE,    /* it is not rendered */
-    SS_SURFACE_REFUSED, /* it would have one but for OpenSubdiv */
+    SS_SURFACE_REFUSED, /* it would have one but for OpenSubdiv, or for the crowd around a vertex */
 } ss_face_surface;
 /* kinds out [mesh face_count] */
 skinslide_status ss_face_surfaces(const ss_topology *topology, ss_face_surface *kinds, skinslide_error *error);
-/* BAD_PATCH where a face has none. label begins messages. */
+/* BAD_PATCH where a face has none, UNSUPPORTED where it is refused. label begins messages. */
 skinslide_status ss_limit_surfaces_create(const ss_topology *topology, const int32_t *mesh_faces, int32_t count,
                                           const char *label, ss_limit_surfaces **out, skinslide_error *error);
 void ss_limit_surfaces_destroy(ss_limit_surfaces *surfaces);

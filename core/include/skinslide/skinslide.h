@@ -230,7 +230,8 @@ typedef struct skinslide_slider skinslide_slider;
  * finite, a largest distance not >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED,
  * OUT_OF_MEMORY. With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that
  * is not an edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a
- * hole of the surface), BAD_CONTROL (the mesh is not subdivided). */
+ * hole of the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face
+ * with more than 256 vertices). */
 SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                        int32_t setup_count, skinslide_slider **out, skinslide_error *error);
 
@@ -446,7 +447,8 @@ typedef struct skinslide_limit_place {
  *   out      out  [count][3]
  * Fast where places of one face follow each other.
  * Fails with BAD_ARGUMENT, BAD_MESH (as above, or a mesh that is not subdivided), BAD_PATCH (a place on a hole), BAD_POINTS,
- * UNSUPPORTED (with OpenSubdiv before 3.5.1 some faces with creases, at a boundary or where the mesh is not manifold),
+ * UNSUPPORTED (a vertex with more than 256 faces, a face with more than 256 vertices, with OpenSubdiv before 3.5.1 some faces with
+ * creases, at a boundary or where the mesh is not manifold),
  * OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_limit_points(const skinslide_mesh *mesh, const float *points,
                                                       const skinslide_limit_place *places, int32_t count, float *out,

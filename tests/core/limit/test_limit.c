@@ -453,6 +453,34 @@ static void what_crashes_opensubdiv_is_refused(void **state) {
     free_mesh(&mesh);
 }
 
+/* The time grows with the cube of the faces around a vertex, or the vertices of a face: the most there may be are taken, and what
+ * has more is named. A bilinear surface has no such vertices. */
+static void expect_crowd(const test_mesh *mesh, skinslide_scheme scheme, skinslide_status expected, const char *text) {
+    skinslide_mesh view = view_of(mesh);
+    skinslide_subdivision own = SKINSLIDE_SUBDIVISION_DEFAULT;
+    own.scheme = scheme, view.subdivision = &own;
+    const skinslide_limit_place place = {mesh->index_count - 1, 0.5f, 0.25f}; /* of the last face */
+    float out[3];
+    skinslide_error error;
+    skinslide_status status = skinslide_limit_points(&view, mesh->points, &place, 1, out, &error);
+    if (expected)
+        assert_fails(status, &error, expected, text);
+    else
+        assert_ok(status, &error);
+}
+
+static void crowds_are_refused(void **state) {
+    (void)state;
+    test_mesh most = finger(256, 2), more = finger(257, 2), face = polygon(257);
+    expect_crowd(&most, SKINSLIDE_SCHEME_CATMULL_CLARK, SKINSLIDE_OK, NULL);
+    expect_crowd(&more, SKINSLIDE_SCHEME_BILINEAR, SKINSLIDE_OK, NULL);
+    expect_crowd(&more, SKINSLIDE_SCHEME_CATMULL_CLARK, SKINSLIDE_UNSUPPORTED,
+                 "limit points: vertex 771 has 257 faces; limit surfaces are made for 256 at most");
+    expect_crowd(&face, SKINSLIDE_SCHEME_CATMULL_CLARK, SKINSLIDE_UNSUPPORTED,
+                 "limit points: face 0 has 257 vertices; limit surfaces are made for 256 at most");
+    free_mesh(&most), free_mesh(&more), free_mesh(&face);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stencils_match_a_refined_mesh),
@@ -466,6 +494,7 @@ int main(void) {
         cmocka_unit_test(bad_places_are_named),
         cmocka_unit_test(faces_that_cannot_be_subdivided),
         cmocka_unit_test(what_crashes_opensubdiv_is_refused),
+        cmocka_unit_test(crowds_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,7 +115,7 @@ class MeshPictures(MeshMaking):
             return []
         flat = skin.tessellation.flat_faces
         if flat:
-            message = f"{flat} faces are drawn flat: OpenSubdiv before 3.5.1 cannot subdivide them"
+            message = f"{flat} faces are drawn flat: their limit surfaces cannot be made"
             self._problems.append(Problem("warning", self._mesh.path, None, None, message))
         made = (self._make_series(skin, i) for i in chosen)
         return [series for series in made if series]
