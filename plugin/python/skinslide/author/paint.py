@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
-from pxr import Gf, Sdf, Usd, UsdGeom
+from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.geometry import Curves, edges_near
 from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positions
@@ -19,7 +19,7 @@ from skinslide.author.layer import layer_on
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
-from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path
+from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path, given_primvar, given_subset
 from skinslide.stage.patch import read_edges, read_faces, read_pairs
 from skinslide.stage.topology import Topology
 from skinslide.stage.values import FIRST, read_value
@@ -257,9 +257,9 @@ def _edges_of_mesh(surface: _Surface, pairs: np.ndarray, what: str) -> np.ndarra
 
 
 def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
-    child = surface.prim.GetChild(name) if Sdf.Path.IsValidIdentifier(name) else None
-    if not child or not child.IsA(UsdGeom.Subset):
-        raise Fault(f"there is no GeomSubset {name} under the mesh")
+    child = given_subset(surface.prim, name)
+    if not child.IsA(UsdGeom.Subset):
+        raise Fault(f"{child.GetPath()} is no GeomSubset")
     subset, path = UsdGeom.Subset(child), child.GetPath()
     element = subset.GetElementTypeAttr().Get()
     if element != UsdGeom.Tokens.edge:
@@ -269,9 +269,7 @@ def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
 
 
 def _primvar_edges(surface: _Surface, name: str, threshold: float) -> np.ndarray:
-    primvar = UsdGeom.PrimvarsAPI(surface.prim).GetPrimvar(name)
-    if not primvar or not primvar.HasAuthoredValue():
-        raise Fault(f"there is no primvar {name} on the mesh")
+    primvar = given_primvar(surface.prim, name)
     values = surface.meaning.painted(read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr()))
     return surface.edges[(values >= threshold)[surface.edges].all(axis=1)]
 

@@ -8,15 +8,15 @@ from typing import TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Usd
 
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import layer_on
-from skinslide.problems import Fault, UsageError
+from skinslide.problems import UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.stage.given import PrimLike, StageLike, StrPath, given_faces
+from skinslide.stage.given import PrimLike, StageLike, StrPath, check_face, given_faces, given_primvar, given_subset
 from skinslide.stage.patch import primvar_faces, subset_faces
 
 _RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
@@ -127,24 +127,18 @@ def parse_faces(spec: str) -> list[tuple[int, int]]:
 
 def _expand(ranges: list[tuple[int, int]], face_count: int) -> np.ndarray:
     for _, last in ranges:
-        if last >= face_count:
-            raise Fault(f"there is no face {last}: the mesh has {face_count} faces")
+        check_face(last, face_count)
     return np.unique(np.concatenate([np.arange(first, last + 1) for first, last in ranges]))
 
 
 def _of_subset(patch: SkinSlideAPI, subset: str, mesh: MeshMeaning) -> np.ndarray | None:
     """The faces of a GeomSubset; None where the patch finds them by itself."""
-    child = patch.GetPrim().GetChild(subset) if Sdf.Path.IsValidIdentifier(subset) else None
-    if not child:
-        raise Fault(f"there is no GeomSubset {subset} under the mesh")
-    found, own = subset_faces(child, mesh), patch.GetPatchPrimvar()
+    found, own = subset_faces(given_subset(patch.GetPrim(), subset), mesh), patch.GetPatchPrimvar()
     return None if subset == patch.GetName() and not (own and own.HasAuthoredValue()) else found
 
 
 def _of_primvar(patch: SkinSlideAPI, primvar: str, mesh: MeshMeaning) -> np.ndarray | None:
     """The faces that a primvar chooses; None where it is the patch's own."""
-    source, own = UsdGeom.PrimvarsAPI(patch.GetPrim()).GetPrimvar(primvar), patch.GetPatchPrimvar()
-    if not source:
-        raise Fault(f"there is no primvar {primvar} on the mesh")
+    source, own = given_primvar(patch.GetPrim(), primvar), patch.GetPatchPrimvar()
     found = primvar_faces(source, mesh)
     return None if own and source.GetName() == own.GetName() else found

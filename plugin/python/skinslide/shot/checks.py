@@ -114,10 +114,9 @@ def whole(least: int, most: int | None = None) -> Check:
 
 
 def positive(name: str, number: Any) -> float:
-    try:
-        found = float(number)
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{name} is {number!r}; it must be a number") from error
+    from skinslide.stage.given import given_number
+
+    found = given_number(name, number)
     if not LEAST <= found <= MOST:
         raise UsageError(f"{name} is {found:g}; it must be above 0, from {LEAST:g} to {MOST:g}")
     return found

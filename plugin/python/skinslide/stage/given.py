@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from pxr import Sdf, Usd, Vt
+from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import as_array
 from skinslide.problems import Fault, SliderError, UsageError
@@ -87,10 +87,31 @@ def given_faces(name: str, faces: npt.ArrayLike, face_count: int) -> np.ndarray:
             raise Fault(f"{name}: {chosen.size} values for {face_count} faces")
         return np.flatnonzero(chosen).astype(np.int32)
     found = np.unique(given_array(name, chosen, np.int32, (-1,)))
-    outside = found[(found < 0) | (found >= face_count)]
-    if outside.size:
-        raise Fault(f"there is no face {outside[-1]}: the mesh has {face_count} faces")
+    for face in found[(found < 0) | (found >= face_count)][-1:]:
+        check_face(int(face), face_count)
     return found
+
+
+def check_face(face: int, face_count: int) -> None:
+    """Raises Fault for a face that a mesh has not."""
+    if not 0 <= face < face_count:
+        raise Fault(f"there is no face {face}: the mesh has {face_count} faces")
+
+
+def given_subset(prim: Usd.Prim, name: str) -> Usd.Prim:
+    """The child of a mesh that is to be a GeomSubset. Raises Fault."""
+    child = prim.GetChild(name) if Sdf.Path.IsValidIdentifier(name) else None
+    if not child:
+        raise Fault(f"there is no GeomSubset {name} under the mesh")
+    return child
+
+
+def given_primvar(prim: Usd.Prim, name: str) -> UsdGeom.Primvar:
+    """A primvar that a mesh is to have. Raises Fault."""
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
+    if not primvar:
+        raise Fault(f"there is no primvar {name} on the mesh")
+    return primvar
 
 
 def given_value(name: str, value: Any, type_name: Sdf.ValueTypeName) -> Any:
@@ -99,13 +120,13 @@ def given_value(name: str, value: Any, type_name: Sdf.ValueTypeName) -> Any:
         dtype, array, shape = ARRAYS[str(type_name)]
         return array.FromNumpy(given_array(name, value, dtype, shape))
     if type_name == Sdf.ValueTypeNames.Float:
-        return _given_number(name, value)
+        return given_number(name, value)
     if type_name == Sdf.ValueTypeNames.Asset and isinstance(value, str | os.PathLike):
         return Sdf.AssetPath(os.fspath(value))
     return value
 
 
-def _given_number(name: str, value: Any) -> float:
+def given_number(name: str, value: Any) -> float:
     try:
         return float(value)
     except (TypeError, ValueError) as error:
