@@ -270,10 +270,10 @@ static void list_target(const ss_cage_work *work, const float *points, const ss_
         residual[axis] = 0;
 }
 
-static void list_targets(const ss_cage_work *work, const float *points, const ss_slide *slide) {
+static void list_targets(const ss_cage_work *work, const ss_frame *frame, const ss_slide *slide) {
     ss_face_tree_build(work->tree, slide->uv);
-    for (int32_t s = 0; s < work->cage->sample_count; s++)
-        list_target(work, points, slide, s);
+    for (int32_t s = 0; s < work->cage->sample_count && !ss_is_set(frame->stop); s++)
+        list_target(work, frame->points, slide, s);
 }
 
 /* ---- Damping ---- */
@@ -321,7 +321,9 @@ int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, const ss_slide *
     if (!any_slides(slide, count))
         return 0;
     memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
-    list_targets(work, frame->points, slide);
+    list_targets(work, frame, slide);
+    if (ss_is_set(frame->stop))
+        return 0;
     ss_fit_samples(work->fit, frame->points, (const double(*)[3])work->residual, (const double(*)[3])work->normal,
                    work->solution);
     for (int32_t i = 0; i < count; i++)

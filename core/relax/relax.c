@@ -248,14 +248,14 @@ static void write_places(const ss_relaxer *relaxer, ss_place *places) {
     }
 }
 
-int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, ss_place *places) {
+int32_t ss_relax(ss_relaxer *relaxer, const ss_frame *frame, ss_place *places) {
     const ss_patch *patch = relaxer->chart->patch;
     int32_t steps = 0;
     double part = 1;
-    relaxer->paint = paint;
-    start(relaxer, points);
+    relaxer->paint = frame->paint;
+    start(relaxer, frame->points);
     double first = ss_stretch_energy(relaxer);
-    for (; first > 0 && steps < MOST_STEPS; steps++) {
+    for (; first > 0 && steps < MOST_STEPS && !ss_is_set(frame->stop); steps++) {
         for (int32_t i = 0; i < patch->free_count; i++)
             set_axes(relaxer, patch->free_vertex[i]);
         double lowers = (steps == 0 ? solve_rest : solve_now)(relaxer) / first;

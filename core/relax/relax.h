@@ -53,7 +53,7 @@ skinslide_status ss_relaxer_create(const ss_chart *chart, const ss_system *syste
 void ss_relaxer_destroy(ss_relaxer *relaxer);
 /* Where every free vertex slides to, in their order: places [free_count] in the chart. points is the whole mesh's. Returns how
  * many steps it took. */
-int32_t ss_relax(ss_relaxer *relaxer, const float *points, const double *paint, ss_place *places);
+int32_t ss_relax(ss_relaxer *relaxer, const ss_frame *frame, ss_place *places);
 
 /* ---- stretch.c: E and its models ---- */
 

@@ -80,7 +80,7 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
     (void)error;
     double time = ss_now();
-    result->relax_steps = ss_relax(((relaxed_slide *)slide)->relaxer, frame->points, frame->paint, slide->places);
+    result->relax_steps = ss_relax(((relaxed_slide *)slide)->relaxer, frame, slide->places);
     ss_lap(&time, &result->relax_seconds);
     return SKINSLIDE_OK;
 }

@@ -31,7 +31,7 @@ static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, c
     double time = ss_now();
     apply_controls(part, work, controls, result);
     result->zero_length_edges = ss_edge_lengths(part->patch, points, work->lengths);
-    work->frame.points = points, work->frame.lengths = work->lengths;
+    work->frame.points = points, work->frame.lengths = work->lengths, work->frame.stop = &workspace->stop;
     ss_lap(&time, &result->density_seconds);
     return part->rest->rule->start(work->slide, &work->frame, result, error);
 }
@@ -140,6 +140,14 @@ static double stretch(const ss_patch *patch, const double *lengths) {
 
 /* ---- One frame ---- */
 
+/* Whether the frame goes on: status, or that another thread wants no more of it. Once it is said, the next one may. */
+static skinslide_status go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error) {
+    if (status || !ss_is_set(&workspace->stop))
+        return status;
+    ss_set(&workspace->stop, 0);
+    return ss_fail(error, SKINSLIDE_INTERRUPTED, "the frame was interrupted");
+}
+
 skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points, const skinslide_controls *controls,
                                  float *slid, skinslide_patch_result *results, skinslide_error *error) {
     if (!workspace || !points || !slid)
@@ -148,17 +156,17 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     skinslide_status status = ss_check_points(points, slider->vertex_count, "points", error);
     if (!status && controls)
         status = ss_check_frame_controls(slider, controls, error);
-    if (status)
+    if ((status = go_on(workspace, status, error)))
         return status;
     workspace->has_frame = false;
     for (int32_t p = 0; p < slider->part_count; p++) {
         const skinslide_controls *own = controls ? &controls[slider->parts[p].patch->setup_index] : NULL;
         workspace->results[p] = (skinslide_patch_result){0};
-        if ((status = start_patch(workspace, p, points, own, error)))
+        if ((status = go_on(workspace, start_patch(workspace, p, points, own, error), error)))
             return status;
     }
     for (int32_t p = 0; p < slider->part_count; p++) {
-        if ((status = slide_patch(workspace, p, error)))
+        if ((status = go_on(workspace, slide_patch(workspace, p, error), error)))
             return status;
         workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->patches[p].lengths);
     }

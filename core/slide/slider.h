@@ -46,6 +46,7 @@ struct skinslide_workspace {
     skinslide_patch_result *results; /* [part_count] */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
     bool has_frame;
+    int stop; /* a flag that other threads set, see base.h */
     ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
     skinslide_lookup_info lookup;
 };

@@ -51,6 +51,11 @@ skinslide_status skinslide_workspace_create(const skinslide_slider *slider, cons
     return ss_workspace_create(slider, options, ss_egl_load, out, error);
 }
 
+void skinslide_workspace_interrupt(skinslide_workspace *workspace) {
+    if (workspace)
+        ss_set(&workspace->stop, 1);
+}
+
 void skinslide_workspace_destroy(skinslide_workspace *workspace) {
     if (!workspace)
         return;

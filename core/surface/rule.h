@@ -27,6 +27,7 @@ typedef struct ss_frame {
     const double *paint;   /* [edge_count] that of rest, where it is the same */
     const double *weights; /* [free_count] */
     const double *limits;  /* [free_count] how far each may slide; NULL: as far as it goes */
+    const int *stop;       /* a flag: the frame is not wanted any more */
 } ss_frame;
 
 /* Where vertices of one patch slide to: memory of one thread. Each rule's own begins with this. */

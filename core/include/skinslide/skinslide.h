@@ -56,7 +56,8 @@ extern "C" {
     X(UNSUPPORTED, "not supported")                                                                                            \
     X(NO_DEVICE, "no device for the lookup")                                                                                   \
     X(DEVICE_FAILED, "the device of the lookup failed")                                                                        \
-    X(BAD_IMAGE, "the image is not valid")
+    X(BAD_IMAGE, "the image is not valid")                                                                                     \
+    X(INTERRUPTED, "interrupted")
 
 #define SKINSLIDE_STATUS_ENUM(name, text) SKINSLIDE_##name,
 typedef enum skinslide_status { SKINSLIDE_STATUSES(SKINSLIDE_STATUS_ENUM) SKINSLIDE_STATUS_COUNT } skinslide_status;
@@ -345,6 +346,11 @@ SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_destroy(skinslide_workspace *workspace);
 
+/* Makes the frame that is slid in the workspace, or where there is none the next one, fail with INTERRUPTED, before long: work is
+ * left between stages and steps. The only function that may be called while another thread uses the workspace, and one that signal
+ * handlers may call. NULL does nothing. */
+SKINSLIDE_API void skinslide_workspace_interrupt(skinslide_workspace *workspace);
+
 /* What a workspace's options came to.
  *   info    out
  *   device  out, or NULL: that of lookup EGL; none for EXACT
@@ -391,7 +397,7 @@ typedef struct skinslide_patch_result {
  *                 displacements, weighted by weight times envelope.
  *   results   out [patch_count], or NULL
  * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid to where a float is not: names the
- * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY. One thread a workspace. */
+ * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */
 SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
