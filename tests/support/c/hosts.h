@@ -15,6 +15,9 @@ typedef struct host {
 host host_with(EGLenum api, EGLenum platform);
 /* It still is, with its surfaces, and the API bound that was. */
 void assert_current(const host *h, EGLenum api, EGLenum bound);
+/* Paints both of its surfaces; asserts that they are as painted, and that no call of the host's has failed. */
+void paint_host(const host *h, EGLenum api);
+void assert_painted(const host *h, EGLenum api);
 void end_host(host *h);
 
 #endif
