@@ -6,11 +6,13 @@ import subprocess
 import sys
 import termios
 import textwrap
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pxr import Sdf, UsdGeom, UsdValidation, Vt
 
+import stages
 from shots import (
     MESH,
     OFFSET,
@@ -102,13 +104,40 @@ def test_any_number_of_jobs_writes_the_same_bytes(shot, tmp_path, extension):
     assert written[0] == written[1] == written[2]
 
 
-def test_saving_in_parts_loses_nothing(shot, tmp_path, monkeypatch):
+@pytest.mark.parametrize("extension", [".usda", ".usdc", ".usd"])
+def test_saving_in_parts_loses_nothing(shot, tmp_path, monkeypatch, extension):
+    """Of five frames, more than two and fewer than three fit. A crate file's bytes may differ, not what they say."""
     shot.save()
-    bake_to_file(shot.path, tmp_path / "whole.usdc")
-    monkeypatch.setattr(overs, "_UNSAVED_BYTES", 1)
-    bake_to_file(shot.path, tmp_path / "parts.usdc")
-    texts = [Sdf.Layer.FindOrOpen(str(tmp_path / name)).ExportToString() for name in ("whole.usdc", "parts.usdc")]
+    bake_to_file(shot.path, tmp_path / f"whole{extension}")
+    saves, save = [], overs.OverLayer.save
+    monkeypatch.setattr(overs, "_UNSAVED_BYTES", 3 * REST.nbytes - 1)
+    monkeypatch.setattr(overs.OverLayer, "save", lambda layer: (saves.append(layer), save(layer)))
+    bake_to_file(shot.path, tmp_path / f"parts{extension}")
+    assert len(saves) == 2  # after three frames, and at the end
+    texts = [Sdf.Layer.FindOrOpen(str(tmp_path / f"{name}{extension}")).ExportToString() for name in ("whole", "parts")]
     assert texts[0] == texts[1]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in", f"parts{extension}", f"whole{extension}"]
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="memory is told by Linux")
+@pytest.mark.parametrize("extension", [".usda", ".usdc"])
+def test_memory_does_not_grow_with_frames(tmp_path, monkeypatch, extension):
+    """40 frames of 1.2 MB, of which 2 MB may wait to be saved; a fifth of all leaves room for what is by the way."""
+    shape, frames = stages.grid(320, 320), range(1, 51)
+    stage, mesh = stages.patched_stage(shape, stages.block(320, range(6), range(6)))
+    for frame in frames:
+        mesh.GetPointsAttr().Set(vectors(shape.points + np.float32(frame)), frame)
+    held: dict[int, int] = {}
+    monkeypatch.setattr(overs, "_UNSAVED_BYTES", 2 << 20)
+    path, out = stages.save(stage, tmp_path / "shot.usdc"), tmp_path / f"out{extension}"
+    bake_to_file(path, out, frames=frames, progress=lambda done, _total: held.update({done: _own_memory()}))
+    assert held[50] - held[10] < 40 * shape.points.nbytes / 5
+
+
+def _own_memory() -> int:
+    """Bytes of this process that are not those of a file."""
+    (line,) = [line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("RssAnon")]
+    return 1024 * int(line.split()[1])
 
 
 def test_a_frame_alone_is_the_frame_of_the_range(shot, tmp_path):

@@ -157,7 +157,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
         metavar="OUT",
         help="layer of overs to write, to be sublayered above the cache: .usda, .usdc or .usd. "
         "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was; one killed outright "
-        "leaves a partial file beside it, which the next bake of OUT removes when it is a day old",
+        "leaves partial files beside it, which the next bake of OUT removes when they are a day old",
     )
     _add_options(command, SlideOptions)
     _add_options(command, LayerOptions)

@@ -48,6 +48,9 @@ def bake_to_file(
 ) -> BakeReport:
     """Bakes a stage into a layer of overs to be sublayered above it.
 
+    Samples are saved as they come, so memory does not grow with frames. What a `.usdc` holds is promised, and not its
+    bytes, which tell when it was saved; those of a `.usda` follow from what it holds.
+
     Args:
         stage: The stage, or its path; never written.
         output: The layer: .usda, .usdc or .usd, written whole or not at all.
@@ -92,8 +95,9 @@ def bake(
 ) -> BakeReport:
     """Bakes a stage into its edit target, once every frame is known.
 
-    Takes the place of an earlier bake there, of the same prims. Where the layer holds the cache too, the cache's values
-    move to attributes skinSlide:cached:*, from which the next bake into it starts.
+    Memory grows with frames: USD keeps what is authored until the layer is saved. Takes the place of an earlier bake
+    there, of the same prims. Where the layer holds the cache too, the cache's values move to attributes
+    skinSlide:cached:*, from which the next bake into it starts.
 
     Args:
         stage: The stage.

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.slider import version
@@ -15,6 +16,7 @@ from skinslide.write.earlier import EarlierBake
 from skinslide.write.place import check_not_read, replacing, writing
 
 EXTENSIONS = (".usda", ".usdc", ".usd")
+_TEXT = ".usda"
 _UNSAVED_BYTES = 256 << 20  # a crate file takes what is saved out of memory
 
 
@@ -22,9 +24,8 @@ class OverLayer:
     """Collects values for attributes of a stage in a layer of overs, typed as the stage has them."""
 
     def __init__(self, layer: Sdf.Layer, output: Path | None = None):
-        """With the output whose fault it is when the layer cannot be saved; None: it is never saved."""
+        """A crate file, saved in parts, with the output whose fault it is when that fails; or an anonymous layer."""
         self.layer, self._output = layer, output
-        self._saves_in_parts = not layer.anonymous and not layer.realPath.lower().endswith(".usda")
         self._unsaved = 0
 
     def set(self, attribute: Usd.Attribute, value: Any, time: Usd.TimeCode) -> None:
@@ -46,18 +47,25 @@ class OverLayer:
         spec.default = Sdf.ValueBlock()
 
     def save(self) -> None:
-        with writing(self._output) if self._output else nullcontext():
-            if not self.layer.Save():
-                raise OSError("USD could not save it")
+        self._check(self.layer.Save)
         self._unsaved = 0
+
+    def export(self, file: Path) -> None:
+        """Writes the layer into another file, in the format of that file's name."""
+        self._check(lambda: self.layer.Export(str(file)))
+
+    def _check(self, write: Callable[[], bool]) -> None:
+        with writing(self._output) if self._output else nullcontext():
+            if not write():
+                raise OSError("USD could not save it")
 
     def _set(self, spec: Sdf.AttributeSpec, value: Any, time: Usd.TimeCode) -> None:
         if time.IsDefault():
             spec.default = value
         else:
             self.layer.SetTimeSample(spec.path, time.GetValue(), value)
-        self._unsaved += 4 * getattr(value, "size", 0)
-        if self._saves_in_parts and self._unsaved > _UNSAVED_BYTES:
+        self._unsaved += np.asarray(value).nbytes
+        if not self.layer.anonymous and self._unsaved > _UNSAVED_BYTES:
             self.save()
 
     def _spec(self, attribute: Usd.Attribute) -> Sdf.AttributeSpec:
@@ -75,13 +83,20 @@ class OverLayer:
 
 @contextmanager
 def layer_in_place(output: Path, stage: Usd.Stage) -> Iterator[OverLayer]:
-    """A layer that becomes `output` when the block ends. An exception or a signal leaves `output` as it was."""
+    """A layer that becomes `output` when the block ends. An exception or a signal leaves `output` as it was.
+
+    Text cannot be saved in parts: it is collected in a crate file beside it, and written from there at the end.
+    """
     with replacing(output) as partial:
+        text = partial.suffix.lower() == _TEXT
         with writing(output):
-            overs = OverLayer(Sdf.Layer.CreateNew(str(partial)), output)
+            crate = partial.with_name(f"{partial.name}.usdc") if text else partial
+            overs = OverLayer(Sdf.Layer.CreateNew(str(crate)), output)
         yield overs
         _describe(overs.layer, stage)
         overs.save()
+        if text:
+            overs.export(partial)
         check_not_read(output, stage)  # some layers, such as value clips, are not opened before they are needed
 
 

@@ -158,7 +158,8 @@ def replacing(output: Path) -> Iterator[Path]:
                 _flush(partial)
                 os.replace(partial, output)
         finally:
-            partial.unlink(missing_ok=True)
+            for left in partial.parent.glob(f"{glob.escape(partial.name)}*"):  # also what USD writes beside it
+                left.unlink(missing_ok=True)
 
 
 @contextmanager
