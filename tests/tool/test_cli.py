@@ -13,7 +13,7 @@ from pxr import Sdf
 import skinslide
 import stages
 from skinslide import parse_frames
-from skinslide.command import cli
+from skinslide.command import cli, outcome
 from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
 from stages import FRAMES, MESH, PATCH
 
@@ -55,6 +55,48 @@ def test_bake_json_is_one_document(shot, tmp_path, capsys):
     assert cli.main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document["meshes"][0]["frames"] == list(FRAMES)
+
+
+def test_json_is_json_whatever_the_numbers(capsys):
+    numbers = {"stretch": float("nan"), "frames": [1.5, float("inf"), (float("-inf"), 2)], "name": "nan"}
+    outcome.say(outcome.as_json(numbers), 0)
+
+    def refuse(constant: str) -> None:
+        raise ValueError(constant)
+
+    read = json.loads(capsys.readouterr().out, parse_constant=refuse)
+    assert read == {"stretch": None, "frames": [1.5, None, [None, 2]], "name": "nan"}
+
+
+FORGED = "\x1b[2J\nerror: forged\r\x9b1m\u202e\u2028"
+
+
+@pytest.mark.parametrize("command", ["check", "setup", "stitch", "bake", FORGED])
+def test_names_cannot_forge_lines(command, tmp_path, monkeypatch, capfd):
+    """Control characters in names of files, patches, prims and commands."""
+    monkeypatch.chdir(tmp_path)
+    stage, mesh = stages.patched_stage()
+    mesh.GetPrim().AddAppliedSchema(f"SkinSlideAPI:{FORGED}")
+    shot = "shot.usda" if command == "setup" else f"shot{FORGED}.usda"  # no layer can name such a file
+    stage.GetRootLayer().Export(shot)
+    words = {
+        "setup": ["-o", f"{FORGED}.usda", "--prim", MESH + FORGED, "--patch", FORGED, "--faces", FORGED],
+        "bake": ["-o", f"{FORGED}/out.usda"],
+        "stitch": ["-o", "out.usda"],
+    }
+    assert cli.main([command, shot, *words.get(command, [])]) != 0
+    printed = "".join(capfd.readouterr())
+    assert "\\x1b[2J\\nerror: forged\\r\\x9b1m\\u202e\\u2028" in printed
+    assert all(c == "\n" or c.isprintable() for c in printed)
+    assert not any(line.startswith("error: forged") for line in printed.splitlines())
+
+
+def test_what_was_written_is_one_line(shot, tmp_path, capfd):
+    output = tmp_path / f"{FORGED}.usda"
+    assert cli.main(["setup", str(shot), "-o", str(output), "--prim", MESH, "--patch", "more", "--faces", "0-3"]) == 0
+    assert cli.main(["bake", str(shot), "-o", str(output.with_name(f"out{output.name}"))]) == 0
+    said = capfd.readouterr().out
+    assert "\x1b" not in said and "\nerror: forged" not in said and said.count("\\nerror: forged") == 3
 
 
 def test_quiet_prints_nothing(shot, tmp_path, capfd):

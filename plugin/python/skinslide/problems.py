@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +37,7 @@ class Problem:
             place.append(f"patch {self.patch}")
         if self.frame is not None:
             place.append(f"frame {frame_text(self.frame)}")
-        return ": ".join([self.severity, *place, self.message])
+        return one_line(": ".join([self.severity, *place, self.message]))
 
     def as_dict(self) -> dict[str, Any]:
         """The same for JSON."""
@@ -94,6 +94,16 @@ class SliderError(RuntimeError):
 
 class Fault(Exception):
     """What is wrong with a value, said by code that need not know the prim, patch and frame it is read for."""
+
+
+def one_line(text: str) -> str:
+    """Text with escapes for what a terminal would obey: a name may hold ends of lines, or the start of a command."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def lines_text(lines: Iterable[str]) -> str:
+    """Lines for a terminal; each stays one."""
+    return "\n".join(map(one_line, lines))
 
 
 def errors(problems: Sequence[Problem]) -> list[Problem]:

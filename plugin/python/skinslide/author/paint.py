@@ -16,7 +16,7 @@ from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positi
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import layer_on
-from skinslide.problems import Fault, SliderError, UsageError
+from skinslide.problems import Fault, SliderError, UsageError, one_line
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path, given_primvar, given_subset
@@ -55,7 +55,7 @@ class PaintReport:
         """What `check` says, and a line of what was painted."""
         out = f", {self.left_out} left out that are not of the patch" if self.left_out else ""
         done = f"{self.patch}: {self.painted} edges painted {self.value:g}{out}; {self.total} painted in all"
-        return f"{self.check.text()}\n{done}"
+        return f"{self.check.text()}\n{one_line(done)}"
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,8 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(**words, epilog=EXIT_CODES, argument_default=argparse.SUPPRESS)
 
     def error(self, message: str) -> NoReturn:
-        tell(self.format_usage().rstrip())
+        for line in self.format_usage().splitlines():
+            tell(line)
         raise UsageError(message)
 
 
@@ -136,7 +137,11 @@ def _add_printing(command: argparse.ArgumentParser) -> None:
 
 
 def _add_json(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--json", action="store_true", help="print the report as one JSON document on stdout")
+    command.add_argument(
+        "--json",
+        action="store_true",
+        help="print the report as one JSON document on stdout; a number that is not finite is null",
+    )
 
 
 def _add_page(command: argparse._ActionsContainer) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinslide.command.arguments import device_of_environment, parse
 from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say
-from skinslide.problems import UsageError
+from skinslide.problems import UsageError, one_line
 from skinslide.shot.options import PictureOptions
 
 if TYPE_CHECKING:
@@ -169,11 +169,11 @@ def _with_lookup(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _written(*places: str | None) -> list[str]:
-    return [f"{place}: written" for place in places if place]
+    return [one_line(f"{place}: written") for place in places if place]
 
 
 def _layer_written(output: str) -> str:
-    return f"{output}: written; sublayer it above the cache"
+    return one_line(f"{output}: written; sublayer it above the cache")
 
 
 # Each with the function that it calls: the module and the name.

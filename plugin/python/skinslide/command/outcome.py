@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, TextIO
 
-from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, UsageError, usd_message
+from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, UsageError, one_line, usd_message
 
 DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
 INTERRUPTED = 130
@@ -59,9 +60,9 @@ def prepare_streams() -> None:
 
 
 def tell(line: str) -> None:
-    """Prints to stderr, where that is possible."""
+    """Prints a line to stderr, where that is possible."""
     with suppress(OSError):
-        _print(line, sys.stderr)
+        _print(one_line(line), sys.stderr)
 
 
 def say(text: str, code: int) -> int:
@@ -79,7 +80,16 @@ def say(text: str, code: int) -> int:
 
 
 def as_json(document: dict[str, Any]) -> str:
-    return json.dumps(document, indent=2)
+    return json.dumps(_finite(document), indent=2, allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    """The value with null for every number that is not finite, which JSON cannot hold."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def failed(error: BaseException, json: bool, done: str = "") -> int:

@@ -15,7 +15,7 @@ from skinslide.arrays.meaning import Texture
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
-from skinslide.problems import Problem, SliderError, UsageError, errors, frame_text
+from skinslide.problems import Problem, SliderError, UsageError, errors, frame_text, lines_text
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
@@ -180,7 +180,7 @@ class CheckReport:
     def text(self) -> str:
         """A line for each mesh, patch and problem, and the verdict."""
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
-        return "\n".join([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
+        return lines_text([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
 
     def _verdict(self) -> str:
         counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from skinslide.arrays.records import PatchInfo, PatchResult
-from skinslide.problems import Problem, frame_text
+from skinslide.problems import Problem, frame_text, lines_text
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
@@ -256,7 +256,7 @@ class BakeReport:
             lines.append(f"{mesh.path}: {counts}, rest from {mesh.rest_source}")
             lines.extend(_line(_row(patch), widths) for patch in mesh.patches)
         made = [line for made in self.made for line in made.lines(self.meshes)]
-        return "\n".join([*lines, *map(str, self.problems), *made])
+        return lines_text([*lines, *map(str, self.problems), *made])
 
 
 _HEADINGS = ["patch", "vertices", "edges", *STAGES, "ms/frame", "stretch", "slid", "at frame", "folded", "clamped"]
