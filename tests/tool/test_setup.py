@@ -1,5 +1,9 @@
 """`setup` writes a layer that sits on a stage and carries a patch."""
 
+import subprocess
+import sys
+import textwrap
+
 import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom
@@ -173,3 +177,44 @@ def test_a_set_up_cannot_sit_on_a_set_up(cache, tmp_path, capfd):
 
 def test_parse_faces():
     assert parse_faces("0-120, 140,7:9") == [(0, 120), (140, 140), (7, 9)]
+
+
+# ---- Several at once ----
+
+
+@pytest.mark.parametrize("extension", ["skinslide", "usdc"])
+def test_no_patch_is_lost_by_set_ups_at_once(extension, cache, tmp_path):
+    """Processes wait for each other before each writes its patch into one file, which none has made yet."""
+    output, count = tmp_path / f"patches.{extension}", 3
+    code = """
+        import sys, skinslide
+        from skinslide.author import layer
+        write, first = layer._write, [True]
+        def when_all_have_read(*arguments):
+            if first:
+                first.clear()
+                print("read", flush=True)
+                sys.stdin.readline()
+            write(*arguments)
+        layer._write = when_all_have_read
+        cache, output, mesh, patch, faces = sys.argv[1:]
+        skinslide.setup_to_file(cache, output, mesh, patch, faces=faces)
+    """
+    command = [sys.executable, "-c", textwrap.dedent(code), str(cache), str(output), MESH]
+    chosen = {f"patch{i}": list(range(6 * i, 6 * i + 3)) for i in range(count)}
+    started = [
+        subprocess.Popen(
+            [*command, patch, ",".join(map(str, faces))], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        for patch, faces in chosen.items()
+    ]
+    for process in started:
+        assert process.stdout.readline() == "read\n"
+    for process in started:
+        process.stdin.write("go\n")
+        process.stdin.flush()
+    for process in started:
+        process.communicate(timeout=60)
+        assert process.returncode == 0
+    assert patches(output) == chosen
+    assert [path for path in tmp_path.iterdir() if path.name.startswith(".")] == []

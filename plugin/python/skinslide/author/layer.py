@@ -4,38 +4,55 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
+from typing import TypeVar
 
 from pxr import Sdf, Tf, Usd
 
 from skinslide.problems import StageError, UsageError
 from skinslide.stage.given import StageLike, StrPath, given_file, given_stage
 from skinslide.stage.opening import EXTENSION, read_text_layer
-from skinslide.write.place import check_not_input, check_not_read, check_output, partial_name, replacing, writing
+from skinslide.write.place import (
+    Changed,
+    State,
+    check_not_input,
+    check_not_read,
+    check_output,
+    partial_name,
+    replacing,
+    state,
+    writing,
+)
 
+Report = TypeVar("Report")
 EXTENSIONS = (EXTENSION, ".usda", ".usdc", ".usd")
 # Fields of a root layer that say what is in that layer, not how the stage is to be read.
 OWN_FIELDS = {"subLayers", "subLayerOffsets", "primChildren", "comment", "documentation", "customLayerData"}
 
 
-@contextmanager
-def layer_on(stage: StageLike, output: StrPath, force: bool) -> Iterator[Usd.Stage]:
-    """A stage to author into, which sits on another: its root layer becomes `output` when the block ends.
+def author_layer(stage: StageLike, output: StrPath, force: bool, author: Callable[[Usd.Stage], Report]) -> Report:
+    """Has `author` author into a stage that sits on another, and whose root layer becomes `output`; gives its report.
 
     That layer is what is at `output`, where it sits on the stage, else a new one. An exception leaves it as it was.
+    Where another process put something there meanwhile, all is done again, on that.
     Raises TypeError, UsageError, StageError.
     """
     path, output = given_file(stage), Path(output)
     if path.suffix == EXTENSION:
         raise UsageError(f"{path} is a set-up itself; give the stage that it sits on, and it as output to add to it")
     check_output(output, EXTENSIONS)
-    layer = _starting_layer(given_stage(stage), path, output, force)
-    authored = Usd.Stage.Open(layer)
-    yield authored
-    check_not_read(output, authored)
-    _write(layer, output)
+    below = given_stage(stage)
+    while True:
+        before = state(output)
+        layer = _starting_layer(below, path, output, force)
+        authored = Usd.Stage.Open(layer)
+        report = author(authored)
+        check_not_read(output, authored)
+        with suppress(Changed):
+            _write(layer, output, before, force)
+            return report
 
 
 def _starting_layer(stage: Usd.Stage, path: Path, output: Path, force: bool) -> Sdf.Layer:
@@ -75,9 +92,9 @@ def _asset_path(path: Path, output: Path) -> str:
     return relative if relative.startswith("..") else f"./{relative}"
 
 
-def _write(layer: Sdf.Layer, output: Path) -> None:
-    """Puts the layer in place in one step."""
-    with replacing(output) as partial, writing(output):
+def _write(layer: Sdf.Layer, output: Path, before: State, force: bool) -> None:
+    """Puts the layer in place in one step. Raises Changed where another is there than before, unless forced."""
+    with replacing(output, lambda: force or state(output) == before) as partial, writing(output):
         if partial.suffix == EXTENSION:
             partial.write_text(layer.ExportToString(), encoding="utf-8")
         elif not layer.Export(str(partial)):

@@ -12,7 +12,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 from skinslide.arrays.geometry import AXES, Mirrored, mirror_faces
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, edited
-from skinslide.author.layer import layer_on
+from skinslide.author.layer import author_layer
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
@@ -119,8 +119,7 @@ def mirror_to_file(
         StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is written
             then.
     """
-    with layer_on(stage, output, force) as layered:
-        report = mirror(layered, prim, patch, **reflection)
+    report = author_layer(stage, output, force, lambda layered: mirror(layered, prim, patch, **reflection))
     return replace(report, stage=str(output))
 
 

@@ -15,7 +15,7 @@ from skinslide.arrays.geometry import Curves, edges_near
 from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positions
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
-from skinslide.author.layer import layer_on
+from skinslide.author.layer import author_layer
 from skinslide.problems import Fault, SliderError, UsageError, one_line
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
@@ -171,8 +171,7 @@ def paint_to_file(
         StageError: The stage cannot be opened, or the layer not be written.
         StageProblems: There is no such patch, or nothing to paint. Nothing is written then.
     """
-    with layer_on(stage, output, force) as layered:
-        report = paint(layered, prim, patch, value, **choice)
+    report = author_layer(stage, output, force, lambda layered: paint(layered, prim, patch, value, **choice))
     return replace(report, check=replace(report.check, stage=str(output)))
 
 

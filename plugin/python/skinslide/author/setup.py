@@ -13,7 +13,7 @@ from pxr import Usd
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
-from skinslide.author.layer import layer_on
+from skinslide.author.layer import author_layer
 from skinslide.problems import UsageError
 from skinslide.shot.check import CheckReport
 from skinslide.stage.given import PrimLike, StageLike, StrPath, check_face, given_faces, given_primvar, given_subset
@@ -106,8 +106,7 @@ def setup_to_file(
         StageError: The stage cannot be opened, or the layer not be written.
         StageProblems: The patch could not be slid. Nothing is written then.
     """
-    with layer_on(stage, output, force) as layered:
-        report = setup(layered, prim, patch, **choice)
+    report = author_layer(stage, output, force, lambda layered: setup(layered, prim, patch, **choice))
     return replace(report, stage=str(output))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import glob
 import os
 import re
@@ -11,9 +12,9 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from pxr import Tf, Usd, UsdUtils
 
@@ -141,9 +142,28 @@ def _clips(template: UsdUtils.DependencyInfo) -> list[str]:
     return [file for file in template.dependencies if wanted.fullmatch(file)]
 
 
+State: TypeAlias = tuple[int, ...] | None
+
+
+def state(file: Path) -> State:
+    """Tells whether a file is another than before; None where there is none."""
+    try:
+        status = os.stat(file)
+    except FileNotFoundError:
+        return None
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
+
+
+class Changed(Exception):
+    """An output is not what it was when it was read."""
+
+
 @contextmanager
-def replacing(output: Path) -> Iterator[Path]:
-    """A new file that becomes `output` when the block ends. An exception or a signal leaves `output` as it was."""
+def replacing(output: Path, if_still: Callable[[], bool] = lambda: True) -> Iterator[Path]:
+    """A new file that becomes `output` when the block ends. An exception or a signal leaves `output` as it was.
+
+    if_still  asked last; where it says no, Changed is raised. Nothing else of ours is put in the folder meanwhile
+    """
     output = output.resolve()
     partial = output.with_name(partial_name(output, secrets.token_hex(4)))
     with signals_as_exceptions():
@@ -156,7 +176,10 @@ def replacing(output: Path) -> Iterator[Path]:
             yield partial
             with writing(output):
                 _flush(partial)
-                os.replace(partial, output)
+                with _locked(output.parent):
+                    if not if_still():
+                        raise Changed
+                    os.replace(partial, output)
         finally:
             for left in partial.parent.glob(f"{glob.escape(partial.name)}*"):  # also what USD writes beside it
                 left.unlink(missing_ok=True)
@@ -170,6 +193,17 @@ def writing(output: Path) -> Iterator[None]:
     except (OSError, Tf.ErrorException) as error:
         reason = usd_message(error) if isinstance(error, Tf.ErrorException) else str(error)
         raise StageError(f"output {output}: {reason}") from error
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Keeps others out who would lock the folder, for a moment, where it can be locked."""
+    with ExitStack() as unlocking:
+        with suppress(OSError):  # not every file system can, and not every folder may be opened
+            descriptor = os.open(folder, os.O_RDONLY)
+            unlocking.callback(os.close, descriptor)
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
 
 
 def _remove_abandoned(output: Path) -> None:
