@@ -149,6 +149,7 @@ class PrimFacts:
     blend_shape_count: int = 0
     schemas: Sequence[str] = ()
     properties: Sequence[str] = ()
+    uncomposed: str | None = None
 
 
 class Said(NamedTuple):

@@ -54,9 +54,9 @@ def composition_problems(stage: Usd.Stage, prim_paths: Sequence[str] | None = No
     for error in stage.GetCompositionErrors():
         path = error.rootSite.path
         near = any(path.HasPrefix(root) or root.HasPrefix(path) for root in asked)
-        message = "USD could not compose this: " + " ".join(str(error).split())
         severity = "error" if near and _may_hold_meshes(stage.GetPrimAtPath(path)) else "warning"
-        yield Problem(severity, "" if path.IsAbsoluteRootPath() else str(path), None, None, message)
+        for said in find(PrimFacts(uncomposed=" ".join(str(error).split()))).said:
+            yield Problem(severity, "" if path.IsAbsoluteRootPath() else str(path), None, None, said.message)
 
 
 def _may_hold_meshes(prim: Usd.Prim | None) -> bool:
