@@ -64,6 +64,37 @@ def test_stage_that_does_not_open(name, text, tmp_path, capfd):
         assert f"error: cannot open {path}: " in capfd.readouterr().err
 
 
+def test_a_stage_that_is_a_link_in_a_circle(tmp_path, capfd):
+    (tmp_path / "circle.usda").symlink_to("circle.usda")
+    assert main(["check", str(tmp_path / "circle.usda")]) == 1
+    assert "circle.usda: Too many levels of symbolic links" in capfd.readouterr().err
+
+
+def test_no_name_of_a_prim(tmp_path, capfd):
+    path = stages.save(stages.patched_stage()[0], tmp_path / "shot.usda")
+    assert main(["bake", str(path), "-o", str(tmp_path / "out.usda"), "--prim", ""]) == 3
+    said = capfd.readouterr().err
+    assert said == "error: an empty name is not the path of a prim, such as /World/char/geo\n"
+
+
+@pytest.mark.parametrize("at", [b"def Xform", b'"World"', b"skin_GEO", b'"none"', b"elbow_L", b"uniform"])
+@pytest.mark.parametrize("name", ["shot.usda", "shot.skinslide", "shot.usdc"])
+def test_a_byte_that_is_not_utf_8(at, name, tmp_path, capfd):
+    """Wherever it is: one line, and one document. A crate file may hold it where nobody looks."""
+    stages.save(stages.patched_stage()[0], tmp_path / f"good.{'usdc' if name.endswith('c') else 'usda'}").rename(
+        tmp_path / name
+    )
+    good = (tmp_path / name).read_bytes()
+    bad = at.strip(b'"')
+    (tmp_path / name).write_bytes(good.replace(bad, b"\xff" + bad[1:]))
+    code = main(["check", str(tmp_path / name), "--json"])
+    printed, said = capfd.readouterr()
+    json.loads(printed)
+    assert "Traceback" not in said
+    if not name.endswith("usdc"):
+        assert code == 1 and len(said.splitlines()) == 1 and said.startswith("error: cannot open")
+
+
 def test_weight_out_of_range_is_clamped_and_told(tmp_path, capfd):
     stage, mesh = stages.patched_stage()
     weight = [1.0] * 12 + [1.5] + [1.0] * 36

@@ -1,6 +1,7 @@
 """Outputs: where one may not be, above all not on what the stage reads, and how it is put in place."""
 
 import os
+import shutil
 import time
 from pathlib import Path
 
@@ -124,6 +125,11 @@ def test_a_set_up_that_is_in_the_way(shot, tmp_path):
 def test_names(shot, tmp_path):
     refused(shot, tmp_path / ("n" * 300 + ".usda"), "name too long|too long")
     refused(shot, tmp_path / ("n" * 245 + ".usda"), "the name is too long")
+    for extension in (".usda", ".usdc"):  # the longest that can be
+        longest = tmp_path / ("n" * (238 - len(extension)) + extension)
+        bake_to_file(shot, longest)
+        setup_to_file(shot, longest, MESH, "more", faces="0-3", force=True)
+        refused(shot, longest.with_name(f"n{longest.name}"), "the name is too long")
     refused(shot, tmp_path / "a\0b.usda", "null")
     refused(shot, Path(""), "must end in")
     bake_to_file(shot, tmp_path / "OUT.USDA")
@@ -172,6 +178,22 @@ def test_a_working_folder_that_is_gone(shot, tmp_path, monkeypatch, capfd):
     assert main(["bake", str(shot), "-o", "out.usda"]) == 2
     assert main(["check", "shot.skinslide"]) == 1
     assert all(line.startswith("error: ") for line in capfd.readouterr().err.splitlines())
+
+
+def test_a_working_folder_deeper_than_a_path_can_be(shot, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    for _ in range(25):
+        os.mkdir("d" * 200)
+        os.chdir("d" * 200)
+    shutil.copy(shot, "shot.usda")
+    assert main(["check", str(shot)]) == 0
+    assert main(["bake", str(shot), "-o", "out.usda"]) == 2
+    assert main(["check", "shot.usda"]) == 1
+    for _ in range(25):
+        os.chdir("..")
+    bake, check = capfd.readouterr().err.splitlines()
+    assert bake == "error: output out.usda: its path from the root is too long"
+    assert check == "error: cannot open shot.usda: its path from the root is too long"
 
 
 # ---- Putting it in place ----

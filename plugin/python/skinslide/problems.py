@@ -125,7 +125,10 @@ def core_problem(prim: str, patches: Sequence[str], message: str, frame: float |
 
 def usd_message(error: Tf.ErrorException) -> str:
     """What USD says, in one line. Of several errors the first is the cause."""
-    said = error.args[0].commentary if error.args else str(error)
+    try:
+        said = error.args[0].commentary if error.args else str(error)
+    except UnicodeDecodeError as undecoded:  # it quotes a file
+        said = undecoded.object.decode(errors="backslashreplace")
     return " ".join(said.split()) or "USD failed and does not say why"
 
 

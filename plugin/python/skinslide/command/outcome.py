@@ -24,6 +24,7 @@ _EXPECTED = (
     UsageError,
     StageError,
     OSError,
+    UnicodeDecodeError,
     MemoryError,
     KeyboardInterrupt,
     SystemExit,
@@ -119,6 +120,8 @@ def _verdict(error: BaseException, done: str) -> tuple[int, Sequence[Problem]]:
             return int(error.code or FAILED), [_plain(f"ended by a signal{done}")]
         case MemoryError():
             return FAILED, [_plain("out of memory")]
+        case UnicodeDecodeError():  # of USD's: its strings are decoded as they are read
+            return FAILED, [_plain(f"the stage holds text that is not UTF-8: {error.object[:200]!r}")]
         case _:
             return USAGE if isinstance(error, UsageError) else FAILED, [_plain(str(error))]
 

@@ -73,7 +73,9 @@ def _roots(stage: Usd.Stage, prim_paths: Sequence[str] | None, problems: list[Pr
         if prim:
             yield prim
         else:
-            message = "there is no such prim" if valid else "this is not the path of a prim, such as /World/char/geo"
+            named = "this" if str(path) else "an empty name"
+            message = f"{named} is not the path of a prim, such as /World/char/geo"
+            message = "there is no such prim" if valid else message
             problems.append(Problem("error", str(path), None, None, message))
 
 

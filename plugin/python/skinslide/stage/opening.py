@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import posixpath
 from pathlib import Path
@@ -52,12 +53,11 @@ def why_not_opened(path: str, error: Exception) -> str:
             return "it is a folder"
         try:
             os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK))
-        except PermissionError as denied:
-            return denied.strerror or str(denied)
-        except OSError:
-            pass  # a resolver may know it under this name
+        except OSError as fault:
+            if fault.errno in (errno.EACCES, errno.ELOOP):  # of others, a resolver may know it under this name
+                return fault.strerror or str(fault)
         if not Ar.GetResolver().Resolve(path):
-            return "there is no such file"
+            return "its path from the root is too long" if os.path.exists(path) else "there is no such file"
         return usd_message(error)
     return "it is not text"
 

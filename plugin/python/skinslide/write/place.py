@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import glob
 import os
@@ -22,6 +23,8 @@ from skinslide.problems import StageError, UsageError, usd_message
 from skinslide.stage.given import StrPath
 
 _ABANDONED = 24 * 60 * 60  # seconds
+_MOST_BYTES = 255  # of a name
+_OF_USD = 7  # bytes by which a name is longer that USD writes under before it has the partial file's
 
 
 def check_output(output: Path, extensions: Sequence[str], made: Path | None = None) -> None:
@@ -39,9 +42,15 @@ def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
     try:
         fault = find_fault(output)
     except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
-        fault = getattr(error, "strerror", None) or str(error)
+        too_long = isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG
+        fault = _too_long(output) if too_long else getattr(error, "strerror", None) or str(error)
     if fault:
         raise UsageError(f"output {output}: {fault}")
+
+
+def _too_long(output: Path) -> str:
+    longest = max(len(os.fsencode(part)) for part in output.parts)
+    return f"{'the name' if longest > _MOST_BYTES else 'its path from the root'} is too long"
 
 
 def _fault(output: Path, made: Path | None) -> str | None:
@@ -58,8 +67,7 @@ def _fault(output: Path, made: Path | None) -> str | None:
         return "is a folder"
     if target.exists() and not target.is_file():
         return "is not a regular file"
-    # A partial file has a longer name; on Linux a name has at most 255 bytes.
-    if len(os.fsencode(partial_name(target))) > os.pathconf(folder, "PC_NAME_MAX"):
+    if len(os.fsencode(partial_name(target))) + _OF_USD > os.pathconf(folder, "PC_NAME_MAX"):  # on Linux 255
         return "the name is too long"
     if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
         return "is not writable"
