@@ -60,6 +60,6 @@ And measured:
   lookup.txt                     how much of the lookup the texture finds
   limit_distance.txt             how far the limit surface moves
   smoothness.txt                 how smoothly each rule moves skin
-  share.txt                      the share of the removable stretch that each rule removes, frame by frame
+  share.txt                      the share of the removable stretch that each rule removes
   shot/play.txt                  shot/shot.usda, played live with nothing baked
 SUMMARY
