@@ -1,6 +1,7 @@
 /* Slides one frame of a sheet of four quads: its middle vertex, pulled aside, goes most of the way back. And makes ready to draw
- * it, which needs no device yet. */
+ * it, which needs no device yet. And asks what there is to read of a scene. */
 #include <skinslide/picture.h>
+#include <skinslide/stage.h>
 #include <stdio.h>
 
 static const int32_t counts[] = {4, 4, 4, 4};
@@ -11,6 +12,13 @@ static const float rest[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 
 static int fail(const skinslide_error *error) {
     fprintf(stderr, "%s: %s\n", skinslide_status_name(error->status), error->message);
     return 1;
+}
+
+/* A patch begins with its faces, which may not be missing. */
+static int faces_are_asked_for(void) {
+    const skinslide_stage_input *input = skinslide_stage_next_input(SKINSLIDE_STAGE_PATCH, NULL);
+    skinslide_value none = SKINSLIDE_VALUE_DEFAULT;
+    return input && input->is_primvar && skinslide_value_length(&none) == 0;
 }
 
 int main(void) {
@@ -44,6 +52,8 @@ int main(void) {
         return fail(&error);
     skinslide_tessellation_destroy(tessellation);
     if (info.triangle_count != 8 || options.width != 1920)
+        return 1;
+    if (!faces_are_asked_for())
         return 1;
     printf("%s %g\n", skinslide_version(), slid[12]);
     skinslide_workspace_destroy(workspace);
