@@ -75,6 +75,11 @@ skinslide_status skinslide_stage_points(const skinslide_stage_mesh *mesh, const 
     return status;
 }
 
+skinslide_status skinslide_stage_check_points(const skinslide_stage_mesh *mesh, const float *points, skinslide_error *error) {
+    return mesh ? ss_check_points(points, mesh->vertex_count, "points", error)
+                : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh");
+}
+
 /* ---- Faces ---- */
 
 static skinslide_status take_array(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error) {

@@ -49,14 +49,9 @@ class Bad:
     may_slide: bool = False  # a layer says so, and may slide what it can
 
 
-def marked(table: Iterable[Good | Bad], *differences: dict[str, str]) -> list:
-    """The rows of a table as parameters, with those that are known to fail."""
-    found = []
-    for row in table:
-        why = [reasons[row.name] for reasons in differences if row.name in reasons]
-        marks = [pytest.mark.xfail(strict=True, reason=why[0])] if why else []
-        found.append(pytest.param(row, id=row.name, marks=marks))
-    return found
+def named(table: Iterable[Good | Bad]) -> list:
+    """The rows of a table as parameters."""
+    return [pytest.param(row, id=row.name) for row in table]
 
 
 def made(row: Good | Bad, folder: Path) -> Path:

@@ -5,11 +5,10 @@ from pathlib import Path
 import pytest
 
 from bad_stages import BAD
-from differences import TOOL
 from digests import BLOCKED, Contents, differences
 from good_stages import GOOD
 from readers import Sentence, baked, cached, command, opened
-from rows import Bad, made, marked
+from rows import Bad, made, named
 from stages import MESH
 
 
@@ -21,7 +20,7 @@ def no_device(monkeypatch):
 
 def test_each_row_has_a_name_of_its_own():
     names = [row.name for row in [*GOOD, *BAD]]
-    assert len(names) == len(set(names)) and set(TOOL) <= set(names)
+    assert len(names) == len(set(names))
 
 
 def moved(bake: Contents, cache: Contents) -> bool:
@@ -33,7 +32,7 @@ def moved(bake: Contents, cache: Contents) -> bool:
     )
 
 
-@pytest.mark.parametrize("row", marked(GOOD, TOOL))
+@pytest.mark.parametrize("row", named(GOOD))
 def test_a_layer_holds_what_a_bake_does(row, tmp_path):
     path = made(row, tmp_path)
     bake, warned = baked(path)
@@ -61,7 +60,7 @@ def is_said(row: Bad, folder: Path, said: list[Sentence]) -> bool:
     return found == [Sentence(row.prim, row.patch, row.frame, text)]
 
 
-@pytest.mark.parametrize("row", marked(BAD, TOOL))
+@pytest.mark.parametrize("row", named(BAD))
 def test_the_tool_refuses(row, tmp_path, capfd):
     path = made(row, tmp_path)
     code, said = command(capfd, "check", path)
@@ -73,7 +72,7 @@ def test_the_tool_refuses(row, tmp_path, capfd):
     assert output.read_text() == "what was there before" and set(tmp_path.iterdir()) == {*before, output}
 
 
-@pytest.mark.parametrize("row", marked(BAD))
+@pytest.mark.parametrize("row", named(BAD))
 def test_a_layer_refuses(row, tmp_path):
     """It opens, says why, and gives the points of the cache: of the frame, or of all."""
     path = made(row, tmp_path)

@@ -232,6 +232,12 @@ SKINSLIDE_API int32_t skinslide_stage_mesh_left_handed(const skinslide_stage_mes
 SKINSLIDE_API skinslide_status skinslide_stage_points(const skinslide_stage_mesh *mesh, const skinslide_value *value,
                                                       float *points, skinslide_error *error);
 
+/* What skinslide_slide would say of the points of a frame, for those who look at frames before they slide them.
+ *   points  in  [vertex_count][3]
+ * Fails with BAD_POINTS (not finite: names the first vertex), BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_stage_check_points(const skinslide_stage_mesh *mesh, const float *points,
+                                                            skinslide_error *error);
+
 /* Texture coordinates of the mesh's corners.
  *   value  in  a primvar of pairs of halves, floats or doubles: faceVarying, vertex or varying
  *   st     out [index_count][2]

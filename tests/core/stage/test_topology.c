@@ -169,6 +169,19 @@ static void orientation_is_a_token(void **state) {
     skinslide_stage_mesh_destroy(mesh);
 }
 
+static void points_are_checked_as_by_a_slide(void **state) {
+    (void)state;
+    skinslide_stage_mesh *mesh = empty_mesh();
+    float points[12] = {0};
+    takes(mesh, "points", POINTS("points", 4));
+    assert_ok(skinslide_stage_check_points(mesh, points, &error), &error);
+    points[7] = NAN;
+    assert_fails(skinslide_stage_check_points(mesh, points, &error), &error, SKINSLIDE_BAD_POINTS,
+                 "points: vertex 2 is not finite: (0, nan, 0)");
+    assert_fails(skinslide_stage_check_points(NULL, points, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no mesh");
+    skinslide_stage_mesh_destroy(mesh);
+}
+
 static void points_of_a_frame(void **state) {
     (void)state;
     test_mesh grid = quad_grid(1, 1);
@@ -334,6 +347,7 @@ int main(void) {
         cmocka_unit_test(faces_must_stay_the_same),
         cmocka_unit_test(orientation_is_a_token),
         cmocka_unit_test(points_of_a_frame),
+        cmocka_unit_test(points_are_checked_as_by_a_slide),
         cmocka_unit_test(subdivision_comes_back),
         cmocka_unit_test(bad_subdivision_is_named),
         cmocka_unit_test(a_mesh_of_no_scheme_has_no_subdivision),

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Controls, Handle, PatchSetup, Subdivision, new, text, token_of, writable
+from skinslide.arrays.native import Arguments, Controls, Handle, PatchSetup, Subdivision, new, text, token_of, writable
 from skinslide.problems import Fault
 
 SCHEMA = text(lib.skinslide_stage_schema())
@@ -242,6 +242,11 @@ class MeshMeaning:
         out = np.empty((self.shape.vertex_count, 3), np.float32)
         _call(lib.skinslide_stage_points, self.handle, value, writable("float[]", out))
         return out
+
+    def check_points(self, points: np.ndarray) -> None:
+        """Raises Fault for points of a frame, (V, 3), that cannot be slid."""
+        given = Arguments().points(points, self.shape.vertex_count, "points")
+        _call(lib.skinslide_stage_check_points, self.handle, given)
 
     def coordinates(self, value: Value | None) -> np.ndarray:
         """Texture coordinates of the corners, float32 (sum of counts, 2). Raises Fault."""

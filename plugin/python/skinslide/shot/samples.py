@@ -9,7 +9,7 @@ import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.native import Controls
-from skinslide.problems import FrameProblem, Problem
+from skinslide.problems import Fault, FrameProblem, Problem
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.values import FIRST
 
@@ -36,13 +36,12 @@ def _first_of(found: Iterator[Problem | None]) -> Iterator[Problem]:
 
 def _points_problem(mesh: PatchedMesh, time: Usd.TimeCode) -> Problem | None:
     try:
-        points = mesh.points_at(time)
+        mesh.meaning.check_points(mesh.points_at(time))
     except FrameProblem as bad:
         return bad.problem
-    if np.isfinite(points).all():
-        return None
-    vertex = np.flatnonzero(~np.isfinite(points).all(axis=1))[0]
-    return mesh.problem(f"points[{vertex}] is {tuple(points[vertex].tolist())}", time)
+    except Fault as fault:
+        return mesh.problem(str(fault), time)
+    return None
 
 
 def _controls_problem(mesh: PatchedMesh, index: int, time: Usd.TimeCode) -> Problem | None:

@@ -163,7 +163,7 @@ def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Iterable[Input]
     faults = take(meaning, [Source(prim, each, meaning.name) for each in wanted])
     child = prim.GetChild(meaning.name) if Sdf.Path.IsValidIdentifier(meaning.name) else None
     with noting(faults):
-        take_subset(meaning, child)
+        take_subset(meaning, child if child and child.IsActive() else None)
     return faults
 
 
