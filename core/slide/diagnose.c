@@ -19,7 +19,7 @@ typedef struct tally {
 typedef struct diagnosis {
     ss_memory memory;
     const skinslide_slider *slider;
-    const skinslide_controls *controls;
+    skinslide_controls *controls; /* [setup_count] of the frame; NULL: the set-ups' own */
     const uint8_t *chosen;
     tally *tallies;         /* [vertex_count] */
     double *before, *after; /* [most edges of a patch] lengths */
@@ -168,12 +168,16 @@ skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinsl
     skinslide_status status = ss_check_points(cached, slider->vertex_count, "cached points", error);
     if (!status)
         status = ss_check_points(slid, slider->vertex_count, "slid points", error);
-    if (!status && controls)
-        status = ss_check_frame_controls(slider, controls, error);
+    skinslide_diagnostics out = SKINSLIDE_DIAGNOSTICS_DEFAULT;
+    if (!status)
+        status = ss_take(diagnostics, "skinslide_diagnostics", &out, sizeof out, error);
     if (status)
         return status;
-    diagnosis d = {.slider = slider, .controls = controls, .chosen = chosen};
+    diagnosis d = {.slider = slider, .chosen = chosen};
+    d.controls = controls ? SS_NEW(&d.memory, skinslide_controls, slider->setup_count) : NULL;
     status = allocate(&d, error);
+    if (!status && controls)
+        status = ss_take_frame_controls(slider, controls, d.controls, error);
     if (!status)
         count_patches(&d);
     for (int32_t p = 0; !status && p < slider->part_count; p++)
@@ -182,7 +186,7 @@ skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinsl
             add_density(&d, p);
         }
     if (!status)
-        status = write(&d, cached, slid, diagnostics, error);
+        status = write(&d, cached, slid, &out, error);
     ss_free(&d.memory);
     return status;
 }

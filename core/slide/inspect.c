@@ -23,8 +23,12 @@ skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int
     const ss_part *part = find_part(slider, patch, info, error);
     if (!part)
         return SKINSLIDE_BAD_ARGUMENT;
+    skinslide_status status = ss_check_size(info, "skinslide_patch_info", error);
+    if (status)
+        return status;
     const ss_patch *own = part->patch;
-    *info = (skinslide_patch_info){
+    const skinslide_patch_info answer = {
+        .size = sizeof answer,
         .name = own->setup->name,
         .setup = own->setup_index,
         .piece = own->piece,
@@ -38,6 +42,7 @@ skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int
         .collapsed_faces = part->rest_layout.collapsed,
         .folded_faces = part->rest_layout.folded,
     };
+    ss_give(&answer, sizeof answer, info);
     return SKINSLIDE_OK;
 }
 

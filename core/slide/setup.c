@@ -67,11 +67,13 @@ static skinslide_status check_edges(const skinslide_slider *slider, int32_t setu
     return status;
 }
 
-skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
-                                         skinslide_error *error) {
-    skinslide_mesh mesh = {
-        .size = sizeof(skinslide_mesh), .vertex_count = slider->vertex_count, .face_count = slider->face_count};
-    skinslide_status status = SKINSLIDE_OK;
+skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
+                                        skinslide_controls *controls, skinslide_error *error) {
+    const skinslide_controls standard = SKINSLIDE_CONTROLS_DEFAULT;
+    skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
+    mesh.vertex_count = slider->vertex_count, mesh.face_count = slider->face_count;
+    skinslide_status status =
+        ss_take_all(given, slider->setup_count, "skinslide_controls", controls, sizeof standard, &standard, error);
     for (int32_t i = 0; i < slider->setup_count && !status; i++) {
         status = ss_check_controls(&mesh, slider->setups[i].name, &controls[i], error);
         if (!status)
@@ -162,7 +164,7 @@ static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh
         ss_patch_create(mesh, &slider->setups[setup], setup, pieces->chosen, count, piece, pieces->count, &part->patch, error);
     if (!status) {
         slider->part_count++;
-        status = prepare(&slider->memory, part, mesh, &slider->setups[setup].controls, error);
+        status = prepare(&slider->memory, part, mesh, slider->setups[setup].controls, error);
     }
     if (!status)
         status = add_cage(slider, mesh, part, error);
@@ -207,7 +209,7 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
     if (!status)
         status = split(mesh, own, &pieces, error);
     if (!status)
-        status = ss_check_controls(mesh, own->name, &own->controls, error);
+        status = ss_check_controls(mesh, own->name, own->controls, error);
     if (!status)
         status = grow_parts(slider, pieces.count, error);
     for (int32_t piece = 0; piece < pieces.count && !status; piece++)
@@ -215,7 +217,7 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
     if (!status)
         status = check_corners(slider, setup, error);
     if (!status)
-        status = check_edges(slider, setup, &own->controls, error);
+        status = check_edges(slider, setup, own->controls, error);
     ss_free(&pieces.memory);
     return status;
 }
@@ -230,22 +232,33 @@ static skinslide_interpolation choose_interpolation(const skinslide_mesh *mesh, 
 
 static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                     skinslide_error *error) {
-    slider->setups = SS_NEW(&slider->memory, skinslide_patch_setup, slider->setup_count);
-    for (int32_t i = 0; i < slider->setup_count && slider->setups; i++) {
-        const char *name = setups[i].name ? setups[i].name : "";
+    const skinslide_patch_setup standard = SKINSLIDE_PATCH_SETUP_DEFAULT;
+    int32_t count = slider->setup_count;
+    skinslide_controls *controls = SS_NEW(&slider->memory, skinslide_controls, count);
+    slider->setups = SS_NEW(&slider->memory, skinslide_patch_setup, count);
+    if (slider->memory.failed)
+        return ss_out_of_memory(error);
+    skinslide_status status =
+        ss_take_all(setups, count, "skinslide_patch_setup", slider->setups, sizeof standard, &standard, error);
+    for (int32_t i = 0; i < count && !status; i++) {
+        skinslide_patch_setup *own = &slider->setups[i];
+        const char *name = own->name ? own->name : "";
         char *copy = SS_NEW(&slider->memory, char, (int64_t)strlen(name) + 1);
-        slider->setups[i] = setups[i];
-        slider->setups[i].name = copy ? strcpy(copy, name) : copy;
-        slider->setups[i].interpolation = choose_interpolation(mesh, setups[i].interpolation);
+        controls[i] = (skinslide_controls)SKINSLIDE_CONTROLS_DEFAULT;
+        status = copy ? ss_take(own->controls, "skinslide_controls", &controls[i], sizeof *controls, error)
+                      : ss_out_of_memory(error);
+        own->name = copy ? strcpy(copy, name) : copy;
+        own->interpolation = choose_interpolation(mesh, own->interpolation);
+        own->controls = &controls[i];
     }
-    return slider->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    return status;
 }
 
 /* Drops pointers to what is the caller's. */
 static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
         slider->setups[i].faces = slider->setups[i].corners = NULL;
-        slider->setups[i].controls = (skinslide_controls)SKINSLIDE_CONTROLS_DEFAULT;
+        slider->setups[i].controls = NULL;
     }
 }
 

@@ -155,13 +155,15 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     const skinslide_slider *slider = workspace->slider;
     skinslide_status status = ss_check_points(points, slider->vertex_count, "points", error);
     if (!status && controls)
-        status = ss_check_frame_controls(slider, controls, error);
+        status = ss_take_frame_controls(slider, controls, workspace->controls, error);
+    if (!status && results && slider->part_count > 0)
+        status = ss_check_size(results, "skinslide_patch_result", error);
     if ((status = go_on(workspace, status, error)))
         return status;
     workspace->has_frame = false;
     for (int32_t p = 0; p < slider->part_count; p++) {
-        const skinslide_controls *own = controls ? &controls[slider->parts[p].patch->setup_index] : NULL;
-        workspace->results[p] = (skinslide_patch_result){0};
+        const skinslide_controls *own = controls ? &workspace->controls[slider->parts[p].patch->setup_index] : NULL;
+        workspace->results[p] = (skinslide_patch_result)SKINSLIDE_PATCH_RESULT_DEFAULT;
         if ((status = go_on(workspace, start_patch(workspace, p, points, own, error), error)))
             return status;
     }
@@ -178,9 +180,9 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
         ss_edge_lengths(patch, slid, workspace->patches[p].lengths);
         workspace->results[p].stretch_after = stretch(patch, workspace->patches[p].lengths);
-        if (results)
-            results[p] = workspace->results[p];
     }
+    if (results)
+        ss_give_all(workspace->results, slider->part_count, sizeof *workspace->results, results);
     workspace->has_frame = true;
     return SKINSLIDE_OK;
 }

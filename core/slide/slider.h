@@ -44,9 +44,10 @@ struct skinslide_workspace {
     const skinslide_slider *slider;
     ss_patch_work *patches;          /* [part_count] */
     skinslide_patch_result *results; /* [part_count] */
+    skinslide_controls *controls;    /* [setup_count] of the frame */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
     bool has_frame;
-    int stop; /* a flag that other threads set, see base.h */
+    int stop;              /* a flag that other threads set, see base.h */
     ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
     skinslide_lookup_info lookup;
 };
@@ -65,9 +66,9 @@ bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls
 
 /* ---- setup.c ---- */
 
-/* Controls of one frame, [setup_count]. */
-skinslide_status ss_check_frame_controls(const skinslide_slider *slider, const skinslide_controls *controls,
-                                         skinslide_error *error);
+/* The caller's controls of one frame, in controls [setup_count], and checked. */
+skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
+                                        skinslide_controls *controls, skinslide_error *error);
 
 /* ---- workspace.c ---- */
 

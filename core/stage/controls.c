@@ -26,6 +26,7 @@ struct skinslide_stage_controls {
     control controls[SS_CONTROL_ROWS];
     const float *st; /* [index_count][2] of this or of the base; NULL: none was taken */
     float *own_st;
+    skinslide_controls given; /* what it gave last */
 };
 
 static const ss_input *inputs(void) {
@@ -406,10 +407,9 @@ static void put_numbers(const skinslide_stage_controls *controls, skinslide_cont
     }
 }
 
-skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
-                                              skinslide_error *error) {
-    if (!controls || !out)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no place for them");
+skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given,
+                                  skinslide_error *error) {
+    skinslide_controls *out = &controls->given;
     skinslide_status status = check_complete(controls, error);
     if (!status)
         status = multiply_all(controls, error);
@@ -422,5 +422,19 @@ skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls
         put(controls, row, out);
     out->edges = edges->count ? edges->values : NULL;
     out->edge_count = edges->count / 2;
+    *given = out;
     return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
+                                              skinslide_error *error) {
+    const skinslide_controls *given;
+    if (!controls || !out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no place for them");
+    skinslide_status status = ss_check_size(out, "skinslide_controls", error);
+    if (!status)
+        status = ss_give_controls(controls, &given, error);
+    if (!status)
+        ss_give(given, sizeof *given, out);
+    return status;
 }

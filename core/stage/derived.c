@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OUTPUTS = 2 * SS_DERIVED_ROWS };
+enum { MOST_OUTPUTS = 2 * SS_DERIVED_ROWS, MOST_POSES = 3 };
 
 typedef struct derivation {
     skinslide_stage_output output;
@@ -272,7 +272,7 @@ int32_t skinslide_stage_derived_times(const skinslide_stage_derived *derived, co
 static skinslide_status compute(const skinslide_stage_derived *derived, const derivation *own,
                                 const skinslide_stage_pose *poses, float *out, skinslide_error *error) {
     skinslide_mesh mesh = ss_faces_of(derived->mesh);
-    skinslide_sample samples[3];
+    skinslide_sample samples[MOST_POSES];
     if (own->output.pose_count == 1)
         return skinslide_normals(&mesh, poses[0].cached, poses[0].slid, own->layout, derived->mesh->left_handed, out, error);
     for (int32_t i = 0; i < own->output.pose_count; i++)
@@ -295,8 +295,12 @@ skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *de
     if (!status && pose_count != output->pose_count)
         status = ss_fail(error, SKINSLIDE_BAD_POINTS, "that takes %d samples of points, and there are %d", output->pose_count,
                          pose_count);
+    const skinslide_stage_pose standard = SKINSLIDE_STAGE_POSE_DEFAULT;
+    skinslide_stage_pose taken[MOST_POSES];
+    if (!status)
+        status = ss_take_all(poses, pose_count, "skinslide_stage_pose", taken, sizeof standard, &standard, error);
     if (status)
         return status;
     ss_copy_floats(&record, out);
-    return compute(derived, own, poses, out, error);
+    return compute(derived, own, taken, out, error);
 }

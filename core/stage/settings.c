@@ -294,7 +294,9 @@ skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, s
         status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the faces of the patch were not given");
     skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     if (!status)
-        status = skinslide_stage_controls_get(controls, &setup.controls, error);
+        status = ss_check_size(out, "skinslide_patch_setup", error);
+    if (!status)
+        status = ss_give_controls(controls, &setup.controls, error);
     if (status)
         return status;
     const ss_taken *taken = patch->taken;
@@ -307,6 +309,6 @@ skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, s
     setup.rule = (skinslide_rule)taken[SS_ROW_RULE].choice;
     setup.interpolation = (skinslide_interpolation)(patch->live.interpolation < 0 ? taken[SS_ROW_INTERPOLATION].choice
                                                                                   : patch->live.interpolation);
-    *out = setup;
+    ss_give(&setup, sizeof setup, out);
     return SKINSLIDE_OK;
 }

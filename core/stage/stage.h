@@ -243,6 +243,9 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
 /* Marks the faces and vertices of the patch as inside. */
 void ss_mark_inside(skinslide_stage_patch *patch);
 
+/* controls.c: as the slider takes them; they are the handle's. */
+skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given, skinslide_error *error);
+
 /* ---- textures.c: one map ---- */
 
 typedef struct ss_texture ss_texture;

@@ -220,8 +220,8 @@ VtValue LiveMesh::derived(const Derived &derived, double time) {
         frames.push_back(frame(_mesh->times.empty() ? Attribute::defaultTime : times[i]));
         if (frames.back()->cached.empty())
             return asDeclared(derived.cached.attribute().at(time));
-        poses.push_back(
-            {times[i], floatsOf(frames.back()->cached), floatsOf(frames.back()->points.UncheckedGet<VtVec3fArray>())});
+        poses.push_back({sizeof(skinslide_stage_pose), times[i], floatsOf(frames.back()->cached),
+                         floatsOf(frames.back()->points.UncheckedGet<VtVec3fArray>())});
     }
     try {
         VtVec3fArray out(static_cast<size_t>(output->count));

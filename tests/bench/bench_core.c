@@ -42,7 +42,7 @@ static skinslide_slider *slider_of(const test_mesh *mesh, skinslide_rule rule) {
     int32_t *faces = all_faces(mesh);
     skinslide_mesh view = view_of(mesh);
     skinslide_patch_setup setup = {
-        .name = "bench", .faces = faces, .face_count = mesh->face_count, .rule = rule, .controls = SKINSLIDE_CONTROLS_DEFAULT};
+        .size = sizeof(skinslide_patch_setup), .name = "bench", .faces = faces, .face_count = mesh->face_count, .rule = rule};
     skinslide_slider *slider = NULL;
     skinslide_error error;
     stop_unless(skinslide_slider_create(&view, &setup, 1, &slider, &error) == SKINSLIDE_OK, error.message);
@@ -59,7 +59,7 @@ static cost measure(const test_mesh *mesh, int32_t side, skinslide_rule rule) {
     cost costs[FRAMES];
     for (int i = 0; i < FRAMES; i++) { /* a bump that travels under the sheet */
         float *points = bumped(mesh, side * (0.3 + 0.05 * i), 0.5 * side, 0.15 * side, 0.15 * side);
-        skinslide_patch_result r;
+        skinslide_patch_result r = SKINSLIDE_PATCH_RESULT_DEFAULT;
         double start = now();
         stop_unless(skinslide_slide(workspace, points, NULL, slid, &r, &error) == SKINSLIDE_OK, error.message);
         costs[i] = (cost){r.density_seconds,

@@ -64,7 +64,7 @@ static tally slide_frames(const skinslide_slider *slider, const test_mesh *mesh,
     float *points = copy_points(mesh);
     stop_unless(!skinslide_workspace_create(slider, &options, &workspace, &error), error.message);
     for (int i = -1; i < FRAMES; i++) { /* the first warms up */
-        skinslide_patch_result r;
+        skinslide_patch_result r = SKINSLIDE_PATCH_RESULT_DEFAULT;
         deform(mesh, amount * (i < 0 ? 1 : i + 1) / FRAMES, points);
         double start = now();
         stop_unless(!skinslide_slide(workspace, points, NULL, slid, &r, &error), error.message);
@@ -91,7 +91,7 @@ static void print_sheet(int32_t columns, double amount) {
     int32_t *faces = all_faces(&mesh);
     skinslide_mesh view = view_of(&mesh);
     skinslide_patch_setup setup = {
-        .name = "sheet", .faces = faces, .face_count = mesh.face_count, .controls = SKINSLIDE_CONTROLS_DEFAULT};
+        .size = sizeof(skinslide_patch_setup), .name = "sheet", .faces = faces, .face_count = mesh.face_count};
     skinslide_slider *slider = NULL;
     skinslide_error error;
     stop_unless(!skinslide_slider_create(&view, &setup, 1, &slider, &error), error.message);

@@ -23,8 +23,7 @@ static int faces_are_asked_for(void) {
 
 int main(void) {
     skinslide_mesh mesh = {sizeof(skinslide_mesh), 9, 4, 16, counts, indices, rest, NULL};
-    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
-    skinslide_patch_setup patch = {0};
+    skinslide_patch_setup patch = SKINSLIDE_PATCH_SETUP_DEFAULT;
     skinslide_slider *slider;
     skinslide_workspace *workspace;
     skinslide_tessellation *tessellation;
@@ -37,7 +36,6 @@ int main(void) {
     patch.name = "sheet";
     patch.faces = faces;
     patch.face_count = 4;
-    patch.controls = controls;
     for (i = 0; i < 27; ++i)
         points[i] = rest[i];
     points[12] = 1.5f;

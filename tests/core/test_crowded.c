@@ -48,7 +48,7 @@ static void check_finger(int32_t around, int32_t rings, skinslide_interpolation 
     skinslide_patch_setup choices = setup_of(NULL, 0);
     choices.interpolation = interpolation;
     rig r = rig_of(&mesh, choices);
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, &mesh, mesh.points, NULL, &result);
     assert_same_bytes(slid, mesh.points, POINT_BYTES(&mesh));
     free(slid);

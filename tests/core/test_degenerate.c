@@ -27,7 +27,7 @@ static void check_poses(const test_mesh *mesh, skinslide_patch_setup choices) {
 }
 
 static skinslide_patch_info info_of(const rig *r) {
-    skinslide_patch_info info;
+    skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
     skinslide_error error;
     assert_ok(skinslide_slider_patch_info(r->slider, 0, &info, &error), &error);
     return info;
@@ -75,13 +75,13 @@ static void edges_of_no_length(void **state) {
         mesh.points[3 * (21 + i) + 1] = 2; /* row 3 lies on row 2 */
     rig r = rig_of(&mesh, setup_of(NULL, 0));
     assert_int_equal(info_of(&r).zero_length_edges, 7);
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, &mesh, mesh.points, NULL, &result);
     assert_int_equal(result.zero_length_edges, 7);
     free(slid);
     free_rig(&r);
     for (int32_t rule = 0; rule < 2; rule++)
-        check_poses(&mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+        check_poses(&mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule});
     free_mesh(&mesh);
 }
 
@@ -99,7 +99,7 @@ static void edges_of_no_length_do_not_fold(void **state) {
                 memcpy(mesh.points + 3 * w % 300, mesh.points + 3 * v, sizeof(float[3]));
         }
         rig r = rig_of(&mesh, setup_of(NULL, 0));
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &mesh, points, NULL, &result);
         assert_true(result.zero_length_edges > 0);
         assert_int_equal(info_of(&r).folded_faces, 0);
@@ -117,12 +117,11 @@ static void a_pose_in_one_place(void **state) {
     for (int32_t i = 0; i < FIXTURE_COUNT; i++)
         for (int32_t rule = 0; rule < 2; rule++) {
             fixture f = make_fixture(i);
-            rig r =
-                rig_of(&f.mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+            rig r = rig_of(&f.mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule});
             float *points = copy_points(&f.mesh);
             for (int32_t k = 0; k < 3 * f.mesh.vertex_count; k++)
                 points[k] = 2.7f;
-            skinslide_patch_result result;
+            skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
             float *slid = slide_with(&r, &f.mesh, points, NULL, &result);
             assert_same_bytes(slid, points, POINT_BYTES(&f.mesh));
             assert_int_equal(result.zero_length_edges, info_of(&r).edge_count);
@@ -157,14 +156,12 @@ static void ears_on_the_square_collapse(void **state) {
     (void)state;
     test_mesh mesh = triangle_grid(3, 3);
     const int32_t corners[4] = {1, 11, 14, 4};
-    rig r = rig_of(&mesh, (skinslide_patch_setup){.corners = corners, .controls = SKINSLIDE_CONTROLS_DEFAULT});
+    rig r = rig_of(&mesh, (skinslide_patch_setup){.corners = corners});
     skinslide_patch_info info = info_of(&r);
     assert_int_equal(info.folded_faces, 0);
     assert_int_equal(info.collapsed_faces, 2);
-    check_poses(&mesh, (skinslide_patch_setup){.corners = corners, .controls = SKINSLIDE_CONTROLS_DEFAULT});
-    check_poses(&mesh, (skinslide_patch_setup){.corners = corners,
-                                               .interpolation = SKINSLIDE_INTERPOLATION_MEAN_VALUE,
-                                               .controls = SKINSLIDE_CONTROLS_DEFAULT});
+    check_poses(&mesh, (skinslide_patch_setup){.corners = corners});
+    check_poses(&mesh, (skinslide_patch_setup){.corners = corners, .interpolation = SKINSLIDE_INTERPOLATION_MEAN_VALUE});
     free_rig(&r);
     free_mesh(&mesh);
 }
@@ -179,7 +176,7 @@ static void sizes_at_the_ends_of_float(void **state) {
         for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
             mesh.points[k] *= scale, points[k] *= scale;
         rig r = rig_of(&mesh, setup_of(NULL, 0));
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &mesh, points, NULL, &result);
         expect_finite(slid, mesh.vertex_count);
         assert_true(result.slid_vertices > 0);
@@ -200,7 +197,7 @@ static void either_winding_slides(void **state) {
     }
     check_poses(&mesh, setup_of(NULL, 0));
     rig r = rig_of(&mesh, setup_of(NULL, 0));
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, &mesh, points, NULL, &result);
     assert_int_equal(result.folded_faces, 0);
     assert_true(result.slid_vertices > 40);

@@ -26,7 +26,7 @@ static void take_pose(uint64_t *digest, const rig *r, const test_mesh *mesh, uin
     float *points = random_pose(mesh, seed), *slid = slide_with(r, mesh, points, controls, NULL);
     size_t size = (size_t)mesh->vertex_count * sizeof(float);
     float *stretch = malloc(size), *slide = malloc(size);
-    skinslide_diagnostics diagnostics = {.stretch_after = stretch, .slide = slide};
+    skinslide_diagnostics diagnostics = {.size = sizeof(skinslide_diagnostics), .stretch_after = stretch, .slide = slide};
     assert_ok(skinslide_diagnose(r->slider, controls, NULL, points, slid, &diagnostics, &error), &error);
     take(digest, slid, 3 * size);
     take(digest, stretch, size);
@@ -59,7 +59,7 @@ static void take_way(uint64_t *digest, const fixture *f, skinslide_patch_setup c
 static uint64_t digest_of(const fixture *f, int rule, int interpolation) {
     uint64_t digest = UINT64_C(0xcbf29ce484222325);
     for (int32_t way = 0; way < 4; way++) {
-        skinslide_patch_setup choices;
+        skinslide_patch_setup choices = SKINSLIDE_PATCH_SETUP_DEFAULT;
         if (!choose_way(f, way, &choices))
             continue;
         choices.rule = (skinslide_rule)rule;

@@ -55,7 +55,7 @@ static int frames_that_differ(const shot *s, skinslide_workspace *workspace, int
     float *slid = malloc(POINT_BYTES(&s->f.mesh));
     for (int k = 0; k < rounds; k++) {
         int i = (first + 5 * k) % FRAMES;
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         if (skinslide_slide(workspace, s->points[i], NULL, slid, &result, NULL))
             differ++;
         else
@@ -126,10 +126,10 @@ static void threads_share_a_slider(void **state) {
 static void compare_controls(const fixture *f, const skinslide_controls *controls) {
     skinslide_patch_setup choices = setup_of(NULL, 0);
     rig plain = rig_of(&f->mesh, choices);
-    choices.controls = *controls;
+    choices.controls = controls;
     rig own = rig_of(&f->mesh, choices);
     float *points = random_pose(&f->mesh, 3);
-    skinslide_patch_result first, second;
+    skinslide_patch_result first = SKINSLIDE_PATCH_RESULT_DEFAULT, second = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *expected = slide_with(&own, &f->mesh, points, NULL, &first);
     float *slid = slide_with(&plain, &f->mesh, points, controls, &second);
     assert_same_bytes(slid, expected, POINT_BYTES(&f->mesh));

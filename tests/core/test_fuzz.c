@@ -117,7 +117,8 @@ static void slide_once(const rig *r, const test_mesh *mesh, const float *points,
     float *slid = malloc(POINT_BYTES(mesh));
     skinslide_error error;
     int32_t patches = skinslide_slider_patch_count(r->slider);
-    skinslide_patch_result *results = calloc((size_t)patches, sizeof *results);
+    skinslide_patch_result *results = calloc((size_t)patches + 1, sizeof *results);
+    results->size = sizeof *results;
     assert_ok(skinslide_slide(r->workspace, points, controls, slid, results, &error), &error);
     for (int32_t k = 0; k < 3 * mesh->vertex_count; k++)
         assert_true(isfinite(slid[k]));

@@ -147,7 +147,7 @@ static skinslide_status run_all(void *subject, skinslide_error *error) {
     skinslide_workspace *workspace = NULL;
     const skinslide_limit_place place = {5, 0.5f, 0.5f};
     float point[3];
-    const skinslide_diagnostics diagnostics = {.slide = s->slide};
+    const skinslide_diagnostics diagnostics = {.size = sizeof(skinslide_diagnostics), .slide = s->slide};
     skinslide_mesh view = view_of_scene(s);
     skinslide_status status = skinslide_slider_create(&view, s->setups, 2, &slider, error);
     if (!status)
@@ -355,8 +355,8 @@ static skinslide_status run_stage(void *own, skinslide_error *error) {
     skinslide_stage_mesh *mesh = NULL;
     skinslide_stage_patch *patch = NULL;
     skinslide_stage_controls *first = NULL, *frame = NULL;
-    skinslide_patch_setup setup;
-    skinslide_controls controls;
+    skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     skinslide_status status = run_stage_mesh(own, &mesh, error);
     if (!status)
         status = run_stage_patch(mesh, &patch, error);
@@ -394,7 +394,7 @@ static void controls_of_a_frame_allocate_nothing(void **state) {
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
     skinslide_stage_patch *patch = scene_patch(mesh, &grid, NULL);
     skinslide_stage_controls *controls = scene_controls(patch);
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     skinslide_error error;
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t frame = 0; frame < 3 && !status; frame++) {

@@ -182,25 +182,26 @@ typedef enum skinslide_interpolation {
 /* What an artist paints and animates on a patch. Start from SKINSLIDE_CONTROLS_DEFAULT. Force densities multiply each other and
  * the rule's; each must be finite and > 0. Only ratios matter. */
 typedef struct skinslide_controls {
+    size_t size;                 /* sizeof(skinslide_controls) */
     const float *vertex_density; /* [mesh vertex_count] or NULL: 1; an edge takes the mean of its ends */
     const float *face_density;   /* [mesh face_count] or NULL: 1; an edge takes the mean of its faces in the patch */
     const int32_t *edges;        /* [edge_count][2] mesh vertices of edges of the patch, each edge at most once; or NULL */
     const float *edge_density;   /* [edge_count] */
     int32_t edge_count;
+    float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
     const float *weight; /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted). Under LIMIT
                             a vertex of weight 0 still moves as its neighbours slide, so that its limit point stays */
-    float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
     const float *max_distance; /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
                                   object units; measured on the triangles that `linear` interpolates in */
 } skinslide_controls;
 
 #define SKINSLIDE_CONTROLS_DEFAULT                                                                                             \
-    { 0, 0, 0, 0, 0, 0, 1.0f, 0 }
+    { sizeof(skinslide_controls), 0, 0, 0, 0, 0, 1.0f, 0, 0 }
 
 /* One patch as an artist sets it up. Faces that fall into several pieces, connected through edges, become several patches with
- * the same settings; corners then count for the piece that has them. Start from SKINSLIDE_PATCH_SETUP_DEFAULT: an envelope of 0,
- * as zero-initialised memory has it, slides nothing. */
+ * the same settings; corners then count for the piece that has them. Start from SKINSLIDE_PATCH_SETUP_DEFAULT. */
 typedef struct skinslide_patch_setup {
+    size_t size;            /* sizeof(skinslide_patch_setup) */
     const char *name;       /* used in messages; copied */
     const int32_t *faces;   /* [face_count] mesh faces, each once */
     int32_t face_count;     /* > 0 */
@@ -209,13 +210,13 @@ typedef struct skinslide_patch_setup {
     skinslide_holes holes;
     skinslide_rule rule;
     skinslide_interpolation interpolation;
-    skinslide_controls controls; /* used by frames that bring none of their own */
+    const skinslide_controls *controls; /* used by frames that bring none of their own; NULL: the default */
 } skinslide_patch_setup;
 
 #define SKINSLIDE_PATCH_SETUP_DEFAULT                                                                                          \
     {                                                                                                                          \
-        0, 0, 0, 0, SKINSLIDE_BOUNDARY_AUTO, SKINSLIDE_HOLES_PINNED, SKINSLIDE_RULE_UNIT, SKINSLIDE_INTERPOLATION_AUTO,        \
-            SKINSLIDE_CONTROLS_DEFAULT                                                                                         \
+        sizeof(skinslide_patch_setup), 0, 0, 0, 0, SKINSLIDE_BOUNDARY_AUTO, SKINSLIDE_HOLES_PINNED, SKINSLIDE_RULE_UNIT,       \
+            SKINSLIDE_INTERPOLATION_AUTO, 0                                                                                    \
     }
 
 /* ---- The slider ---------------------------------------------------------------------------------------------------------- */
@@ -241,6 +242,7 @@ SKINSLIDE_API void skinslide_slider_destroy(skinslide_slider *slider);
 
 /* What a patch is. Patches are numbered set-up by set-up, and the pieces of one set-up by their lowest face. */
 typedef struct skinslide_patch_info {
+    size_t size;               /* sizeof(skinslide_patch_info) */
     const char *name;          /* the set-up's; lives as long as the slider */
     int32_t setup;             /* its number, from 0 */
     int32_t piece;             /* of this set-up, from 0 */
@@ -254,6 +256,9 @@ typedef struct skinslide_patch_info {
     int32_t collapsed_faces; /* of no area in the rest embedding, such as a triangle with two edges on one side of the square */
     int32_t folded_faces;    /* turned over in the rest embedding */
 } skinslide_patch_info;
+
+#define SKINSLIDE_PATCH_INFO_DEFAULT                                                                                           \
+    { sizeof(skinslide_patch_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 SKINSLIDE_API int32_t skinslide_slider_patch_count(const skinslide_slider *slider);
 
@@ -361,6 +366,7 @@ SKINSLIDE_API skinslide_status skinslide_workspace_lookup(const skinslide_worksp
 /* What happened to one patch in one frame. Everything but the seconds is the same in every run with the same lookup; how
  * vertices were found depends on the lookup, its resolution and its device. */
 typedef struct skinslide_patch_result {
+    size_t size;               /* sizeof(skinslide_patch_result) */
     int32_t slid_vertices;     /* free vertices that moved */
     int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
@@ -387,6 +393,9 @@ typedef struct skinslide_patch_result {
     double interpolate_seconds; /* their places on the deformed surface; of LIMIT, the faces fitted to them, too */
 } skinslide_patch_result;
 
+#define SKINSLIDE_PATCH_RESULT_DEFAULT                                                                                         \
+    { sizeof(skinslide_patch_result), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
 /* Slides the skin of one frame (paper, section 3): density, embed, locate, interpolate for every patch, then the blend.
  *   points    in  [vertex_count][3] the deformed mesh
  *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force
@@ -395,7 +404,7 @@ typedef struct skinslide_patch_result {
  *                 so do those on the outer boundary or a pinned hole of every patch they are in, and so does every vertex
  *                 when points are the rest points. A vertex that may slide in several patches moves by the mean of their
  *                 displacements, weighted by weight times envelope.
- *   results   out [patch_count], or NULL
+ *   results   out [patch_count], or NULL; only the first need have its size
  * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid to where a float is not: names the
  * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */
 SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
@@ -418,12 +427,16 @@ SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace
 
 /* For pictures and maps. Edges count that are of a patch, each once. Any of the arrays may be NULL: it is not wanted. */
 typedef struct skinslide_diagnostics {
+    size_t size;           /* sizeof(skinslide_diagnostics) */
     float *stretch_before; /* out [vertex_count] RMS over the edges at the vertex of log(length / rest length), in the cache */
     float *stretch_after;  /* out [vertex_count] and in the result; 0 at vertices of no patch */
     float *slide;          /* out [vertex_count] distance of slid from cached, object units */
     float *force_density;  /* out [vertex_count] the painted one: mean over the edges of a patch at the vertex, and over the
                               patches where they overlap; 1 at vertices of none */
 } skinslide_diagnostics;
+
+#define SKINSLIDE_DIAGNOSTICS_DEFAULT                                                                                          \
+    { sizeof(skinslide_diagnostics), 0, 0, 0, 0 }
 
 /* Measures one frame.
  *   controls     in  [setup_count] as for skinslide_slide; NULL: the set-ups' own

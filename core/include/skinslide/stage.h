@@ -423,7 +423,7 @@ SKINSLIDE_API const skinslide_stage_texture *skinslide_stage_controls_texture(co
 SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
                                                             skinslide_error *error);
 
-/* The set-up as the slider takes it, with these controls; its arrays and its name are those of the handles.
+/* The set-up as the slider takes it, with these controls; its arrays, its name and its controls are those of the handles.
  * Fails as skinslide_stage_controls_get, and with BAD_ARGUMENT where the patch has no faces, or refused a value. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, skinslide_stage_controls *controls,
                                                          skinslide_patch_setup *out, skinslide_error *error);
@@ -493,12 +493,16 @@ SKINSLIDE_API const skinslide_stage_output *skinslide_stage_derived_output(const
 SKINSLIDE_API int32_t skinslide_stage_derived_times(const skinslide_stage_derived *derived,
                                                     const skinslide_stage_output *output, double time, double times[3]);
 
-/* Points of one time. */
+/* Points of one time. Start from SKINSLIDE_STAGE_POSE_DEFAULT. */
 typedef struct skinslide_stage_pose {
+    size_t size; /* sizeof(skinslide_stage_pose) */
     double time;
     const float *cached; /* [vertex_count][3] before sliding */
     const float *slid;   /* [vertex_count][3] after */
 } skinslide_stage_pose;
+
+#define SKINSLIDE_STAGE_POSE_DEFAULT                                                                                           \
+    { sizeof(skinslide_stage_pose), 0, 0, 0 }
 
 /* The value of an output at a time.
  *   value  in  the cache's, of the input that the output is of

@@ -18,7 +18,7 @@ static drawn draw_fixture(int32_t index, uint64_t seed) {
     drawn d = {.f = make_fixture(index)};
     dice at = {seed};
     float *pose = random_pose(&d.f.mesh, seed);
-    d.patch = patch_of(&d.f.mesh, (skinslide_patch_setup){.controls = SKINSLIDE_CONTROLS_DEFAULT});
+    d.patch = patch_of(&d.f.mesh, (skinslide_patch_setup){0});
     d.uv = embedding_of(d.patch, d.f.mesh.points, pose);
     d.queries = calloc((size_t)d.patch->free_count + 1, sizeof *d.queries);
     for (int32_t i = 0; i < d.patch->free_count; i++)
@@ -167,7 +167,7 @@ static void every_texel_is_in_its_face(void **state) {
 
 static int32_t side_of_grid(int32_t columns, bool squeezed) {
     test_mesh mesh = quad_grid(columns, columns);
-    ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){.controls = SKINSLIDE_CONTROLS_DEFAULT});
+    ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
     double(*uv)[2] = malloc((size_t)patch->vertex_count * sizeof *uv);
     for (int32_t v = 0; v < patch->vertex_count; v++) {
         const float *p = mesh.points + 3 * (int64_t)patch->mesh_vertex[v];

@@ -50,7 +50,7 @@ static void rest_slides_nothing(void **state) {
                 skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_AUTO);
                 setup.holes = (skinslide_holes)holes;
                 rig r = subdivided_rig(&f.mesh, scheme ? scheme_for(&f.mesh) : &catmull_clark, setup);
-                skinslide_patch_result result;
+                skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
                 float *slid = slide_with(&r, &f.mesh, f.mesh.points, NULL, &result);
                 assert_same_bytes(slid, f.mesh.points, POINT_BYTES(&f.mesh));
                 assert_int_equal(result.slid_vertices + result.damped_vertices, 0);
@@ -65,7 +65,8 @@ static void an_envelope_of_zero_slides_nothing(void **state) {
     for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
         fixture f = make_fixture(i);
         skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_LIMIT);
-        setup.controls.envelope = 0;
+        skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+        controls.envelope = 0, setup.controls = &controls;
         rig r = subdivided_rig(&f.mesh, &catmull_clark, setup);
         float *points = random_pose(&f.mesh, (uint64_t)i), *slid = slide_with(&r, &f.mesh, points, NULL, NULL);
         assert_same_bytes(slid, points, POINT_BYTES(&f.mesh));
@@ -159,7 +160,7 @@ static closeness measure(const test_mesh *mesh, const skinslide_subdivision *own
     skinslide_mesh view = view_of(mesh);
     view.subdivision = own;
     rig r = subdivided_rig(mesh, own, chosen(interpolation));
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, mesh, points, NULL, &result);
     test_mesh before = sampled(&view, points), after = sampled(&view, slid);
     closeness close = {.stretch = result.stretch_after};
@@ -283,7 +284,7 @@ static void a_plane_stays_a_plane(void **state) {
             p[0] += 0.08f * p[0] * p[0], p[1] += 0.05f * p[0] * p[1]; /* in the plane */
             p[2] = 0.5f * p[0] - 0.25f * p[1] + 2;
         }
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &mesh, points, NULL, &result);
         assert_true(result.slid_vertices > 10);
         for (int32_t v = 0; v < mesh.vertex_count; v++)
@@ -329,7 +330,8 @@ static void a_vertex_of_no_weight_keeps_its_limit_point(void **state) {
     skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_LIMIT);
     for (int32_t v = 0; v < 121; v++)
         weight[v] = v == 60 ? 0 : 1;
-    setup.controls.weight = weight;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.weight = weight, setup.controls = &controls;
     rig r = subdivided_rig(&mesh, &catmull_clark, setup);
     float *slid = slide_with(&r, &mesh, points, NULL, NULL);
     test_mesh before = sampled(&view, points);
@@ -355,7 +357,7 @@ static void ringing_is_damped_and_counted(void **state) {
     rig limit = subdivided_rig(&mesh, &catmull_clark, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
     float *points = copy_points(&mesh);
     points[3 * 40 + 2] = 30, points[3 * 41 + 2] = -30, points[3 * 42 + 2] = 30;
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&limit, &mesh, points, NULL, &result);
     assert_true(result.damped_vertices > 0 && result.damped_vertices < 49);
     free(points), free(slid);

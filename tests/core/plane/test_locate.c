@@ -129,11 +129,11 @@ static void a_walk_is_short(void **state) {
     (void)state;
     for (int32_t side = 20; side <= 80; side *= 2) {
         test_mesh mesh = quad_grid(side, side);
-        rig r = rig_of(&mesh, (skinslide_patch_setup){.controls = SKINSLIDE_CONTROLS_DEFAULT});
+        rig r = rig_of(&mesh, (skinslide_patch_setup){0});
         float *points = copy_points(&mesh);
         for (int32_t v = 0; v < mesh.vertex_count; v++)
             points[3 * v] *= points[3 * v] / (float)side;
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &mesh, points, NULL, &result);
         assert_true(result.walk_steps < 3 * (int64_t)mesh.vertex_count);
         assert_int_equal(result.searched_vertices, 0);

@@ -138,7 +138,7 @@ static void a_slide_by_hand(void **state) {
     for (int32_t v = 0; v < mesh.vertex_count; v++)
         points[3 * v] = v % 3 == 2 ? 4 : (float)(v % 3);
     rig r = rig_of(&mesh, relaxed());
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, &mesh, points, NULL, &result);
     assert_near(slid[3 * 4], best, 0.03);
     assert_near(slid[3 * 4 + 1], 1, 0.03); /* the fans of the faces are not symmetric */
@@ -155,7 +155,7 @@ static void stretch_is_less_than_by_force_density(void **state) {
         test_mesh mesh = triangles ? triangle_grid(20, 20) : quad_grid(20, 20);
         float *points = bumped(&mesh, 9, 11, 4, 5);
         rig relax = rig_of(&mesh, relaxed()), unit = rig_of(&mesh, setup_of(NULL, 0));
-        skinslide_patch_result relax_result, unit_result;
+        skinslide_patch_result relax_result = SKINSLIDE_PATCH_RESULT_DEFAULT, unit_result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&relax, &mesh, points, NULL, &relax_result);
         free(slide_with(&unit, &mesh, points, NULL, &unit_result));
         assert_true(relax_result.stretch_after < 0.99 * unit_result.stretch_after);
@@ -180,7 +180,7 @@ static void slides_stay_on_the_surface(void **state) {
         painted paint = paint_at_random(&f.mesh, 3);
         for (uint64_t seed = 0; seed < 4; seed++) {
             float *points = random_pose(&f.mesh, seed);
-            skinslide_patch_result result;
+            skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
             float *slid = slide_with(&r, &f.mesh, points, seed % 2 ? &paint.controls : NULL, &result);
             double size = extent_of(points, f.mesh.vertex_count);
             for (int32_t c = 0; c < f.mesh.index_count; c++)

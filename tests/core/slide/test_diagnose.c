@@ -15,7 +15,7 @@ typedef struct arrays {
 static arrays arrays_of(const test_mesh *mesh) {
     size_t size = (size_t)mesh->vertex_count * sizeof(float);
     arrays made = {malloc(size), malloc(size), malloc(size), malloc(size), {0}};
-    made.out = (skinslide_diagnostics){made.before, made.after, made.slide, made.density};
+    made.out = (skinslide_diagnostics){sizeof(skinslide_diagnostics), made.before, made.after, made.slide, made.density};
     return made;
 }
 
@@ -62,7 +62,9 @@ static void what_is_off_the_patch_by_hand(void **state) {
     test_mesh mesh = quad_grid(2, 1);
     int32_t faces[1] = {0};
     skinslide_patch_setup setup = setup_of(faces, 1);
-    setup.controls.edges = edge, setup.controls.edge_density = factor, setup.controls.edge_count = 1;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.edges = edge, controls.edge_density = factor, controls.edge_count = 1;
+    setup.controls = &controls;
     rig r = rig_of_setups(&mesh, &setup, 1);
     arrays a = arrays_of(&mesh);
     float *cached = copy_points(&mesh);
@@ -124,7 +126,7 @@ static expected expect(const test_mesh *mesh, const skinslide_patch_setup *setup
         double sum = 0, degree = 0;
         for (int32_t other = 0; other < mesh->vertex_count && chosen[s]; other++)
             if (other != v && has_edge(mesh, &setups[s], v, other)) {
-                const float *paint = setups[s].controls.vertex_density;
+                const float *paint = setups[s].controls->vertex_density;
                 sum += ((double)paint[v] + paint[other]) / 2, degree++;
             }
         if (degree > 0)
@@ -142,9 +144,12 @@ static void overlapping_patches(void **state) {
     float *points = random_pose(&mesh, 3), *slid = random_pose(&mesh, 4);
     skinslide_patch_setup setups[3] = {setup_of(left, 6), setup_of(middle, 9), setup_of(corner, 1)};
     painted paint[3];
+    skinslide_controls controls[3];
     for (int s = 0; s < 3; s++) {
         paint[s] = paint_at_random(&mesh, (uint64_t)s + 1);
-        setups[s].controls.vertex_density = paint[s].vertex_density;
+        controls[s] = (skinslide_controls)SKINSLIDE_CONTROLS_DEFAULT;
+        controls[s].vertex_density = paint[s].vertex_density;
+        setups[s].controls = &controls[s];
     }
     rig r = rig_of_setups(&mesh, setups, 3);
     arrays a = arrays_of(&mesh);
@@ -179,7 +184,7 @@ static void adds_up_to_the_report(void **state) {
         fixture f = make_fixture(i);
         int32_t *faces = all_faces(&f.mesh);
         rig r = rig_of(&f.mesh, setup_of(faces, f.mesh.face_count));
-        ss_patch *patch = patch_of(&f.mesh, (skinslide_patch_setup){.controls = SKINSLIDE_CONTROLS_DEFAULT});
+        ss_patch *patch = patch_of(&f.mesh, (skinslide_patch_setup){0});
         skinslide_patch_result results[8];
         float *points = random_pose(&f.mesh, (uint64_t)i), *slid;
         if (skinslide_slider_patch_count(r.slider) == 1) {
@@ -234,7 +239,7 @@ static void what_is_not_wanted_is_left_out(void **state) {
     rig r = rig_of(&mesh, setup_of(faces, mesh.face_count));
     float *points = random_pose(&mesh, 1), slide[16];
     arrays a = arrays_of(&mesh);
-    const skinslide_diagnostics none = {0}, one = {.slide = slide};
+    const skinslide_diagnostics none = SKINSLIDE_DIAGNOSTICS_DEFAULT, one = {.size = sizeof one, .slide = slide};
     assert_ok(skinslide_diagnose(r.slider, NULL, NULL, points, mesh.points, &a.out, &error), &error);
     assert_ok(skinslide_diagnose(r.slider, NULL, NULL, points, mesh.points, &none, &error), &error);
     assert_ok(skinslide_diagnose(r.slider, NULL, NULL, points, mesh.points, &one, &error), &error);
@@ -251,7 +256,7 @@ static void bad_arguments(void **state) {
     int32_t *faces = all_faces(&mesh);
     rig r = rig_of(&mesh, setup_of(faces, mesh.face_count));
     float *bad = copy_points(&mesh), slide[16] = {7};
-    const skinslide_diagnostics out = {.slide = slide};
+    const skinslide_diagnostics out = {.size = sizeof(skinslide_diagnostics), .slide = slide};
     bad[3 * 5 + 1] = NAN;
     assert_fails(skinslide_diagnose(NULL, NULL, NULL, bad, bad, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no slider, ...");

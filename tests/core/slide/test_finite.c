@@ -30,7 +30,7 @@ static bool slide_far(const rig *r, const test_mesh *mesh, uint64_t seed) {
     float *points = far_pose(mesh, seed), *slid = malloc(POINT_BYTES(mesh));
     memset(slid, 1, POINT_BYTES(mesh));
     skinslide_error error;
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     skinslide_status status = skinslide_slide(r->workspace, points, NULL, slid, &result, &error);
     if (status) {
         assert_fails(status, &error, status == SKINSLIDE_SINGULAR ? SKINSLIDE_SINGULAR : SKINSLIDE_BAD_POINTS, "patch all...");
@@ -101,7 +101,7 @@ static void the_vertex_is_named(void **state) {
     assert_fails(skinslide_slide(r.workspace, points, NULL, slid, NULL, &error), &error, SKINSLIDE_BAD_POINTS,
                  "patch all: vertex ...");
     assert_non_null(strstr(error.message, " slides to where it is not finite: ("));
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     assert_ok(skinslide_slide(r.workspace, mesh.points, NULL, slid, &result, &error), &error);
     assert_same_bytes(slid, mesh.points, POINT_BYTES(&mesh));
     free(points), free(slid), free(faces);
@@ -159,7 +159,7 @@ static void diagnostics_are_finite_or_fail(void **state) {
     rig r = rig_of(&mesh, setup_of(NULL, 0));
     float *cached = copy_points(&mesh), *slid = copy_points(&mesh), slide[9] = {7}, density[9] = {7};
     cached[12] = FLT_MAX, slid[12] = -FLT_MAX;
-    skinslide_diagnostics wanted = {.slide = slide, .force_density = density};
+    skinslide_diagnostics wanted = {.size = sizeof(skinslide_diagnostics), .slide = slide, .force_density = density};
     skinslide_error error;
     assert_fails(skinslide_diagnose(r.slider, NULL, NULL, cached, slid, &wanted, &error), &error, SKINSLIDE_BAD_POINTS,
                  "slide: vertex 4 is not finite: inf");

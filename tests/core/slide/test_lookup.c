@@ -21,6 +21,7 @@ static skinslide_workspace *workspace_at(const skinslide_slider *slider, skinsli
 
 static void slide_in(skinslide_workspace *workspace, const float *points, float *slid, skinslide_patch_result *result) {
     skinslide_error error;
+    result->size = sizeof *result;
     assert_ok(skinslide_slide(workspace, points, NULL, slid, result, &error), &error);
 }
 
@@ -34,7 +35,7 @@ typedef struct scene {
 
 static scene scene_of(int32_t columns) {
     scene s = {.mesh = triangle_grid(columns, columns)};
-    s.exact = rig_of(&s.mesh, (skinslide_patch_setup){.controls = SKINSLIDE_CONTROLS_DEFAULT});
+    s.exact = rig_of(&s.mesh, (skinslide_patch_setup){0});
     s.pose = random_pose(&s.mesh, 5);
     s.slid = malloc(POINT_BYTES(&s.mesh)), s.expected = malloc(POINT_BYTES(&s.mesh));
     skinslide_workspace *workspace = workspace_at(s.exact.slider, SKINSLIDE_LOOKUP_EXACT, 0, ss_egl_load);
@@ -50,7 +51,7 @@ static void free_scene(scene *s) {
 }
 
 static skinslide_patch_result expect_same(scene *s, skinslide_workspace *workspace) {
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     memset(s->slid, 0, POINT_BYTES(&s->mesh));
     slide_in(workspace, s->pose, s->slid, &result);
     assert_same_bytes(s->slid, s->expected, POINT_BYTES(&s->mesh));
@@ -85,7 +86,7 @@ static void compare_lookups(const fixture *f, skinslide_patch_setup choices) {
         skinslide_workspace *egl = workspace_at(r.slider, SKINSLIDE_LOOKUP_EGL, sides[s], ss_egl_load);
         for (uint64_t seed = 0; seed < 3; seed++) {
             float *pose = seed ? random_pose(&f->mesh, seed) : copy_points(&f->mesh);
-            skinslide_patch_result with, without;
+            skinslide_patch_result with = SKINSLIDE_PATCH_RESULT_DEFAULT, without = SKINSLIDE_PATCH_RESULT_DEFAULT;
             slide_in(egl, pose, a, &with);
             slide_in(exact, pose, b, &without);
             assert_same_bytes(a, b, bytes);
@@ -104,7 +105,7 @@ static void both_lookups_give_the_same_bytes(void **state) {
     for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
         fixture f = make_fixture(i);
         for (int32_t way = 0; way < WAY_COUNT; way++) {
-            skinslide_patch_setup choices;
+            skinslide_patch_setup choices = SKINSLIDE_PATCH_SETUP_DEFAULT;
             if (choose_way(&f, way, &choices))
                 compare_lookups(&f, choices);
         }
@@ -369,7 +370,7 @@ static void *slide_on_thread(void *argument) {
     float *slid = malloc(bytes);
     own->same = workspace || !skinslide_workspace_create(own->s->exact.slider, &options, &workspace, NULL);
     for (int frame = 0; frame < 5 && own->same; frame++) {
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         own->same = !skinslide_slide(workspace, own->s->pose, NULL, slid, &result, NULL) && !result.lost_textures &&
                     result.found_in_centre > 0 && memcmp(slid, own->s->expected, bytes) == 0;
     }

@@ -22,7 +22,7 @@ static void patches_are_numbered_setup_by_setup(void **state) {
     } expected[3] = {
         {"first", 0, 0, 1, 16, 24, 9, 4, 0}, {"second", 1, 0, 2, 16, 24, 9, 4, 0}, {"second", 1, 1, 2, 120, 214, 93, 64, 2}};
     for (int32_t p = 0; p < 3; p++) {
-        skinslide_patch_info info;
+        skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
         skinslide_error error;
         assert_ok(skinslide_slider_patch_info(r.slider, p, &info, &error), &error);
         assert_string_equal(info.name, expected[p].name);
@@ -52,7 +52,7 @@ static void copies_are_of_the_patch(void **state) {
     rig r = rig_of_setups(&mesh, &setup, 1);
     memset(faces, 0x55, sizeof faces), memset(name, 'x', 5), memset(&setup, 0x55, sizeof setup);
     free_mesh(&mesh);
-    skinslide_patch_info info;
+    skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
     double uv[6][2];
     skinslide_error error;
     assert_ok(skinslide_slider_patch_info(r.slider, 0, &info, &error), &error);
@@ -70,7 +70,7 @@ static void patches_that_are_not_there(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(2, 2);
     rig r = rig_of(&mesh, setup_of(NULL, 0));
-    skinslide_patch_info info;
+    skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
     double uv[18];
     int32_t ids[9];
     skinslide_error error;
@@ -191,13 +191,14 @@ static void expect_controls(skinslide_controls controls, skinslide_status expect
     test_mesh mesh = quad_grid(3, 3);
     skinslide_patch_setup setup = setup_of(nine, 9);
     rig r = rig_of_setups(&mesh, &setup, 1);
-    setup.controls = controls;
+    setup.controls = &controls;
     skinslide_mesh view = view_of(&mesh);
     expect_setups(&view, &setup, 1, expected, text);
     float slid[48], before[48];
-    skinslide_patch_result result, result_before;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT, result_before = SKINSLIDE_PATCH_RESULT_DEFAULT;
     skinslide_error error;
     memset(slid, 0x55, sizeof slid), memset(&result, 0x55, sizeof result);
+    result.size = sizeof result;
     memcpy(before, slid, sizeof slid), memcpy(&result_before, &result, sizeof result);
     skinslide_status status = skinslide_slide(r.workspace, mesh.points, &controls, slid, &result, &error);
     assert_fails(status, &error, expected, text);
@@ -287,9 +288,11 @@ static void densities_of_any_size_are_solved(void **state) {
     const float small[8] = {1e-37f, 1e-37f, 1e-37f, 1e-37f, 1e-37f, 1e-37f, 1e-37f, 1e-37f};
     test_mesh mesh = quad_grid(3, 3);
     skinslide_patch_setup setup = setup_of(NULL, 0);
-    setup.controls.vertex_density = values;
-    setup.controls.edges = (int32_t[]){1, 5, 2, 6, 4, 5, 6, 7, 8, 9, 10, 11, 9, 13, 10, 14};
-    setup.controls.edge_density = small, setup.controls.edge_count = 8;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.vertex_density = values;
+    controls.edges = (int32_t[]){1, 5, 2, 6, 4, 5, 6, 7, 8, 9, 10, 11, 9, 13, 10, 14};
+    controls.edge_density = small, controls.edge_count = 8;
+    setup.controls = &controls;
     rig r = rig_of(&mesh, setup);
     double uv[16][2];
     skinslide_error error;

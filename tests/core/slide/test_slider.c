@@ -13,7 +13,7 @@ static void for_each_way(each_way *check) {
     for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
         fixture f = make_fixture(i);
         for (int32_t way = 0; way < WAY_COUNT; way++) {
-            skinslide_patch_setup choices;
+            skinslide_patch_setup choices = SKINSLIDE_PATCH_SETUP_DEFAULT;
             if (choose_way(&f, way, &choices))
                 check(&f, choices);
         }
@@ -24,7 +24,7 @@ static void for_each_way(each_way *check) {
 /* ---- Rest in, rest out ---- */
 
 static void expect_rest(const rig *r, const test_mesh *mesh, const skinslide_controls *controls) {
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(r, mesh, mesh->points, controls, &result);
     assert_same_bytes(slid, mesh->points, POINT_BYTES(mesh));
     assert_int_equal(result.slid_vertices, 0);
@@ -39,7 +39,7 @@ static void expect_rest(const rig *r, const test_mesh *mesh, const skinslide_con
 static void check_rest(const fixture *f, skinslide_patch_setup choices) {
     painted first = paint_at_random(&f->mesh, 1), second = paint_at_random(&f->mesh, 2);
     rig plain = rig_of(&f->mesh, choices);
-    choices.controls = first.controls;
+    choices.controls = &first.controls;
     rig own = rig_of(&f->mesh, choices);
     expect_rest(&plain, &f->mesh, NULL);
     expect_rest(&plain, &f->mesh, &second.controls);
@@ -61,7 +61,7 @@ static void rest_slides_nothing_in_overlaps(void **state) {
     int32_t *faces = all_faces(&mesh);
     skinslide_patch_setup setups[2] = {setup_of(faces, 80), setup_of(faces + 40, 80)};
     painted paint = paint_at_random(&mesh, 3);
-    setups[1].controls = paint.controls, setups[1].rule = SKINSLIDE_RULE_FAST;
+    setups[1].controls = &paint.controls, setups[1].rule = SKINSLIDE_RULE_FAST;
     rig r = rig_of_setups(&mesh, setups, 2);
     float *points = random_pose(&mesh, 4), *slid = slide_with(&r, &mesh, points, NULL, NULL);
     assert_true(largest_difference(slid, points, 3 * (int64_t)mesh.vertex_count) > 0.01);
@@ -111,7 +111,7 @@ static void an_envelope_of_zero_slides_nothing(void **state) {
     float *points = random_pose(&mesh, 5), *none = calloc((size_t)mesh.vertex_count, sizeof *none);
     for (int32_t holes = 0; holes < 2; holes++) {
         skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
-        rig r = rig_of(&mesh, (skinslide_patch_setup){.holes = (skinslide_holes)holes, .controls = controls});
+        rig r = rig_of(&mesh, (skinslide_patch_setup){.holes = (skinslide_holes)holes, .controls = &controls});
         controls.envelope = 0;
         float *slid = slide_with(&r, &mesh, points, &controls, NULL);
         assert_same_bytes(slid, points, POINT_BYTES(&mesh));
@@ -153,9 +153,8 @@ static void a_slide_by_hand(void **state) {
     double before = log(1.5) * log(1.5) + log(0.5) * log(0.5) + 2 * log(sqrt(1.25)) * log(sqrt(1.25));
     for (int32_t way = SKINSLIDE_INTERPOLATION_AUTO; way <= SKINSLIDE_INTERPOLATION_MEAN_VALUE; way++) {
         rig r = rig_of(&mesh, (skinslide_patch_setup){.boundary = SKINSLIDE_BOUNDARY_SQUARE,
-                                                      .interpolation = (skinslide_interpolation)way,
-                                                      .controls = SKINSLIDE_CONTROLS_DEFAULT});
-        skinslide_patch_result result;
+                                                      .interpolation = (skinslide_interpolation)way});
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &mesh, points, NULL, &result);
         assert_near(slid[12], x, FLOAT_EPSILON);
         assert_near(slid[13], 1, 0);
@@ -311,7 +310,7 @@ static void check_poses(const fixture *f, skinslide_patch_setup choices) {
     for (uint64_t seed = 0; seed < 80; seed++) {
         float *points = random_pose(&f->mesh, seed);
         painted paint = paint_at_random(&f->mesh, seed);
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &f->mesh, points, seed % 2 ? &paint.controls : NULL, &result);
         bool weighted = choices.rule == SKINSLIDE_RULE_RELAXED && seed % 2;
         if ((f->holes == 0 && !weighted) || (choices.holes == SKINSLIDE_HOLES_PINNED && seed % 2 == 0))
@@ -338,7 +337,7 @@ static void slid_vertices_are_on_the_surface(void **state) {
         fixture f = make_fixture(i);
         painted paint = paint_at_random(&f.mesh, 3);
         skinslide_controls half = SKINSLIDE_CONTROLS_DEFAULT;
-        rig r = rig_of(&f.mesh, (skinslide_patch_setup){.holes = (skinslide_holes)(i % 2), .controls = half});
+        rig r = rig_of(&f.mesh, (skinslide_patch_setup){.holes = (skinslide_holes)(i % 2), .controls = &half});
         float *points = random_pose(&f.mesh, 6);
         half.envelope = 0.5f;
         double size = extent_of(points, f.mesh.vertex_count);
@@ -362,7 +361,7 @@ static void sliding_lowers_stretch(void **state) {
     test_mesh mesh = quad_grid(30, 30);
     float *points = bumped(&mesh, 15, 15, 5, 5);
     rig r = rig_of(&mesh, setup_of(NULL, 0));
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, &mesh, points, NULL, &result);
     assert_true(result.stretch_after < 0.75 * result.stretch_before);
     assert_true(result.largest_slide > 0.5);
@@ -419,7 +418,9 @@ static void overlaps_are_weighted_means(void **state) {
     int32_t *faces = all_faces(&mesh);
     painted first = paint_at_random(&mesh, 1), second = paint_at_random(&mesh, 2);
     skinslide_patch_setup setups[2] = {setup_of(faces, 48), setup_of(faces + 24, 40)};
-    setups[0].controls.weight = first.weight, setups[1].controls.weight = second.weight;
+    skinslide_controls controls[2] = {SKINSLIDE_CONTROLS_DEFAULT, SKINSLIDE_CONTROLS_DEFAULT};
+    controls[0].weight = first.weight, controls[1].weight = second.weight;
+    setups[0].controls = &controls[0], setups[1].controls = &controls[1];
     float *points = random_pose(&mesh, 3);
     float *one = slide_setup(&mesh, points, &setups[0]), *two = slide_setup(&mesh, points, &setups[1]);
     rig r = rig_of_setups(&mesh, setups, 2);

@@ -38,7 +38,7 @@ static void takes(skinslide_stage_controls *controls, const char *name, skinslid
 }
 
 static skinslide_controls got(skinslide_stage_controls *controls) {
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_ok(skinslide_stage_controls_get(controls, &out, &error), &error);
     return out;
 }
@@ -175,7 +175,7 @@ static void a_base_of_another_patch_is_refused(void **state) {
 /* ---- What is refused ---- */
 
 static void expect(scene *s, const char *name, skinslide_value value, const char *text) {
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_fails(controls_take(s->controls, name, value, &error), &error, SKINSLIDE_BAD_CONTROL, text);
     assert_int_equal(skinslide_stage_controls_get(s->controls, &out, &error), SKINSLIDE_BAD_ARGUMENT);
 }

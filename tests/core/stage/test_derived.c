@@ -179,7 +179,7 @@ static void normals_are_recomputed(void **state) {
     scene s = set_up();
     float *slid = bumped(&s.grid, 1, 1, 1, 0.5), out[3 * VERTICES], expected[3 * VERTICES];
     const skinslide_value value = vectors("normals", VERTICES);
-    const skinslide_stage_pose pose = {2, s.grid.points, slid};
+    const skinslide_stage_pose pose = {sizeof(skinslide_stage_pose), 2, s.grid.points, slid};
     skinslide_mesh view = view_of(&s.grid);
     take(&s, "", "normals", value, frames, 4);
     const skinslide_stage_output *output = skinslide_stage_derived_output(s.derived, 0);
@@ -233,7 +233,9 @@ static void rates_are_recomputed(void **state) {
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3 * VERTICES; i++)
             slid[k][i] = (float)(k * k);
-    const skinslide_stage_pose poses[] = {{1, cached, slid[0]}, {2, cached, slid[1]}, {3, cached, slid[2]}};
+    const skinslide_stage_pose poses[] = {{sizeof(skinslide_stage_pose), 1, cached, slid[0]},
+                                          {sizeof(skinslide_stage_pose), 2, cached, slid[1]},
+                                          {sizeof(skinslide_stage_pose), 3, cached, slid[2]}};
     const float zeros[3 * VERTICES] = {0};
     const skinslide_value value = array_of("velocities", SKINSLIDE_VALUE_FLOAT, 3, VERTICES, zeros);
     take(&s, "", "velocities", value, frames, 4);

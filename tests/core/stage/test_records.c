@@ -178,8 +178,8 @@ static void read_controls(const skinslide_controls *controls, const test_mesh *m
 static void use_patch(dice *d, const test_mesh *mesh, const skinslide_stage_mesh *scene, int32_t *made) {
     skinslide_stage_patch *patch = NULL;
     skinslide_stage_controls *first = NULL, *frame = NULL;
-    skinslide_patch_setup setup;
-    skinslide_controls controls;
+    skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     assert_ok(skinslide_stage_patch_create(scene, "elbow", NULL, &patch, &error), &error);
     take_all(d, mesh, SKINSLIDE_STAGE_PATCH, take_patch, patch, 12);
     if (roll_below(d, 2))
@@ -194,7 +194,7 @@ static void use_patch(dice *d, const test_mesh *mesh, const skinslide_stage_mesh
     expect_said(status);
     if (!status) {
         assert_true(setup.face_count > 0 && setup.faces[setup.face_count - 1] < mesh->face_count);
-        read_controls(&setup.controls, mesh);
+        read_controls(setup.controls, mesh);
         ++*made;
     }
     assert_ok(skinslide_stage_controls_create(patch, first, &frame, &error), &error);
@@ -223,7 +223,7 @@ static void use_derived(dice *d, const test_mesh *mesh, const skinslide_stage_me
         float *out = malloc(3 * sizeof *out * (size_t)(output->count ? output->count : 1));
         random_value v;
         for (int32_t k = 0; k < count; k++)
-            poses[k] = (skinslide_stage_pose){around[k], mesh->points, mesh->points};
+            poses[k] = (skinslide_stage_pose){sizeof(skinslide_stage_pose), around[k], mesh->points, mesh->points};
         make_value(&v, d, mesh, input_of(SKINSLIDE_STAGE_DERIVED, NULL, "normals"));
         if (output->pose_count)
             expect_said(skinslide_stage_derived_value(derived, output, &v.value, poses, count, out, &error));

@@ -32,7 +32,7 @@ static void tear_down(scene *s) {
 }
 
 static skinslide_patch_setup setup_of_scene(scene *s) {
-    skinslide_patch_setup setup;
+    skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     assert_ok(skinslide_stage_patch_get(s->patch, s->controls, &setup, &error), &error);
     return setup;
 }
@@ -51,9 +51,9 @@ static void fallbacks_are_those_of_the_schema(void **state) {
         assert_int_equal(setup.rule, SKINSLIDE_RULE_UNIT);
         assert_int_equal(setup.interpolation, SKINSLIDE_INTERPOLATION_AUTO);
         const skinslide_controls none = SKINSLIDE_CONTROLS_DEFAULT;
-        assert_true(setup.controls.envelope == none.envelope);
-        assert_true(!setup.controls.weight && !setup.controls.vertex_density && !setup.controls.face_density);
-        assert_true(!setup.controls.max_distance && !setup.controls.edges && !setup.controls.edge_density);
+        assert_true(setup.controls->envelope == none.envelope);
+        assert_true(!setup.controls->weight && !setup.controls->vertex_density && !setup.controls->face_density);
+        assert_true(!setup.controls->max_distance && !setup.controls->edges && !setup.controls->edge_density);
         const skinslide_stage_input *input = NULL;
         while ((input = skinslide_stage_next_input(SKINSLIDE_STAGE_PATCH, input)) != NULL)
             if (strcmp(input->name, "patch") != 0)
@@ -99,7 +99,7 @@ static void only_some_interpolations_need_subdivision(void **state) {
 
 static void expect(const char *name, skinslide_value value, const char *text) {
     scene s = set_up(NULL);
-    skinslide_patch_setup setup;
+    skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     assert_fails(patch_takes(s.patch, name, value, &error), &error, SKINSLIDE_BAD_CONTROL, text);
     assert_int_equal(skinslide_stage_patch_get(s.patch, s.controls, &setup, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_ok(patch_takes(s.patch, name, nothing_of(name), &error), &error);
@@ -168,7 +168,7 @@ static void a_patch_without_faces_gives_nothing(void **state) {
     test_mesh grid = quad_grid(2, 2);
     skinslide_stage_mesh *mesh = scene_mesh(&grid);
     skinslide_stage_patch *patch = NULL;
-    skinslide_patch_setup setup;
+    skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     assert_ok(skinslide_stage_patch_create(mesh, "elbow", NULL, &patch, &error), &error);
     skinslide_stage_controls *controls = scene_controls(patch);
     assert_fails(skinslide_stage_patch_get(patch, controls, &setup, &error), &error, SKINSLIDE_BAD_ARGUMENT,

@@ -72,7 +72,7 @@ static void ask(skinslide_stage_controls *controls, const char *name, const char
 }
 
 static skinslide_controls got(skinslide_stage_controls *controls) {
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_ok(skinslide_stage_controls_get(controls, &out, &error), &error);
     return out;
 }
@@ -103,7 +103,7 @@ static void no_texture_asks_for_nothing(void **state) {
 static void a_texture_alone_is_the_weight(void **state) {
     (void)state;
     scene s = set_up();
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     ask(s.controls, "weightMap", "./w.exr", 1);
     expect_need(s.controls, "weightMap", "./w.exr", 0);
     assert_fails(skinslide_stage_controls_get(s.controls, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
@@ -234,7 +234,7 @@ static void images_are_held_between_frames(void **state) {
 /* ---- What fails ---- */
 
 static void expect_refused(scene *s, skinslide_status status, skinslide_status expected, const char *text) {
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_fails(status, &error, expected, text);
     assert_null(skinslide_stage_controls_need(s->controls));
     assert_fails(skinslide_stage_controls_get(s->controls, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
@@ -324,7 +324,7 @@ static void values_that_cannot_be(void **state) {
 static void products_that_cannot_be(void **state) {
     (void)state;
     scene s = set_up();
-    skinslide_controls out;
+    skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     const float numbers[9] = {1, 1, 1, 1, 1e30f, 1, 1, 1, 1};
     ask(s.controls, "forceDensityMap", "q.exr", 1);
     assert_ok(give(s.controls, "/q.exr", 1e30f), &error);

@@ -34,12 +34,12 @@ void assert_fails_at(skinslide_status status, const skinslide_error *error, skin
 
 skinslide_patch_setup setup_of(const int32_t *faces, int32_t face_count) {
     return (skinslide_patch_setup){
-        .name = "all", .faces = faces, .face_count = face_count, .controls = SKINSLIDE_CONTROLS_DEFAULT};
+        .size = sizeof(skinslide_patch_setup), .name = "all", .faces = faces, .face_count = face_count};
 }
 
 ss_patch *patch_of(const test_mesh *mesh, skinslide_patch_setup choices) {
     static _Thread_local skinslide_patch_setup kept; /* patches refer to their set-up */
-    kept = choices;
+    kept = choices, kept.size = sizeof kept;
     if (!kept.name)
         kept.name = "all";
     skinslide_mesh view = view_of(mesh);
@@ -63,7 +63,7 @@ rig rig_of_setups(const test_mesh *mesh, const skinslide_patch_setup *setups, in
 
 rig rig_of(const test_mesh *mesh, skinslide_patch_setup choices) {
     int32_t *faces = all_faces(mesh);
-    choices.name = "all", choices.faces = faces, choices.face_count = mesh->face_count;
+    choices.size = sizeof choices, choices.name = "all", choices.faces = faces, choices.face_count = mesh->face_count;
     rig r = rig_of_setups(mesh, &choices, 1);
     free(faces);
     return r;
@@ -79,6 +79,8 @@ float *slide_with(const rig *r, const test_mesh *mesh, const float *points, cons
     float *slid = malloc(POINT_BYTES(mesh));
     assert_non_null(slid);
     skinslide_error error;
+    if (results)
+        results->size = sizeof *results;
     assert_ok(skinslide_slide(r->workspace, points, controls, slid, results, &error), &error);
     return slid;
 }

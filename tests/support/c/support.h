@@ -31,7 +31,7 @@ void assert_fails_at(skinslide_status status, const skinslide_error *error, skin
 /* A set-up of every face of a mesh, named "all", controls at their defaults. The faces are the caller's to free. */
 skinslide_patch_setup setup_of(const int32_t *faces, int32_t face_count);
 
-/* One patch of the whole mesh: of one piece, or of the first. */
+/* One patch of the whole mesh, set up by choices, of which name, faces and sizes need not be there: of one piece, or of the first. */
 ss_patch *patch_of(const test_mesh *mesh, skinslide_patch_setup choices);
 
 /* A slider with one set-up of the whole mesh, as choices say, and a workspace for it. */

@@ -13,7 +13,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, Controls, Handle, PatchSetup, Subdivision, new, text, token_of, writable
+from skinslide.arrays.native import (
+    Arguments,
+    Controls,
+    Handle,
+    PatchSetup,
+    Subdivision,
+    new,
+    new_array,
+    text,
+    token_of,
+    writable,
+)
 from skinslide.problems import Fault
 
 SCHEMA = text(lib.skinslide_stage_schema())
@@ -330,7 +341,7 @@ class PatchMeaning:
 
     def setup(self, controls: ControlsMeaning) -> PatchSetup:
         """The set-up with some controls. Raises Fault."""
-        out = ffi.new("skinslide_patch_setup *")
+        out = new("patch_setup")
         _call(lib.skinslide_stage_patch_get, self.handle, controls.handle, out)
         return PatchSetup(
             name=self.name,
@@ -423,7 +434,7 @@ class ControlsMeaning:
 
     def get(self) -> Controls:
         """Raises Fault."""
-        out = ffi.new("skinslide_controls *")
+        out = new("controls")
         _call(lib.skinslide_stage_controls_get, self.handle, out)
         mesh = self._patch.mesh.shape
         vertices, faces = mesh.vertex_count, mesh.face_count
@@ -570,7 +581,7 @@ class _Native:
         return self._sized("stage_prim", **fields, **counts)
 
     def _poses(self, poses: _Poses) -> Any:
-        structs = self._keep(ffi.new("skinslide_stage_pose[]", len(poses)))
+        structs = self._keep(new_array("stage_pose", len(poses)))
         for struct, pose in zip(structs, poses, strict=True):
             struct.time = pose.time
             struct.cached, struct.slid = (self._array("float[]", each) for each in (pose.cached, pose.slid))

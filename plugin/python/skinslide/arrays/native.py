@@ -244,7 +244,10 @@ class Arguments:
         target.corners = self.optional(patch.corners, np.int32, (4,), f"{where}corners")
         for setting in ("boundary", "holes", "rule", "interpolation"):
             setattr(target, setting, enum_value(setting, getattr(patch, setting), where))
-        self.fill_controls(target.controls, patch.controls, sizes, where)
+        controls = new("controls")
+        self._alive.append(controls)
+        self.fill_controls(controls, patch.controls, sizes, where)
+        target.controls = controls
 
     def fill_controls(self, target: Any, controls: Controls, sizes: Sizes, where: str) -> None:
         counts = {
@@ -271,7 +274,7 @@ class Arguments:
             return ffi.NULL
         if len(controls) != len(names):
             raise SliderError("BAD_ARGUMENT", f"controls: {len(controls)} given for {len(names)} patches")
-        targets = ffi.new("skinslide_controls[]", len(names))
+        targets = new_array("controls", len(names))
         self._alive.append(targets)
         for target, patch, name in zip(targets, controls, names, strict=True):
             self.fill_controls(target, patch, sizes, f"patch {name}: ")

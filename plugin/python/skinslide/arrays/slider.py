@@ -126,7 +126,7 @@ class Slider:
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
         self._lookup = Lookup.of(lookup).options()
         self._names = tuple(patch.name for patch in patches)
-        setups = ffi.new("skinslide_patch_setup[]", len(patches))
+        setups = new_array("patch_setup", len(patches))
         for setup, patch in zip(setups, patches, strict=True):
             native.fill_setup(setup, patch, self._sizes)
         out = ffi.new("skinslide_slider **")
@@ -156,7 +156,7 @@ class Slider:
         cached = native.points(points, self._sizes.vertices, "points")
         given = native.frame_controls(controls, self._names, self._sizes)
         slid = np.empty((self._sizes.vertices, 3), np.float32)
-        results = ffi.new("skinslide_patch_result[]", len(self.patches))
+        results = new_array("patch_result", len(self.patches))
         workspace = self._take_workspace()
         try:
             call(lib.skinslide_slide, workspace.pointer, cached, given, writable("float[]", slid), results)
@@ -194,7 +194,9 @@ class Slider:
             raise SliderError("BAD_ARGUMENT", f"chosen: {len(chosen)} given for {len(self._names)} patches")
         wanted = ffi.NULL if chosen is None else ffi.new("uint8_t[]", [bool(each) for each in chosen])
         result = Diagnostics(*(np.empty(count, np.float32) for _ in Diagnostics._fields))
-        arrays = ffi.new("skinslide_diagnostics *", [writable("float[]", array) for array in result])
+        arrays, buffers = new("diagnostics"), [writable("float[]", array) for array in result]
+        for name, buffer in zip(Diagnostics._fields, buffers, strict=True):
+            setattr(arrays, name, buffer)
         call(lib.skinslide_diagnose, self._slider.pointer, given, wanted, before, after, arrays)
         return result
 
@@ -258,7 +260,7 @@ class Slider:
         return texels
 
     def _info(self, patch: int) -> PatchInfo:
-        info = ffi.new("skinslide_patch_info *")
+        info = new("patch_info")
         call(lib.skinslide_slider_patch_info, self._slider.pointer, patch, info)
         return read(PatchInfo, info[0])
 
