@@ -1,4 +1,5 @@
 /* A mesh of a scene: how its points make faces, and what else it has of its own. */
+#include "mesh.h"
 #include "stage.h"
 
 #include <stdlib.h>
