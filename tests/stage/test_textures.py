@@ -1,12 +1,14 @@
 """Maps of weight and force density: known images to known controls, where they are found, every bad one refused."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import OpenEXR
 import pytest
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdUtils
+from pxr import Ar, Gf, Sdf, Usd, UsdGeom, UsdUtils
 
 import layers
 import stages
@@ -329,3 +331,32 @@ def test_a_map_that_changes_is_read_again(tmp_path):
     opened.Reload()
     assert not np.array_equal(layers.points(mesh, FRAMES[2]), before)
     assert np.array_equal(layers.points(mesh, FRAMES[2]), stages.grid().moved(FRAMES[2]))
+
+
+# ---- What is no image, found out before it is read ----
+
+
+def test_a_pipe_is_not_opened(tmp_path):
+    stage, mesh = mapped_stage()
+    os.mkfifo(tmp_path / "pipe.exr")
+    set_map(mesh, "weight", "./pipe.exr")
+    path = stages.save(stage, tmp_path / "shot.usda")
+    command = [sys.executable, "-m", "skinslide", "check", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+    assert done.returncode == 3 and "pipe.exr: cannot be read" in done.stdout
+
+
+def test_a_large_file_that_is_no_image_is_told_by_its_start(tmp_path):
+    """3 GB without a block on the disk: its content is never asked for."""
+    stage, mesh = mapped_stage()
+    (tmp_path / "sparse.exr").touch()
+    os.truncate(tmp_path / "sparse.exr", 3 << 30)
+    set_map(mesh, "weight", "./sparse.exr")
+    path = stages.save(stage, tmp_path / "shot.usda")
+    read: list[int] = []
+    opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(str(path)))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(opened), "GetBuffer", lambda asset: read.append(asset.GetSize()))
+        problems = check(str(path)).problems
+    assert read == []
+    assert [problem.message for problem in problems if "sparse.exr: not an OpenEXR file" in problem.message]

@@ -1,12 +1,16 @@
 """Stages and arguments that the command refuses, and what it says; what readers say of a mesh is in tests/stage."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from pxr import Sdf
 
+import skinslide
 import stages
+from skinslide import StageError
 from skinslide.command.cli import main
 from stages import FRAMES, MESH, PATCH
 
@@ -68,6 +72,34 @@ def test_a_stage_that_is_a_link_in_a_circle(tmp_path, capfd):
     (tmp_path / "circle.usda").symlink_to("circle.usda")
     assert main(["check", str(tmp_path / "circle.usda")]) == 1
     assert "circle.usda: Too many levels of symbolic links" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("rate", ["0", "inf", "nan", "-24"])
+@pytest.mark.parametrize("arc", ["root", "sublayer", "reference"])
+def test_a_clock_that_stands_still(arc, rate, tmp_path):
+    """USD would count the samples of a cache for ever, so another process looks."""
+    stages.save(stages.patched_stage()[0], tmp_path / "cache.usda")
+    still = f"#usda 1.0\n(\n    timeCodesPerSecond = {rate}\n    subLayers = [@./cache.usda@]\n)\n"
+    (tmp_path / "still.usda").write_text(still)
+    clock = "#usda 1.0\n(\n    timeCodesPerSecond = 24\n"
+    (tmp_path / "sublayer.usda").write_text(f"{clock}    subLayers = [@./still.usda@]\n)\n")
+    reference = 'def "World" (\n    references = @./still.usda@</World>\n)\n{\n}\n'
+    (tmp_path / "reference.usda").write_text(f"{clock})\n{reference}")
+    top = tmp_path / ("still.usda" if arc == "root" else f"{arc}.usda")
+    command = [sys.executable, "-m", "skinslide", "bake", str(top), "-o", str(tmp_path / "out.usda")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: cannot read ")
+    assert done.stderr.endswith(f"still.usda: timeCodesPerSecond is {rate}; it must be above 0\n")
+
+
+def test_an_open_stage_whose_clock_stands_still(tmp_path):
+    stage, _mesh = stages.patched_stage()
+    stage.SetTimeCodesPerSecond(0)
+    with pytest.raises(StageError, match="timeCodesPerSecond is 0; it must be above 0"):
+        skinslide.check(stage)
+    with pytest.raises(StageError, match="timeCodesPerSecond is 0; it must be above 0"):
+        skinslide.bake(stage)
 
 
 def test_no_name_of_a_prim(tmp_path, capfd):

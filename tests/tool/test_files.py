@@ -2,6 +2,8 @@
 
 import os
 import shutil
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -152,6 +154,26 @@ def test_pipes(shot, tmp_path):
     refused(shot, tmp_path / "pipe.usda", "not a regular file")
     with pytest.raises(StageError, match="not a regular file"):
         bake_to_file(tmp_path / "pipe.usda", tmp_path / "out.usda")
+
+
+@pytest.mark.parametrize("arc", ["sublayer", "sublayer of a sublayer", "references", "payload"])
+@pytest.mark.parametrize("extension", ["usda", "skinslide"])
+def test_pipes_that_a_stage_names(arc, extension, tmp_path):
+    """Opening one would wait for ever, so another process looks."""
+    os.mkfifo(tmp_path / "pipe.usda")
+    named = {
+        "sublayer": "#usda 1.0\n(\n    subLayers = [@./pipe.usda@]\n)\n",
+        "sublayer of a sublayer": "#usda 1.0\n(\n    subLayers = [@./below.usda@]\n)\n",
+    }
+    (tmp_path / "below.usda").write_text(named["sublayer"])
+    top = tmp_path / f"top.{extension}"
+    top.write_text(named.get(arc, f'#usda 1.0\ndef "World" (\n    {arc} = @./pipe.usda@\n)\n{{\n}}\n'))
+    command = [sys.executable, "-m", "skinslide", "check", str(top)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+    named_by = "below.usda" if arc == "sublayer of a sublayer" else top.name
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"error: cannot open {tmp_path / 'pipe.usda'}, which ")
+    assert done.stderr.endswith(f"{named_by} names: it is not a regular file\n")
 
 
 def test_a_folder_that_may_not_be_looked_into(public_folder):

@@ -16,7 +16,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import as_array
 from skinslide.problems import Fault, SliderError, UsageError
-from skinslide.stage.opening import open_stage
+from skinslide.stage.opening import check_clocks, open_stage
 
 StrPath: TypeAlias = str | os.PathLike[str]
 StageLike: TypeAlias = Usd.Stage | StrPath
@@ -35,6 +35,7 @@ ARRAYS = {
 def given_stage(stage: StageLike) -> Usd.Stage:
     """The stage, opened where a path is given. Raises StageError where it cannot be."""
     if isinstance(stage, Usd.Stage):
+        check_clocks(stage)
         return stage
     if isinstance(stage, str | os.PathLike):
         return open_stage(os.fspath(stage))

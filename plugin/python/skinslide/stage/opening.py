@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import errno
+import math
 import os
 import posixpath
+from contextlib import suppress
 from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd, UsdUtils
@@ -23,18 +25,54 @@ def open_stage(path: str | Path) -> Usd.Stage:
     try:
         if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
             raise StageError(f"cannot open {path}: it is not a regular file")
-        return Usd.Stage.Open(_text_of(Path(path)) if path.endswith(EXTENSION) else path)
+        with Ar.ResolverContextBinder(Ar.GetResolver().CreateDefaultContextForAsset(path)):
+            text = _text_of(Path(path)) if path.endswith(EXTENSION) else None
+            held = _sublayers(text or Sdf.Layer.FindOrOpen(path), path)  # until the stage has them: each is read once
+        stage = Usd.Stage.Open(_text_in_stage(text, path) if text else path)
+        del held
+        check_clocks(stage)
+        return stage
     except (Tf.ErrorException, OSError, ValueError) as error:
         raise StageError(f"cannot open {path}: {why_not_opened(path, error)}") from error
 
 
 def _text_of(path: Path) -> Sdf.Layer:
-    """The text of a `.skinslide` file as a layer; where USD has no format for it, as an anonymous one."""
-    text = read_text_layer(path)  # whose errors are the better ones
-    if registered():
-        return Sdf.Layer.FindOrOpen(str(path), _TEXT_ONLY)
+    """The text of a `.skinslide` file as an anonymous layer that names the same files."""
+    text = read_text_layer(path)
     anchor_assets(text, path)
     return text
+
+
+def _text_in_stage(text: Sdf.Layer, path: str) -> Sdf.Layer:
+    """The text as the layer of its file; where USD has no format for it, as it is."""
+    return Sdf.Layer.FindOrOpen(path, _TEXT_ONLY) if registered() else text
+
+
+def _sublayers(root: Sdf.Layer | None, path: str) -> list[Sdf.Layer]:
+    """The root layer at a path, and those below it. Opening a pipe would wait for ever.
+
+    Raises StageError for what one of them names that is there and is no regular file.
+    """
+    found = [root] if root else []
+    for layer in found:
+        name = path if layer == root else layer.identifier
+        for asset in layer.GetCompositionAssetDependencies():
+            file = Ar.GetResolver().Resolve(Sdf.ComputeAssetPathRelativeToLayer(layer, asset)).GetPathString()
+            if os.path.exists(file) and not os.path.isfile(file) and not os.path.isdir(file):
+                raise StageError(f"cannot open {file}, which {name} names: it is not a regular file")
+        for asset in layer.subLayerPaths:
+            with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
+                below = Sdf.Layer.FindOrOpenRelativeToLayer(layer, asset)
+                found += [below] if below and below not in found else []
+    return found
+
+
+def check_clocks(stage: Usd.Stage) -> None:
+    """Raises StageError for a layer whose time USD cannot scale: it would count a cache's samples for ever."""
+    for layer in stage.GetUsedLayers():
+        rate = layer.timeCodesPerSecond
+        if not 0 < rate < math.inf:
+            raise StageError(f"cannot read {layer.identifier}: timeCodesPerSecond is {rate:g}; it must be above 0")
 
 
 def is_live(layer: Sdf.Layer) -> bool:

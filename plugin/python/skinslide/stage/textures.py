@@ -10,6 +10,9 @@ from pxr import Ar, Sdf, Tf, Usd, UsdShade
 from skinslide.arrays.meaning import ControlsMeaning, File, Input, inputs
 from skinslide.stage.values import FIRST, Source, noting, primvar_source
 
+_MAGIC = b"\x76\x2f\x31\x01"  # of OpenEXR
+_START = 8  # bytes that tell OpenEXR whether a file is one: the magic number and the version
+
 
 def give_textures(controls: ControlsMeaning, prim: Usd.Prim, time: Usd.TimeCode) -> list[str]:
     """Gives texture coordinates, and every file that is asked for. Returns what is wrong."""
@@ -69,6 +72,9 @@ def _file(controls: ControlsMeaning, path: str, largest: int) -> File:
         if not asset or size > largest:
             return File(path, size=size)
         with asset as opened:
-            return File(path, bytes(opened.GetBuffer() or b""), size)
+            start = opened.Read(min(_START, size), 0) if size else b""
+            # What is no image may be large, and is told by its start alone.
+            content = opened.GetBuffer() or b"" if start.startswith(_MAGIC) else start
+            return File(path, content, len(content))
     except (OSError, RuntimeError, Tf.ErrorException) as error:
         return File(path, reason=" ".join(str(error).split()))

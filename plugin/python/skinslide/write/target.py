@@ -8,14 +8,19 @@ from contextlib import contextmanager
 from pxr import Sdf, Usd
 
 from skinslide.problems import UsageError
+from skinslide.stage.opening import check_clocks
 
 _SCHEMAS = "apiSchemas"
 
 
 def check_target(stage: Usd.Stage) -> None:
-    """Raises TypeError for what is no stage, and UsageError where nothing can be authored into its edit target."""
+    """Raises TypeError for what is no stage, and UsageError where nothing can be authored into its edit target.
+
+    StageError as `check_clocks`.
+    """
     if not isinstance(stage, Usd.Stage):
         raise TypeError(f"stage is {stage!r}; it must be a Usd.Stage, or see the function that writes a file")
+    check_clocks(stage)
     layer = stage.GetEditTarget().GetLayer()
     if not layer.permissionToEdit or stage.IsLayerMuted(layer.identifier):
         fault = "not editable" if not layer.permissionToEdit else "muted"
