@@ -11,6 +11,7 @@ import skinslide
 import stages
 from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.arrays import slider
+from skinslide.shot.workers import pool_of
 
 SIZE = 12  # quads a side
 VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2
@@ -203,6 +204,33 @@ def test_threads_share_a_slider(sheet, rest):
 
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(slide_all, range(4))) == [alone] * 4
+
+
+def slid_until_stopped(sheet, points):
+    with pytest.raises(SliderError) as stopped:
+        while True:
+            sheet.slide(points)
+    return stopped.value.status
+
+
+@pytest.fixture
+def own_sheet(counts, indices, rest):
+    return Slider(counts, indices, rest, [PatchSetup("sheet", np.arange(FACES))])
+
+
+def test_a_slider_that_is_stopped_slides_no_more(own_sheet, rest):
+    with ThreadPoolExecutor(3) as pool:
+        statuses = [pool.submit(slid_until_stopped, own_sheet, bumped(rest)) for _ in range(3)]
+        own_sheet.stop()
+    assert [status.result() for status in statuses] == ["INTERRUPTED"] * 3
+    assert slid_until_stopped(own_sheet, bumped(rest)) == "INTERRUPTED"
+
+
+def test_a_signal_stops_the_frames_of_a_pool(own_sheet, rest):
+    with pytest.raises(KeyboardInterrupt), pool_of(2, 9, [own_sheet]) as pool:
+        frames = [pool.submit(slid_until_stopped, own_sheet, bumped(rest)) for _ in range(9)]
+        raise KeyboardInterrupt
+    assert all(frame.cancelled() or frame.result() == "INTERRUPTED" for frame in frames)
 
 
 def test_workspaces_go_before_their_slider(counts, indices, rest):

@@ -133,7 +133,8 @@ class Slider:
         call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, len(patches), out)
         self._slider = Handle(out[0], lib.skinslide_slider_destroy)
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider.pointer)))
-        self._idle = [self._new_workspace()]
+        self._idle, self._busy = [self._new_workspace()], list[Handle]()
+        self._stopped = False
         self._lock = threading.Lock()
 
     def slide(
@@ -164,6 +165,16 @@ class Slider:
         finally:
             self._give_back(workspace)
         return Frame(slid, tuple(read(PatchResult, result) for result in results), planes)
+
+    def stop(self) -> None:
+        """Has the frames that are being slid, on any thread, fail before long, and all after them.
+
+        They raise a SliderError with the status INTERRUPTED.
+        """
+        with self._lock:
+            self._stopped = True
+            for workspace in self._busy:
+                lib.skinslide_workspace_interrupt(workspace.pointer)
 
     def diagnose(
         self,
@@ -285,12 +296,18 @@ class Slider:
 
     def _take_workspace(self) -> Handle:
         with self._lock:
-            if self._idle:
-                return self._idle.pop()
-        return self._new_workspace()
+            workspace = self._idle.pop() if self._idle else None
+        if workspace is None:
+            workspace = self._new_workspace()
+        with self._lock:
+            self._busy.append(workspace)
+            if self._stopped:
+                lib.skinslide_workspace_interrupt(workspace.pointer)
+        return workspace
 
     def _give_back(self, workspace: Handle) -> None:
         with self._lock:
+            self._busy.remove(workspace)
             self._idle.append(workspace)
 
 

@@ -42,7 +42,7 @@ def slide(
     with signals_as_exceptions(), ExitStack() as ending:
         for making in makings:
             ending.enter_context(making.running(report))
-        with pool_of(options.jobs, total) as pool:
+        with pool_of(options.jobs, total, [mesh.planned.slider for mesh in meshes]) as pool:
             for mesh in meshes:
                 report.meshes.append(mesh.report)
                 for _ in mesh.run(pool, options.jobs):

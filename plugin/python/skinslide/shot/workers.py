@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
 
 from pxr import Usd
 
+from skinslide.arrays.slider import Slider
 from skinslide.problems import FrameProblem, SliderError, StageError, core_problem
 from skinslide.shot.plan import frame_of
 from skinslide.stage.mesh import PatchedMesh
@@ -19,11 +20,18 @@ Progress = Callable[[int, int], None]  # frames done, frames in all
 
 
 @contextmanager
-def pool_of(jobs: int, frame_count: int) -> Iterator[ThreadPoolExecutor]:
-    """Threads for frames; when the block ends, those that have not begun never do."""
+def pool_of(jobs: int, frame_count: int, sliders: Sequence[Slider]) -> Iterator[ThreadPoolExecutor]:
+    """Threads for frames of sliders; when the block ends, those that have not begun never do.
+
+    When it fails, those that have begun are left.
+    """
     pool = ThreadPoolExecutor(min(jobs, frame_count), "skinslide")
     try:
         yield pool
+    except BaseException:
+        for slider in sliders:
+            slider.stop()
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
