@@ -12,6 +12,7 @@
 #include "pxr/base/gf/vec3f.h"
 #include "pxr/base/gf/vec3h.h"
 #include "pxr/base/tf/errorMark.h"
+#include "pxr/base/tf/stringUtils.h"
 #include "pxr/base/vt/array.h"
 #include "pxr/base/vt/dictionary.h"
 #include "pxr/usd/ar/resolver.h"
@@ -178,10 +179,7 @@ TfToken Attribute::token(const TfToken &field, const TfToken &fallback) const {
 
 std::string Anchor::path(const Attribute &attribute, const SdfAssetPath &asset) const {
     std::string path = evaluate(asset.GetAssetPath(), root->GetExpressionVariables());
-    if (path.empty())
-        return path;
-    return attribute.layer() == root ? ArGetResolver().CreateIdentifier(path, ArResolvedPath(resolvedPath))
-                                     : SdfComputeAssetPathRelativeToLayer(attribute.layer(), path);
+    return path.empty() ? path : SdfComputeAssetPathRelativeToLayer(attribute.layer(), path);
 }
 
 // ---- Clips ----
@@ -332,8 +330,7 @@ Attribute Prim::attribute(const TfToken &name) const {
 
 // ---- Composition ----
 
-Composition::Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath)
-    : _root(root), _resolvedPath(resolvedPath) {
+Composition::Composition(const SdfLayerRefPtr &root) : _root(root) {
     PcpLayerStackIdentifier identifier(root, SdfLayerHandle(), ArGetResolver().GetCurrentContext());
     _cache = std::make_unique<PcpCache>(identifier, std::string(), /* usd = */ true);
 }
@@ -367,7 +364,9 @@ SdfPathVector Composition::targets(const SdfPath &relationship) {
 std::vector<std::pair<SdfPath, std::string>> Composition::errors() const {
     std::vector<std::pair<SdfPath, std::string>> errors;
     for (const PcpErrorBasePtr &error : _errors) {
-        std::pair<SdfPath, std::string> said(error->rootSite.path, error->ToString());
+        // The root is opened by a name that nobody else knows it by.
+        std::string message = TfStringReplace(error->ToString(), _root->GetIdentifier(), _root->GetResolvedPath());
+        std::pair<SdfPath, std::string> said(error->rootSite.path, message);
         if (std::find(errors.begin(), errors.end(), said) == errors.end())
             errors.push_back(said);
     }

@@ -1,7 +1,7 @@
 // Composes a layer with PcpCache, and resolves values as a UsdStage would, but for value clips and splines.
 //
 //     nodes strong to weak, layers strong to weak; in each layer: timeSamples, else spline, else default; first hit wins.
-//     Times are those of the root layer: the layer's own, where the root is a copy of it.
+//     Times are those of the root layer.
 #ifndef SKINSLIDE_FORMAT_COMPOSE_H
 #define SKINSLIDE_FORMAT_COMPOSE_H
 
@@ -27,12 +27,11 @@ using namespace PXR_NS;
 
 class Attribute;
 
-// What asset paths are relative to: the layer that authors them or, of the root, the file that it is a copy of.
+// What asset paths are evaluated with, where they are expressions.
 struct Anchor {
     SdfLayerRefPtr root;
-    std::string resolvedPath;
 
-    // Empty where the path is, or is an expression that gives none.
+    // Relative to the layer that authors it. Empty where the path is, or is an expression that gives none.
     std::string path(const Attribute &attribute, const SdfAssetPath &asset) const;
 };
 
@@ -131,9 +130,8 @@ class Prim {
 
 class Composition {
   public:
-    // root  an anonymous copy of the file at resolvedPath, with asset paths anchored to it; they are resolved in the context
-    //       that is bound
-    Composition(const SdfLayerRefPtr &root, const std::string &resolvedPath);
+    // root  asset paths are resolved in the context that is bound
+    explicit Composition(const SdfLayerRefPtr &root);
 
     // Everything below a prim is visited parents first; `visit` returns whether to go below its prim.
     void traverse(const std::function<bool(const Prim &)> &visit);
@@ -144,7 +142,7 @@ class Composition {
         return _root;
     }
     Anchor anchor() const {
-        return {_root, _resolvedPath};
+        return {_root};
     }
     // What could not be composed, each once, with the prim.
     std::vector<std::pair<SdfPath, std::string>> errors() const;
@@ -156,7 +154,6 @@ class Composition {
     void traverseBelow(const Prim &prim, const std::function<bool(const Prim &)> &visit);
 
     SdfLayerRefPtr _root;
-    std::string _resolvedPath;
     std::unique_ptr<PcpCache> _cache;
     PcpErrorVector _errors;
 };

@@ -2,9 +2,6 @@
 
 #include "names.h"
 
-#include "pxr/usd/sdf/attributeSpec.h"
-#include "pxr/usd/sdf/layer.h"
-#include "pxr/usd/sdf/primSpec.h"
 #include "pxr/usd/sdf/schema.h"
 #include "pxr/usd/sdf/types.h"
 
@@ -16,54 +13,68 @@ namespace skinslide {
 
 namespace {
 
-// The attribute in the layer, of that type and with no value.
-SdfAttributeSpecHandle declare(const SdfLayerRefPtr &layer, const SdfPath &prim, const TfToken &name, const TfToken &type) {
-    SdfPath path = prim.AppendProperty(name);
-    SdfAttributeSpecHandle attribute = layer->GetAttributeAtPath(path);
-    if (!attribute) {
-        SdfPrimSpecHandle owner = SdfCreatePrimInLayer(layer, prim);
-        attribute = SdfAttributeSpec::New(owner, name.GetString(), SdfSchema::GetInstance().FindType(type));
-    }
-    for (const TfToken &field : {SdfFieldKeys->TimeSamples, SdfFieldKeys->Spline})
-        layer->EraseField(path, field);
-    return attribute;
+// Into the data itself: a layer would announce each edit.
+void addChild(SdfData *data, const SdfPath &parent, const TfToken &children, const TfToken &name) {
+    VtValue value = data->Get(parent, children);
+    TfTokenVector names = value.IsHolding<TfTokenVector>() ? value.UncheckedGet<TfTokenVector>() : TfTokenVector();
+    names.push_back(name);
+    data->Set(parent, children, VtValue(names));
 }
 
-// No value, so that none of a weaker layer is read.
-void block(const SdfLayerRefPtr &layer, const SdfPath &prim, const TfToken &name, const TfToken &type) {
-    declare(layer, prim, name, type)->SetDefaultValue(VtValue(SdfValueBlock()));
+void declarePrim(SdfData *data, const SdfPath &path) {
+    if (data->HasSpec(path))
+        return;
+    declarePrim(data, path.GetParentPath());
+    addChild(data, path.GetParentPath(), SdfChildrenKeys->PrimChildren, path.GetNameToken());
+    data->CreateSpec(path, SdfSpecTypePrim);
+    data->Set(path, SdfFieldKeys->Specifier, VtValue(SdfSpecifierOver));
+}
+
+// The attribute, of that type where it is not there, and with no values over time.
+SdfPath declare(SdfData *data, const SdfPath &prim, const TfToken &name, const TfToken &type) {
+    SdfPath path = prim.AppendProperty(name);
+    if (!data->HasSpec(path)) {
+        declarePrim(data, prim);
+        addChild(data, prim, SdfChildrenKeys->PropertyChildren, name);
+        data->CreateSpec(path, SdfSpecTypeAttribute);
+        data->Set(path, SdfFieldKeys->Custom, VtValue(false));
+        data->Set(path, SdfFieldKeys->Variability, VtValue(SdfVariabilityVarying));
+        data->Set(path, SdfFieldKeys->TypeName, VtValue(type));
+    }
+    for (const TfToken &field : {SdfFieldKeys->TimeSamples, SdfFieldKeys->Spline})
+        data->Erase(path, field);
+    return path;
 }
 
 } // namespace
 
-DataRefPtr Data::create(const std::vector<std::shared_ptr<LiveMesh>> &meshes, const SdfLayerRefPtr &shown,
-                        const std::function<SdfAbstractDataConstPtr(const SdfLayer &)> &contentOf) {
+DataRefPtr Data::create(const SdfAbstractDataConstPtr &text, const std::vector<std::shared_ptr<LiveMesh>> &meshes) {
     DataRefPtr data = TfCreateRefPtr(new Data);
+    data->CopyFrom(text);
     for (const std::shared_ptr<LiveMesh> &mesh : meshes)
-        data->addMesh(mesh, shown);
-    data->CopyFrom(contentOf(*get_pointer(shown)));
+        data->addMesh(mesh);
     return data;
 }
 
-void Data::add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at,
-               const SdfLayerRefPtr &shown) {
-    declare(shown, prim, name, type);
+void Data::add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at) {
+    SdfPath path = declare(this, prim, name, type);
     if (times.empty()) // the computed default stands for that of the text
-        shown->EraseField(prim.AppendProperty(name), SdfFieldKeys->Default);
-    _computed[prim.AppendProperty(name)] = {times, std::move(at), SdfSchema::GetInstance().FindType(type).GetDefaultValue()};
+        Erase(path, SdfFieldKeys->Default);
+    _computed[path] = {times, std::move(at), SdfSchema::GetInstance().FindType(type).GetDefaultValue()};
 }
 
-void Data::addMesh(const std::shared_ptr<LiveMesh> &live, const SdfLayerRefPtr &shown) {
+void Data::addMesh(const std::shared_ptr<LiveMesh> &live) {
     const PatchedMesh &mesh = live->mesh();
     auto compute = [&](const TfToken &name, const char *type, const std::vector<double> &times, Compute at) {
-        add(mesh.path, name, TfToken(type), times, std::move(at), shown);
+        add(mesh.path, name, TfToken(type), times, std::move(at));
     };
     compute(names().points, "point3f[]", mesh.times, [live](double time) { return live->points(time); });
     compute(names().extent, "float3[]", mesh.times, [live](double time) { return live->extent(time); });
     for (const Derived &derived : mesh.derived) {
         TfToken name(derived.output->name);
-        if (!derived.output->pose_count) {
-            block(shown, mesh.path, name, TfToken(derived.output->type_name));
+        if (!derived.output->pose_count) { // no value, so that none of a weaker layer is read
+            Set(declare(this, mesh.path, name, TfToken(derived.output->type_name)), SdfFieldKeys->Default,
+                VtValue(SdfValueBlock()));
             continue;
         }
         // Normals may move over points that do not.
@@ -72,7 +83,7 @@ void Data::addMesh(const std::shared_ptr<LiveMesh> &live, const SdfLayerRefPtr &
                 [live, &derived](double time) { return live->derived(derived, time); });
         VtValue interpolation = cached.metadata(names().interpolation);
         if (!interpolation.IsEmpty())
-            shown->SetField(mesh.path.AppendProperty(name), names().interpolation, interpolation);
+            Set(mesh.path.AppendProperty(name), names().interpolation, interpolation);
     }
 }
 

@@ -17,10 +17,8 @@ TF_DECLARE_WEAK_AND_REF_PTRS(Data);
 
 class Data : public SdfData {
   public:
-    // Authors what is declared of the computed attributes into `shown`, an anonymous layer with the text; take() then copies
-    // it. `content` is the data of that layer.
-    static DataRefPtr create(const std::vector<std::shared_ptr<LiveMesh>> &meshes, const SdfLayerRefPtr &shown,
-                             const std::function<SdfAbstractDataConstPtr(const SdfLayer &)> &contentOf);
+    // A copy of the content of a text, in which the computed attributes are declared.
+    static DataRefPtr create(const SdfAbstractDataConstPtr &text, const std::vector<std::shared_ptr<LiveMesh>> &meshes);
 
     // Resolved paths of every file that the values depend on.
     std::set<std::string> dependencies;
@@ -62,9 +60,8 @@ class Data : public SdfData {
     static VtValue fieldValue(const Computed &attribute);
     static bool hasSample(const Computed &attribute, double time);
 
-    void addMesh(const std::shared_ptr<LiveMesh> &live, const SdfLayerRefPtr &shown);
-    void add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at,
-             const SdfLayerRefPtr &shown);
+    void addMesh(const std::shared_ptr<LiveMesh> &live);
+    void add(const SdfPath &prim, const TfToken &name, const TfToken &type, const std::vector<double> &times, Compute at);
 
     std::unordered_map<SdfPath, Computed, SdfPath::Hash> _computed;
 };

@@ -14,6 +14,7 @@
 #include "pxr/usd/ar/resolverContextBinder.h"
 #include "pxr/usd/pcp/dynamicFileFormatContext.h"
 #include "pxr/usd/sdf/layer.h"
+#include "pxr/usd/sdf/schema.h"
 
 // With the headers of another TBB than USD was built with, classes that hold its containers have other sizes.
 #if !defined(SKINSLIDE_SYSTEM_USD)
@@ -39,7 +40,10 @@ bool SkinSlideFileFormat::CanRead(const std::string &file) const {
 
 bool SkinSlideFileFormat::Read(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
     try {
-        read(layer, resolvedPath, metadataOnly);
+        Params params = Params::fromArguments(layer->GetFileFormatArguments(), nullptr);
+        if (!params.readsOnly)
+            return compose(layer, resolvedPath, metadataOnly);
+        readText(layer, resolvedPath, params.timeCodesPerSecond);
         return true;
     } catch (const std::exception &bad) {
         TF_RUNTIME_ERROR("%s %s", resolvedPath.c_str(), bad.what());
@@ -65,55 +69,72 @@ void reloadUnedited(const std::vector<SdfLayerRefPtr> &layers) {
     SdfLayer::ReloadLayers(unedited);
 }
 
-std::vector<SdfLayerRefPtr> nestedIn(const Composition &composition) {
-    std::vector<SdfLayerRefPtr> nested;
-    for (const SdfLayerHandle &layer : composition.usedLayers()) {
-        if (layer->GetFileFormat()->GetFormatId() == "skinslide")
-            nested.push_back(layer);
+// What can be slid above a text.
+struct Slid {
+    std::vector<std::shared_ptr<LiveMesh>> meshes;
+    std::set<std::string> textures;
+    std::vector<SdfLayerRefPtr> nested; // .skinslide files
+};
+
+Slid slide(const SdfLayerRefPtr &text, const Params &params, std::vector<std::string> *problems) {
+    Slid slid;
+    Composition composition(text);
+    std::string name = TfGetBaseName(text->GetResolvedPath());
+    for (const std::shared_ptr<const PatchedMesh> &mesh : readMeshes(composition, params, problems)) {
+        slid.meshes.push_back(std::make_shared<LiveMesh>(mesh, params.live.lookup, name));
+        for (const Patch &patch : mesh->patches)
+            slid.textures.insert(patch.files().begin(), patch.files().end());
     }
-    return nested;
+    for (const SdfLayerHandle &layer : composition.usedLayers()) {
+        if (layer != text && layer->GetFileFormat()->GetFormatId() == "skinslide")
+            slid.nested.push_back(layer);
+    }
+    return slid;
 }
 
 } // namespace
 
-void SkinSlideFileFormat::read(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
+void SkinSlideFileFormat::readText(SdfLayer *layer, const std::string &resolvedPath, double timeCodesPerSecond) const {
+    if (!SdfFileFormat::FindById(TfToken("usda"))->ReadFromString(layer, skinslide::readText(resolvedPath)))
+        throw Fault("is not valid USDA text");
+    if (timeCodesPerSecond > 0) {
+        SdfAbstractDataRefPtr data = InitData(layer->GetFileFormatArguments());
+        data->CopyFrom(_GetLayerData(*layer));
+        data->Set(SdfPath::AbsoluteRootPath(), SdfFieldKeys->TimeCodesPerSecond, VtValue(timeCodesPerSecond));
+        _SetLayerData(layer, data);
+    }
+    layer->SetPermissionToEdit(false);
+}
+
+// False where the text cannot be read: its own error says so.
+bool SkinSlideFileFormat::compose(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
     std::vector<std::string> problems;
     Params params = Params::fromArguments(layer->GetFileFormatArguments(), &problems);
     Reading reading(resolvedPath);
     ArResolverContextBinder bound(contextFor(resolvedPath));
-    SdfLayerRefPtr shown = readText(resolvedPath), anchored = anchoredCopy(shown, resolvedPath);
-    std::vector<std::shared_ptr<LiveMesh>> meshes;
+    auto before = TfDynamic_cast<TfWeakPtr<const Data>>(_GetLayerData(*layer));
     Sources sources;
-    std::vector<SdfLayerRefPtr> nested;
-    if (!metadataOnly) {
-        sources = findSources(shown, resolvedPath);
-        if (auto before = TfDynamic_cast<TfWeakPtr<const Data>>(_GetLayerData(*layer))) {
-            reloadUnedited(sources.layers);
-            reloadUnedited(before->nested);
-        }
-        adoptRate(shown, sources);
-        adoptRate(anchored, sources);
-    }
+    SdfLayerRefPtr text = metadataOnly ? openText(resolvedPath) : openWithSources(resolvedPath, bool(before), &sources);
+    if (!text)
+        return false;
+    Slid slid;
     if (!metadataOnly && params.computes) {
-        Composition composition(anchored, resolvedPath);
-        std::string name = TfGetBaseName(resolvedPath);
-        for (const std::shared_ptr<const PatchedMesh> &mesh : readMeshes(composition, params, &problems)) {
-            meshes.push_back(std::make_shared<LiveMesh>(mesh, params.live.lookup, name));
-            for (const Patch &patch : mesh->patches)
-                sources.paths.insert(patch.files().begin(), patch.files().end());
-        }
-        nested = nestedIn(composition);
+        if (before)
+            reloadUnedited(before->nested);
+        slid = slide(text, params, &problems);
     }
-    DataRefPtr data = Data::create(meshes, shown, [](const SdfLayer &from) { return _GetLayerData(from); });
+    DataRefPtr data = Data::create(_GetLayerData(*text), slid.meshes);
     data->dependencies = std::move(sources.paths);
+    data->dependencies.merge(slid.textures);
     data->sources = std::move(sources.layers);
-    data->nested = std::move(nested);
+    data->nested = std::move(slid.nested);
     for (const std::string &problem : problems)
         TF_WARN("%s: %s", resolvedPath.c_str(), problem.c_str());
     SdfAbstractDataRefPtr content = data;
     _SetLayerData(layer, content);
     // An edit would not be composed, and what is computed hides it.
     layer->SetPermissionToEdit(false);
+    return true;
 }
 
 bool SkinSlideFileFormat::WriteToString(const SdfLayer &layer, std::string *text, const std::string &comment) const {

@@ -28,7 +28,8 @@ class SkinSlideFileFormat : public SdfFileFormat, public PcpDynamicFileFormatInt
   private:
     SDF_FILE_FORMAT_FACTORY_ACCESS;
     SkinSlideFileFormat();
-    void read(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const;
+    void readText(SdfLayer *layer, const std::string &resolvedPath, double timeCodesPerSecond) const;
+    bool compose(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const;
 };
 
 PXR_NAMESPACE_CLOSE_SCOPE

@@ -87,13 +87,14 @@ std::string slidBy(const Attribute &points) {
     const SdfLayerRefPtr &layer = points.layer();
     if (!layer || layer->GetFileFormat()->GetFormatId() != TfToken("skinslide"))
         return "";
-    std::vector<std::string> ignored;
-    return Params::fromArguments(layer->GetFileFormatArguments(), &ignored).computes ? layer->GetIdentifier() : "";
+    return Params::fromArguments(layer->GetFileFormatArguments(), nullptr).computes ? layer->GetIdentifier() : "";
 }
 
 std::string bakedBy(const Composition &composition, const Attribute &points) {
     SdfLayerRefPtr layer = points.bakedLayer();
-    return !layer ? "" : layer == composition.root() ? composition.anchor().resolvedPath : layer->GetIdentifier();
+    return !layer                        ? ""
+           : layer == composition.root() ? composition.root()->GetResolvedPath().GetPathString()
+                                         : layer->GetIdentifier();
 }
 
 int32_t blendShapes(Composition &composition, const Prim &prim) {

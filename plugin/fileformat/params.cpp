@@ -6,6 +6,7 @@
 #include "pxr/base/tf/stringUtils.h"
 #include "pxr/usd/sdf/types.h"
 
+#include <atomic>
 #include <cctype>
 #include <charconv>
 
@@ -35,7 +36,7 @@ std::string decode(const std::string &encoded) {
     return value;
 }
 
-const std::string computesArgument = "live";
+const std::string computesArgument = "live", textArgument = "text", rateArgument = "rate";
 
 // The inputs of the core that are live: each is an argument by its name alone.
 template <class Visit> void forEachInput(Visit visit) {
@@ -76,6 +77,10 @@ Params Params::fromArguments(const SdfFileFormat::FileFormatArguments &arguments
     Params params;
     auto computes = arguments.find(computesArgument);
     params.computes = computes == arguments.end() || decode(computes->second) != "0";
+    params.readsOnly = arguments.count(textArgument) > 0;
+    auto rate = arguments.find(rateArgument);
+    if (rate != arguments.end())
+        params.timeCodesPerSecond = TfUnstringify<double>(rate->second);
     forEachInput([&](const skinslide_stage_input *input) {
         auto given = arguments.find(input->name);
         if (given == arguments.end())
@@ -84,10 +89,19 @@ Params Params::fromArguments(const SdfFileFormat::FileFormatArguments &arguments
             Record record(attributeOf(input).GetString(), valueOf(input, decode(given->second)));
             call(skinslide_stage_live_take, &params.live, input, record);
         } catch (const Fault &bad) {
-            problems->push_back(bad.what());
+            if (problems)
+                problems->push_back(bad.what());
         }
     });
     return params;
+}
+
+SdfFileFormat::FileFormatArguments Params::argumentsOfText(double timeCodesPerSecond) {
+    static std::atomic<uint64_t> count{0};
+    SdfFileFormat::FileFormatArguments arguments{{computesArgument, "0"}, {textArgument, std::to_string(++count)}};
+    if (timeCodesPerSecond > 0)
+        arguments[rateArgument] = TfStringify(timeCodesPerSecond);
+    return arguments;
 }
 
 SdfFileFormat::FileFormatArguments Params::argumentsFromAttributes(const ComposeAttribute &compose) {

@@ -18,11 +18,16 @@ namespace skinslide {
 using namespace PXR_NS;
 
 struct Params {
-    bool computes = true; // false: the layer is its text, with nothing computed
+    bool computes = true;          // false: the layer is its text, with nothing computed
+    bool readsOnly = false;        // nor is it composed: see openText()
+    double timeCodesPerSecond = 0; // in place of none, where it is above 0
     skinslide_stage_live live = SKINSLIDE_STAGE_LIVE_DEFAULT;
 
-    // Values that cannot be used are left out, and said in `problems`.
+    // Values that cannot be used are left out, and said in `problems`, which may be null.
     static Params fromArguments(const SdfFileFormat::FileFormatArguments &arguments, std::vector<std::string> *problems);
+
+    // Of a text that is only read, other ones each time.
+    static SdfFileFormat::FileFormatArguments argumentsOfText(double timeCodesPerSecond);
 
     using ComposeAttribute = std::function<bool(const TfToken &name, VtValue *value)>;
     // The arguments that a payload gets from the attributes of its prim; those that are not authored are left out. Values are

@@ -2,9 +2,10 @@
 
 #include "cycle.h"
 #include "fault.h"
+#include "params.h"
 
 #include "pxr/base/tf/errorMark.h"
-#include "pxr/base/tf/pathUtils.h"
+#include "pxr/base/tf/stringUtils.h"
 #include "pxr/usd/ar/asset.h"
 #include "pxr/usd/ar/resolvedPath.h"
 #include "pxr/usd/ar/resolver.h"
@@ -43,50 +44,37 @@ std::string evaluate(const std::string &asset, const VtDictionary &variables) {
     return value.IsHolding<std::string>() ? value.UncheckedGet<std::string>() : "";
 }
 
-SdfLayerRefPtr readText(const std::string &resolvedPath) {
+// ---- The text ----
+
+SdfLayerRefPtr openText(const std::string &resolvedPath, double timeCodesPerSecond) {
+    return SdfLayer::FindOrOpen(resolvedPath, Params::argumentsOfText(timeCodesPerSecond));
+}
+
+std::string readText(const std::string &resolvedPath) {
     std::string text = readFile(resolvedPath);
     if (!TfStringStartsWith(text, "#usda"))
         throw Fault("is not USDA text: the first line must be #usda 1.0");
     // The parser stops at a zero, and would take what is before it for the whole.
     if (text.find('\0') != std::string::npos)
         throw Fault("is not USDA text: it holds a zero byte");
-    SdfLayerRefPtr layer = SdfLayer::CreateAnonymous(TfGetBaseName(resolvedPath) + ".usda");
-    if (!layer->ImportFromString(text))
-        throw Fault("is not valid USDA text");
-    return layer;
+    return text;
 }
 
-SdfLayerRefPtr anchoredCopy(const SdfLayerRefPtr &text, const std::string &resolvedPath) {
-    SdfLayerRefPtr layer = SdfLayer::CreateAnonymous(TfGetBaseName(resolvedPath) + ".usda");
-    layer->TransferContent(text);
-    const SdfLayerOffsetVector offsets = layer->GetSubLayerOffsets(); // which an update loses
-    for (const std::string &asset : layer->GetCompositionAssetDependencies()) {
-        std::string evaluated = evaluate(asset, layer->GetExpressionVariables());
-        if (evaluated.empty())
-            continue;
-        std::string anchored = ArGetResolver().CreateIdentifier(evaluated, ArResolvedPath(resolvedPath));
-        if (anchored != asset)
-            layer->UpdateCompositionAssetDependency(asset, anchored);
-    }
-    for (size_t i = 0; i < offsets.size(); i++)
-        layer->SetSubLayerOffset(offsets[i], static_cast<int>(i));
-    return layer;
-}
+// ---- What it leads to ----
 
 namespace {
 
 // A layer to look into, with the variables that its expressions are evaluated with.
 struct Place {
     SdfLayerRefPtr layer;
-    std::string file; // of a .skinslide file, whose layer here is anonymous; else empty
     VtDictionary variables;
 };
 
 // Finds at least what Pcp would open, and what each .skinslide file on the way would open when it is read.
 class Walk {
   public:
-    explicit Walk(const Place &root) {
-        enter(root.file, root);
+    Walk(const SdfLayerRefPtr &root, bool again) : _again(again) {
+        enter(root->GetResolvedPath(), {root, root->GetExpressionVariables()});
         while (!_waiting.empty()) {
             Place place = _waiting.front();
             _waiting.pop_front();
@@ -101,14 +89,13 @@ class Walk {
         std::string evaluated = evaluate(asset, from.variables), bare;
         if (evaluated.empty())
             return;
-        std::string identifier = from.file.empty() ? SdfComputeAssetPathRelativeToLayer(from.layer, evaluated)
-                                                   : ArGetResolver().CreateIdentifier(evaluated, ArResolvedPath(from.file));
+        std::string identifier = SdfComputeAssetPathRelativeToLayer(from.layer, evaluated);
         SdfLayer::FileFormatArguments arguments;
         SdfLayer::SplitIdentifier(identifier, &bare, &arguments);
         ArResolvedPath resolved = ArGetResolver().Resolve(bare);
         if (resolved && Reading::isRead(resolved))
             throw fault("leads back to itself through %s, be it in a variant that is not selected",
-                        from.file.empty() ? from.layer->GetIdentifier().c_str() : from.file.c_str());
+                        from.layer->GetResolvedPath().GetPathString().c_str());
         // A file that appears later is a change too.
         std::string path = resolved ? resolved.GetPathString() : ArGetResolver().ResolveForNewAsset(bare).GetPathString();
         if (path.empty())
@@ -120,14 +107,13 @@ class Walk {
 
     // Variables of what refers to a layer are stronger than its own, and a sublayer has none. A .skinslide file is also a root.
     void enterAll(const Place &from, const std::string &asset, const std::string &path, const SdfLayerRefPtr &next) {
-        std::string file = isSkinslide(path) ? path : "";
         VtDictionary own = next->GetExpressionVariables();
         const auto &sublayers = from.layer->GetSubLayerPaths();
         if (sublayers.Find(asset) != size_t(-1))
-            enter(path, {next, file, from.variables});
-        enter(path, {next, file, VtDictionaryOver(from.variables, own)});
-        if (!file.empty())
-            enter(path, {next, file, own});
+            enter(path, {next, from.variables});
+        enter(path, {next, VtDictionaryOver(from.variables, own)});
+        if (isSkinslide(path))
+            enter(path, {next, own});
     }
 
     void enter(const std::string &path, const Place &place) {
@@ -144,40 +130,40 @@ class Walk {
         if (!isNew)
             return known->second;
         TfErrorMark mark;
-        if (!isSkinslide(path)) {
-            known->second = SdfLayer::FindOrOpen(identifier);
-            if (known->second)
-                found.layers.push_back(known->second);
-        } else {
-            try {
-                known->second = readText(path);
-            } catch (const Fault &) {
-            }
-        }
+        known->second = isSkinslide(path) ? openText(path) : openSource(identifier);
         mark.Clear();
         return known->second;
     }
 
+    SdfLayerRefPtr openSource(const std::string &identifier) {
+        SdfLayerRefPtr layer = SdfLayer::FindOrOpen(identifier);
+        if (layer && _again && !layer->IsDirty())
+            layer->Reload();
+        if (layer)
+            found.layers.push_back(layer);
+        return layer;
+    }
+
+    const bool _again;
     std::deque<Place> _waiting;
     std::map<std::string, SdfLayerRefPtr> _opened;
     std::map<std::string, std::vector<VtDictionary>> _seen; // by path
 };
 
-} // namespace
-
-Sources findSources(const SdfLayerRefPtr &text, const std::string &resolvedPath) {
-    return Walk({text, resolvedPath, text->GetExpressionVariables()}).found;
+bool hasRate(const SdfLayerRefPtr &layer) {
+    return layer->HasTimeCodesPerSecond() || layer->HasFramesPerSecond();
 }
 
-void adoptRate(const SdfLayerRefPtr &layer, const Sources &sources) {
-    if (layer->HasTimeCodesPerSecond() || layer->HasFramesPerSecond())
-        return;
-    for (const SdfLayerRefPtr &source : sources.layers) {
-        if (source->HasTimeCodesPerSecond() || source->HasFramesPerSecond()) {
-            layer->SetTimeCodesPerSecond(source->GetTimeCodesPerSecond());
-            return;
-        }
-    }
+} // namespace
+
+SdfLayerRefPtr openWithSources(const std::string &resolvedPath, bool again, Sources *sources) {
+    SdfLayerRefPtr text = openText(resolvedPath);
+    if (!text)
+        return text;
+    *sources = Walk(text, again).found;
+    auto first = std::find_if(sources->layers.begin(), sources->layers.end(), hasRate);
+    bool adopts = !hasRate(text) && first != sources->layers.end();
+    return adopts ? openText(resolvedPath, (*first)->GetTimeCodesPerSecond()) : text;
 }
 
 } // namespace skinslide

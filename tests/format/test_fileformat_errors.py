@@ -114,6 +114,20 @@ def test_a_hidden_cycle_is_refused(tmp_path, lay):
     assert "leads back to itself" in done.stderr and "variant that is not selected" in done.stderr
 
 
+def test_a_reload_that_leads_back_is_refused(tmp_path):
+    """By a source that is open, and was another one when it was read."""
+    path = write(tmp_path / "x.skinslide", cache="./between.usda")
+    (tmp_path / "between.usda").write_text("#usda 1.0\n")
+    script = (
+        "import os, skinslide; from pxr import Sdf; "
+        f"layer = Sdf.Layer.FindOrOpen({str(path)!r}); between = {str(tmp_path / 'between.usda')!r}; "
+        "open(between, 'w').write('#usda 1.0\\n(subLayers = [@./x.skinslide@])'); os.utime(between, (1, 1)); "
+        "layer.Reload(force=True)"
+    )
+    done = run_python(script)
+    assert done.returncode == 1 and "leads back to itself" in done.stderr
+
+
 def test_a_variable_that_leads_elsewhere_is_no_cycle(tmp_path):
     """By the layer's own variable b leads to x; what refers to it says otherwise."""
     save(patched_stage(grid())[0], tmp_path / "cache.usda")
