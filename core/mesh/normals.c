@@ -130,7 +130,7 @@ static skinslide_status allocate(ss_memory *memory, work *w, float **before, ski
 }
 
 skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
-                                   skinslide_normals_layout layout, int32_t left_handed, float *normals,
+                                   skinslide_normals_layout layout, skinslide_bool left_handed, float *normals,
                                    skinslide_error *error) {
     ss_taken_mesh taken;
     skinslide_status status = ss_take_mesh(&mesh, &taken, error);

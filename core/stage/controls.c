@@ -305,7 +305,7 @@ const skinslide_stage_need *skinslide_stage_controls_need(const skinslide_stage_
     return own ? ss_texture_need(own->own_texture) : NULL;
 }
 
-int32_t skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path) {
+skinslide_bool skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path) {
     const control *own = needing(controls);
     return own && path && ss_texture_holds(own->own_texture, path);
 }

@@ -164,7 +164,7 @@ bool ss_is_reserved(const char *name, size_t length) {
     return found;
 }
 
-int32_t skinslide_stage_can_name_patch(const char *name) {
+skinslide_bool skinslide_stage_can_name_patch(const char *name) {
     return name && *name && !ss_is_reserved(name, strcspn(name, ":"));
 }
 

@@ -279,7 +279,7 @@ skinslide_status skinslide_stage_patch_check(const skinslide_stage_patch *patch,
     return ss_check_plain(&patch_inputs()[row], &record, &patch->taken[row], frame, SKINSLIDE_BAD_CONTROL, error);
 }
 
-int32_t skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch) {
+skinslide_bool skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch) {
     int32_t interpolation =
         patch->live.interpolation < 0 ? patch->taken[SS_ROW_INTERPOLATION].choice : patch->live.interpolation;
     return interpolation == SKINSLIDE_INTERPOLATION_AUTO || interpolation == SKINSLIDE_INTERPOLATION_LIMIT;

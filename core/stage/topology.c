@@ -229,6 +229,6 @@ skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skin
     return SKINSLIDE_OK;
 }
 
-int32_t skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh) {
+skinslide_bool skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh) {
     return mesh->left_handed;
 }

@@ -56,7 +56,7 @@ def record(ffi: FFI, text: str, name: str, structs: list[str]) -> str:
     ]
     above, body = comments[0][0], "".join(body for _, body in comments)
     fields = [(field, each.type) for struct in structs for field, each in ffi.typeof(struct).fields if field != "size"]
-    summary, _, more = _plain(above).partition(". ")
+    summary, _, more = re.sub(r"\s*Start from \w+\.", "", _plain(above)).partition(". ")
     return "\n".join(
         [
             f"\n\nclass {name}(NamedTuple):",

@@ -22,7 +22,7 @@ static int faces_are_asked_for(void) {
 }
 
 int main(void) {
-    skinslide_mesh mesh = {sizeof(skinslide_mesh), 9, 4, 16, counts, indices, rest, NULL};
+    skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
     skinslide_patch_setup patch = SKINSLIDE_PATCH_SETUP_DEFAULT;
     skinslide_slider *slider;
     skinslide_workspace *workspace;
@@ -33,6 +33,8 @@ int main(void) {
     float points[27], slid[27];
     int i;
 
+    mesh.vertex_count = 9, mesh.face_count = 4, mesh.index_count = 16;
+    mesh.face_counts = counts, mesh.face_indices = indices, mesh.rest_points = rest;
     patch.name = "sheet";
     patch.faces = faces;
     patch.face_count = 4;

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 #endif
 
-/* ---- Images: OpenEXR files as bytes -------------------------------------------------------------------------------------- */
+/* ---- Images: OpenEXR files as bytes ------------------------------------------------------------------------------------- */
 
 /* What a texture holds beyond its border, as the file's attribute wrapmodes says. */
 typedef enum skinslide_wrap {
@@ -79,7 +79,7 @@ SKINSLIDE_API skinslide_status skinslide_exr_encode(const skinslide_channel *cha
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_bytes_destroy(skinslide_bytes *bytes);
 
-/* ---- Textures: images painted in a mesh's texture coordinates ------------------------------------------------------------ */
+/* ---- Textures: images painted in a mesh's texture coordinates ----------------------------------------------------------- */
 
 /* Where faces of a mesh lie in its texture. Start from SKINSLIDE_TEXTURE_LAYOUT_DEFAULT. */
 typedef struct skinslide_texture_layout {
@@ -121,7 +121,7 @@ SKINSLIDE_API skinslide_status skinslide_texture_sample(const skinslide_texture_
                                                         const skinslide_texture_tile *tiles, int32_t tile_count, float *values,
                                                         skinslide_error *error);
 
-/* ---- What painting needs of geometry --------------------------------------------------------------------------------------- */
+/* ---- What painting needs of geometry ------------------------------------------------------------------------------------ */
 
 /* Curves as UsdGeomBasisCurves has them; tokens linear for type linear, else the basis. */
 typedef enum skinslide_curve_basis {
@@ -171,8 +171,8 @@ SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t
                                                     skinslide_direction direction, uint8_t *near, skinslide_error *error);
 
 /* Finds the faces on the other side of a mesh that is symmetric at rest about the plane where coordinate `axis` (0 x, 1 y, 2 z)
- * is `plane`, and the vertices that correspond. Vertices correspond where one's mirror image is within tolerance of the other and
- * both are at the same place in faces that do; so vertices in one place are told apart by their faces.
+ * is `plane`, and the vertices that correspond. Vertices correspond where one's mirror image is within tolerance of the other
+ * and both are at the same place in faces that do; so vertices in one place are told apart by their faces.
  *   tolerance        in  below 0: 1e-4 of the mesh's largest extent at rest
  *   faces            in  [face_count] mesh faces
  *   mirror_faces     out [face_count]

@@ -1,5 +1,6 @@
-/* skinslide/picture.h: skin drawn offscreen: what a slide did to a texture, before and after; and maps of it in texture coordinates. No
- * display and no GPU are needed: for pictures EGL with OpenGL ES 3, of which a software rasteriser will do; for maps nothing.
+/* skinslide/picture.h: skin drawn offscreen. What a slide did to a texture, before and after; and maps of it in texture
+ * coordinates. No display and no GPU are needed: for pictures EGL with OpenGL ES 3, of which a software rasteriser will do; for
+ * maps nothing.
  *
  *     skinslide_tessellation  a mesh made into triangles, along its limit surface where it is subdivided; immutable
  *     skinslide_canvas        what pictures are drawn on, with an OpenGL ES context of its own; for one thread at a time
@@ -16,7 +17,7 @@ extern "C" {
 #endif
 #endif
 
-/* ---- What is drawn -------------------------------------------------------------------------------------------------------- */
+/* ---- What is drawn ------------------------------------------------------------------------------------------------------ */
 
 typedef struct skinslide_tessellation skinslide_tessellation;
 
@@ -70,11 +71,11 @@ typedef struct skinslide_figure {
     const skinslide_outline *outline; /* of the tessellation; NULL: of the faces that it was made for */
     const float *points;              /* [mesh vertex_count][3] */
     const double *to_world;           /* [16] from the mesh's object space; NULL: it is the world's */
-    const float *values;   /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */
-    float lowest, highest; /* lowest < highest, by 1e-37 to 1e37 */
-    float squares;         /* of the chequer, for each unit of st or of length at rest; > 0 */
-    int32_t double_sided;  /* 0: faces turned away from the camera are left out, as USD has it */
-    int32_t left_handed;   /* not 0 where the mesh's orientation is leftHanded */
+    const float *values;         /* [mesh vertex_count] drawn in false colours from lowest to highest; NULL: a chequer is */
+    float lowest, highest;       /* lowest < highest, by 1e-37 to 1e37 */
+    float squares;               /* of the chequer, for each unit of st or of length at rest; > 0 */
+    skinslide_bool double_sided; /* no: faces turned away from the camera are left out, as USD has it */
+    skinslide_bool left_handed;  /* the mesh's orientation is leftHanded */
 } skinslide_figure;
 
 #define SKINSLIDE_FIGURE_DEFAULT                                                                                               \
@@ -83,7 +84,7 @@ typedef struct skinslide_figure {
 /* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
 SKINSLIDE_API void skinslide_false_colour(float share, float colour[3]);
 
-/* ---- From where ------------------------------------------------------------------------------------------------------------ */
+/* ---- From where --------------------------------------------------------------------------------------------------------- */
 
 typedef struct skinslide_camera {
     double to_camera[16]; /* from the world; the camera looks along -z */
@@ -99,7 +100,7 @@ typedef struct skinslide_subject {
     int32_t pose_count;         /* > 0 */
     const float *const *poses;  /* [pose_count] each [mesh vertex_count][3] */
     const double *to_world;     /* [pose_count][16], or NULL: poses are in the world */
-    int32_t left_handed;        /* not 0 where the mesh's orientation is leftHanded */
+    skinslide_bool left_handed; /* the mesh's orientation is leftHanded */
 } skinslide_subject;
 
 #define SKINSLIDE_SUBJECT_DEFAULT                                                                                              \
@@ -110,11 +111,12 @@ typedef struct skinslide_subject {
  * out, as round a limb, from where the faces are widest.
  *   up      in  the world's, a direction
  *   aspect  in  width of the picture by its height
- * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite: names the pose; or no camera can see them: all in one place), OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite: names the pose; or no camera can see them: all in one place),
+ * OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const double up[3], double aspect,
                                                      skinslide_camera *camera, skinslide_error *error);
 
-/* ---- On what ---------------------------------------------------------------------------------------------------------------- */
+/* ---- On what ------------------------------------------------------------------------------------------------------------ */
 
 /* How a canvas holds colours. */
 typedef enum skinslide_pixels {
@@ -170,23 +172,23 @@ SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, c
  * Fails with BAD_ARGUMENT, DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error);
 
-/* ---- Maps: values drawn in a mesh's texture coordinates ------------------------------------------------------------------- */
+/* ---- Maps: values drawn in a mesh's texture coordinates ----------------------------------------------------------------- */
 
 enum { SKINSLIDE_LARGEST_MAP = 16384 }; /* texels along each side */
 
 /* Draws values of a mesh's vertices over one tile of its texture: linearly over the triangles of each face's fan; where faces
  * overlap, the later in the layout wins. A texel is covered where its centre is in a triangle; of centres on its border a
- * triangle has those on its left and lower sides, so that triangles which share sides never both have a texel, nor neither. Then four times each texel that is not covered but
- * touches covered ones, at a corner too, takes their mean and counts as covered, so that bilinear samples at the border of a
- * chart find its values. What is left is 0. Faces with corners in several tiles are drawn in each of these. On the processor, in
- * one thread: the same bytes on every machine.
- *   tile          1001 + u + 10 v; 1001 where the texture is no UDIM
+ * triangle has those on its left and lower sides, so that triangles which share sides never both have a texel, nor neither.
+ * Then four times each texel that is not covered but touches covered ones, at a corner too, takes their mean and counts as
+ * covered, so that bilinear samples at the border of an island find its values. What is left is 0. Faces with corners in
+ * several tiles are drawn in each of these. On the processor, in one thread: the same bytes on every machine.
+ *   tile          in  1001 + u + 10 v; 1001 where the texture is no UDIM
  *   values        in  [vertex_count] of the mesh
- *   side          texels along each side, 1 to SKINSLIDE_LARGEST_MAP
+ *   side          in  texels along each side, 1 to SKINSLIDE_LARGEST_MAP
  *   texels        out [side][side] from the top row on, with (0, 0) of the tile at the lower left corner
  *   missed_faces  out, or NULL: faces of this tile that cover no texel
- * Fails with BAD_ARGUMENT (NULL, no such tile or side, a face that is none), BAD_MESH, BAD_CONTROL (st not finite or in no tile:
- * names the face), BAD_POINTS (a value of the faces is not finite: names the vertex), OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (NULL, no such tile or side, a face that is none), BAD_MESH, BAD_CONTROL (st not finite or in no
+ * tile: names the face), BAD_POINTS (a value of the faces is not finite: names the vertex), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int32_t tile, const float *values,
                                                   int32_t side, float *texels, int32_t *missed_faces, skinslide_error *error);
 

@@ -13,6 +13,7 @@
  * Conventions
  *     Points are float [vertex][3] in the mesh's object space; lengths have its units. Work between is done in double.
  *     Index spaces: a "mesh vertex" or "mesh face" counts within the mesh, a "patch vertex" or "patch face" within one patch.
+ *     A truth, skinslide_bool, is 0 for no and anything else for yes; answers are 0 or 1.
  *     Arrays are the caller's; inputs are read during the call only, and are never kept. NULL is allowed only where said.
  *     A function that can fail returns a status; *out and output arrays are written only on success. The last parameter, an
  *     optional skinslide_error of the caller's, then says in one line what is wrong and names the element. No function prints,
@@ -21,8 +22,9 @@
  * Versions
  *     A struct that begins with its size may grow at its end. Start from its default, which sets the size and what is not 0; an
  *     array's elements all have the size of the first. A library that knows more members than a program was compiled with takes
- *     their defaults; one that knows fewer fails with UNSUPPORTED where one of them is not 0, and answers them with 0. Structs
- *     without a size stay as they are.
+ *     their defaults; one that knows fewer fails with UNSUPPORTED where one of them is not 0, and answers them with 0. What the
+ *     library alone makes may grow likewise; other structs without a size stay as they are. What is not of the first version
+ *     says since when it is there.
  */
 #ifndef SKINSLIDE_H
 #define SKINSLIDE_H
@@ -42,6 +44,8 @@ extern "C" {
 #else
 #define SKINSLIDE_API
 #endif
+
+typedef int32_t skinslide_bool;
 
 /* Every status: name and meaning. */
 #define SKINSLIDE_STATUSES(X)                                                                                                  \
@@ -69,14 +73,16 @@ typedef struct skinslide_error {
     char message[480]; /* one line, no newline, names patch and element: "patch elbow: edge 812-813 has 3 faces" */
 } skinslide_error;
 
-/* "OUT_OF_MEMORY" and "out of memory"; "?" for a number that is no status. Static strings. */
+/* "OUT_OF_MEMORY"; "?" for a number that is no status. A static string. */
 SKINSLIDE_API const char *skinslide_status_name(skinslide_status status);
+
+/* "out of memory"; "?" for a number that is no status. A static string. */
 SKINSLIDE_API const char *skinslide_status_text(skinslide_status status);
 
 /* The library's version, "major.minor.patch". A static string. */
 SKINSLIDE_API const char *skinslide_version(void);
 
-/* ---- The mesh and its patches -------------------------------------------------------------------------------------------- */
+/* ---- The mesh and its patches ------------------------------------------------------------------------------------------- */
 
 /* How a mesh is subdivided when rendered, in the words of UsdGeomMesh. The fallbacks of USD come first, so that an initialiser
  * that names nothing but the scheme gives USD's. */
@@ -98,7 +104,8 @@ typedef enum skinslide_triangle_rule {
     SKINSLIDE_TRIANGLE_RULE_SMOOTH /* Catmull-Clark only */
 } skinslide_triangle_rule;
 
-/* The subdivision of a mesh. Sharpness is >= 0, and 10 or more is infinitely sharp. Start from SKINSLIDE_SUBDIVISION_DEFAULT. */
+/* The subdivision of a mesh. Sharpness is >= 0, and 10 or more is infinitely sharp. Start from
+ * SKINSLIDE_SUBDIVISION_DEFAULT. */
 typedef struct skinslide_subdivision {
     size_t size; /* sizeof(skinslide_subdivision) */
     skinslide_scheme scheme;
@@ -219,28 +226,31 @@ typedef struct skinslide_patch_setup {
             SKINSLIDE_INTERPOLATION_AUTO, 0                                                                                    \
     }
 
-/* ---- The slider ---------------------------------------------------------------------------------------------------------- */
+/* ---- The slider --------------------------------------------------------------------------------------------------------- */
 
 typedef struct skinslide_slider skinslide_slider;
 
 /* Builds every patch of a mesh: connectivity, boundary and holes in the plane, the symbolic factor, the rest embedding.
- *   mesh, setups  in, read during the call only; setups is [setup_count], setup_count >= 0
- *   out           out, the caller's to destroy
- * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of repeated
- * vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an edge with three faces,
- * faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not > 0, a weight not
- * finite, a largest distance not >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED,
- * OUT_OF_MEMORY. With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that
- * is not an edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a
- * hole of the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face
- * with more than 256 vertices). */
+ *   mesh    in
+ *   setups  in  [setup_count]; setup_count >= 0
+ *   out     out, the caller's to destroy
+ * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of
+ * repeated vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an
+ * edge with three faces, faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not
+ * > 0, a weight not finite, a largest distance not >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT
+ * (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED, OUT_OF_MEMORY.
+ * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
+ * edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a hole of
+ * the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face with
+ * more than 256 vertices). */
 SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                        int32_t setup_count, skinslide_slider **out, skinslide_error *error);
 
 /* NULL does nothing. Workspaces of the slider must be gone before it. */
 SKINSLIDE_API void skinslide_slider_destroy(skinslide_slider *slider);
 
-/* What a patch is. Patches are numbered set-up by set-up, and the pieces of one set-up by their lowest face. */
+/* What a patch is. Patches are numbered set-up by set-up, and the pieces of one set-up by their lowest face. Start from
+ * SKINSLIDE_PATCH_INFO_DEFAULT. */
 typedef struct skinslide_patch_info {
     size_t size;               /* sizeof(skinslide_patch_info) */
     const char *name;          /* the set-up's; lives as long as the slider */
@@ -260,22 +270,32 @@ typedef struct skinslide_patch_info {
 #define SKINSLIDE_PATCH_INFO_DEFAULT                                                                                           \
     { sizeof(skinslide_patch_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
+/* How many patches there are: the patches of a slider are 0 to this. */
 SKINSLIDE_API int32_t skinslide_slider_patch_count(const skinslide_slider *slider);
 
-/* Each fails with BAD_ARGUMENT only where patch is not one of the slider's.
- *   vertices  out [vertex_count] the mesh vertex of each patch vertex, ascending
- *   faces     out [face_count] the mesh face of each patch face, ascending
- *   uv        out [vertex_count][2] the rest embedding U0, in [0,1]^2 up to rounding */
+/* What a patch of a slider is. Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int32_t patch,
                                                            skinslide_patch_info *info, skinslide_error *error);
+
+/* The vertices of a patch.
+ *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending
+ * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
                                                                skinslide_error *error);
+
+/* The faces of a patch.
+ *   faces  out [face_count of the patch] the mesh face of each patch face, ascending
+ * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, int32_t patch, int32_t *faces,
                                                             skinslide_error *error);
+
+/* The rest embedding U0 of a patch.
+ *   uv  out [vertex_count of the patch][2], in [0,1]^2 up to rounding
+ * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv,
                                                           skinslide_error *error);
 
-/* ---- Frames -------------------------------------------------------------------------------------------------------------- */
+/* ---- Frames ------------------------------------------------------------------------------------------------------------- */
 
 /* How rest vertices are looked up in the frame's embedding; where they are found is the same bit for bit. */
 typedef enum skinslide_lookup {
@@ -292,12 +312,12 @@ typedef enum skinslide_lookup {
 typedef struct skinslide_workspace_options {
     size_t size; /* sizeof(skinslide_workspace_options) */
     skinslide_lookup lookup;
-    int32_t device; /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
+    int32_t device;     /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
                            order, hardware before software, then its surfaceless platform, then its default display */
-    int32_t
-        resolution; /* texels along a side of the texture, within the device's limit (OpenGL ES 3 has 2048 or more); 0: for each patch, the power of two from 256 to 4096, within the
-                           device's limit, that gives four texels along a side for each free vertex under the root, and up to
-                           four times as many where the smallest face of the rest embedding would be under a texel */
+    int32_t resolution; /* texels along a side of the texture, within the device's limit (OpenGL ES 3 has 2048 or more); 0:
+                           for each patch, the power of two from 256 to 4096, within the device's limit, that gives four texels
+                           along a side for each free vertex under the root, and up to four times as many where the smallest
+                           face of the rest embedding would be under a texel */
 } skinslide_workspace_options;
 
 #define SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT                                                                                    \
@@ -317,7 +337,7 @@ typedef struct skinslide_lookup_info {
 typedef struct skinslide_device_info {
     size_t size;                /* sizeof(skinslide_device_info) */
     int32_t device;             /* its number, or SKINSLIDE_ANY_DEVICE where the display has none, or there is no device */
-    int32_t software;           /* 1: a software rasteriser */
+    skinslide_bool software;    /* it is a software rasteriser */
     int32_t largest_resolution; /* texels along a side, the device's limit; 0: there is no device */
     char device_name[96];       /* "EGL device 0 (/dev/dri/card0)" */
     char renderer[128];         /* as the driver names the device */
@@ -332,8 +352,8 @@ typedef struct skinslide_device_info {
  *   options  in, or NULL: the default
  *   info     out
  *   device   out, or NULL: that of lookup EGL; none for EXACT
- * Fails with BAD_ARGUMENT (no such lookup, device or resolution), DEVICE_FAILED, NO_DEVICE (lookup EGL: names all that was tried, with EGL's
- * errors), OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (no such lookup, device or resolution), DEVICE_FAILED, NO_DEVICE (lookup EGL: names all that was
+ * tried, with EGL's errors), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
                                                        skinslide_device_info *device, skinslide_error *error);
 
@@ -343,7 +363,8 @@ typedef struct skinslide_workspace skinslide_workspace;
  * EGL it has an OpenGL ES context of its own, which is current only within calls: whatever EGL context the thread had is
  * current again after each. A thread that has a context of another window system, such as GLX, current cannot use EGL.
  *   options  in, or NULL: the default
- * Fails with OUT_OF_MEMORY, BAD_ARGUMENT (no such lookup, device or resolution), and with lookup EGL NO_DEVICE, DEVICE_FAILED. */
+ * Fails with OUT_OF_MEMORY, BAD_ARGUMENT (no such lookup, device or resolution), and with lookup EGL NO_DEVICE,
+ * DEVICE_FAILED. */
 SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider *slider,
                                                           const skinslide_workspace_options *options, skinslide_workspace **out,
                                                           skinslide_error *error);
@@ -351,9 +372,9 @@ SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_destroy(skinslide_workspace *workspace);
 
-/* Makes the frame that is slid in the workspace, or where there is none the next one, fail with INTERRUPTED, before long: work is
- * left between stages and steps. The only function that may be called while another thread uses the workspace, and one that signal
- * handlers may call. NULL does nothing. */
+/* Makes the frame that is slid in the workspace, or where there is none the next one, fail with INTERRUPTED, before long: work
+ * is left between stages and steps. The only function that may be called while another thread uses the workspace, and one that
+ * signal handlers may call. NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_interrupt(skinslide_workspace *workspace);
 
 /* What a workspace's options came to.
@@ -364,7 +385,7 @@ SKINSLIDE_API skinslide_status skinslide_workspace_lookup(const skinslide_worksp
                                                           skinslide_device_info *device, skinslide_error *error);
 
 /* What happened to one patch in one frame. Everything but the seconds is the same in every run with the same lookup; how
- * vertices were found depends on the lookup, its resolution and its device. */
+ * vertices were found depends on the lookup, its resolution and its device. Start from SKINSLIDE_PATCH_RESULT_DEFAULT. */
 typedef struct skinslide_patch_result {
     size_t size;               /* sizeof(skinslide_patch_result) */
     int32_t slid_vertices;     /* free vertices that moved */
@@ -411,7 +432,8 @@ SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, c
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
 
-/* The embedding Ud of the last frame that this workspace slid: out [vertex_count][2] of the patch.
+/* The embedding Ud of a patch in the last frame that this workspace slid.
+ *   uv  out [vertex_count of the patch][2]
  * Fails with BAD_ARGUMENT where there is no such patch or no frame yet. */
 SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
                                                              skinslide_error *error);
@@ -423,9 +445,10 @@ SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_wor
 SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
                                                              uint32_t *texels, skinslide_error *error);
 
-/* ---- What a slide did, by vertex ------------------------------------------------------------------------------------------ */
+/* ---- What a slide did, by vertex ---------------------------------------------------------------------------------------- */
 
-/* For pictures and maps. Edges count that are of a patch, each once. Any of the arrays may be NULL: it is not wanted. */
+/* For pictures and maps. Edges count that are of a patch, each once. Any of the arrays may be NULL: it is not wanted. Start
+ * from SKINSLIDE_DIAGNOSTICS_DEFAULT. */
 typedef struct skinslide_diagnostics {
     size_t size;           /* sizeof(skinslide_diagnostics) */
     float *stretch_before; /* out [vertex_count] RMS over the edges at the vertex of log(length / rest length), in the cache */
@@ -440,7 +463,7 @@ typedef struct skinslide_diagnostics {
 
 /* Measures one frame.
  *   controls     in  [setup_count] as for skinslide_slide; NULL: the set-ups' own
- *   chosen       in  [setup_count] 0 for set-ups whose patches do not count; NULL: all do
+ *   chosen       in  [setup_count] 0: the patches of the set-up do not count; NULL: all do
  *   cached       in  [vertex_count][3] the points before sliding
  *   slid         in  [vertex_count][3] after
  *   diagnostics  in, its arrays out
@@ -450,7 +473,7 @@ SKINSLIDE_API skinslide_status skinslide_diagnose(const skinslide_slider *slider
                                                   const uint8_t *chosen, const float *cached, const float *slid,
                                                   const skinslide_diagnostics *diagnostics, skinslide_error *error);
 
-/* ---- The limit surface ---------------------------------------------------------------------------------------------------- */
+/* ---- The limit surface -------------------------------------------------------------------------------------------------- */
 
 /* A place on a limit surface. Every face of n vertices is n quads, one a corner, that meet at its middle: s goes from the
  * corner along its side to the next corner, t along the side to the one before, and both are 1 at the middle of the face. */
@@ -466,14 +489,13 @@ typedef struct skinslide_limit_place {
  *   out      out  [count][3]
  * Fast where places of one face follow each other.
  * Fails with BAD_ARGUMENT, BAD_MESH (as above, or a mesh that is not subdivided), BAD_PATCH (a place on a hole), BAD_POINTS,
- * UNSUPPORTED (a vertex with more than 256 faces, a face with more than 256 vertices, with OpenSubdiv before 3.5.1 some faces with
- * creases, at a boundary or where the mesh is not manifold),
- * OUT_OF_MEMORY. */
+ * UNSUPPORTED (a vertex with more than 256 faces, a face with more than 256 vertices, with OpenSubdiv before 3.5.1 some faces
+ * with creases, at a boundary or where the mesh is not manifold), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_limit_points(const skinslide_mesh *mesh, const float *points,
                                                       const skinslide_limit_place *places, int32_t count, float *out,
                                                       skinslide_error *error);
 
-/* ---- What else a cache holds --------------------------------------------------------------------------------------------- */
+/* ---- What else a cache holds -------------------------------------------------------------------------------------------- */
 
 /* Which elements carry a normal, as USD names it. */
 typedef enum skinslide_normals_layout {
@@ -482,15 +504,16 @@ typedef enum skinslide_normals_layout {
     SKINSLIDE_NORMALS_UNIFORM       /* [face_count][3] */
 } skinslide_normals_layout;
 
-/* Recomputes the normals, area-weighted over faces, of the elements whose faces have a vertex that slid. Others keep their bits.
- *   mesh         in      rest_points are not read
- *   cached       in      [vertex_count][3] points before sliding
- *   slid         in      [vertex_count][3] points after
- *   left_handed  in      not 0 where the mesh's orientation is leftHanded
- *   normals      in out  the cache's, then the corrected, of unit length; where faces have no area they stay
+/* Recomputes the normals, area-weighted over faces, of the elements whose faces have a vertex that slid. Others keep their
+ * bits.
+ *   mesh         in  rest_points are not read
+ *   cached       in  [vertex_count][3] points before sliding
+ *   slid         in  [vertex_count][3] points after
+ *   left_handed  in  the mesh's orientation is leftHanded
+ *   normals      in, out  the cache's, then the corrected, of unit length; where faces have no area they stay
  * Fails with BAD_MESH, BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
-                                                 skinslide_normals_layout layout, int32_t left_handed, float *normals,
+                                                 skinslide_normals_layout layout, skinslide_bool left_handed, float *normals,
                                                  skinslide_error *error);
 
 /* Points of one time, for rates of change. Start from SKINSLIDE_SAMPLE_DEFAULT. */
@@ -507,13 +530,17 @@ typedef struct skinslide_sample {
 /* Adds to the cache's velocities, units per second, the rate at which the displacement (slid - cached) changes from the first
  * sample to the second. Vertices whose displacement does not change keep their bits.
  *   samples     in  [2], ascending in time
- *   velocities  in  the cache's, out the corrected [vertex_count][3]
+ *   velocities  in, out  the cache's, then the corrected [vertex_count][3]
  * Fails with BAD_ARGUMENT (NULL, a negative count, times that are not finite or do not ascend), BAD_POINTS (a finite velocity
  * would not stay so: names the vertex). */
 SKINSLIDE_API skinslide_status skinslide_velocities(int32_t vertex_count, const skinslide_sample *samples, float *velocities,
                                                     skinslide_error *error);
 
-/* The same for accelerations, units per second squared, by the second difference over three samples. */
+/* Adds to the cache's accelerations, units per second squared, the rate at which the displacement's rate of change changes: its
+ * second difference over three samples. Vertices where that is 0 keep their bits.
+ *   samples        in  [3], ascending in time
+ *   accelerations  in, out  the cache's, then the corrected [vertex_count][3]
+ * Fails as skinslide_velocities. */
 SKINSLIDE_API skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *samples,
                                                        float *accelerations, skinslide_error *error);
 

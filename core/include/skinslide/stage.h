@@ -64,7 +64,7 @@ typedef struct skinslide_value {
     const char *name;      /* of the property, for sentences: "primvars:skinSlide:elbow_L:weight" */
     const char *type_name; /* as the scene declares it: "float[]", "color3f[]"; NULL: after type */
     skinslide_value_type type;
-    int32_t is_array;
+    skinslide_bool is_array;
     int32_t width; /* numbers in an element: 1, 2 of a texCoord2f, 3 of a point3f */
     int64_t count; /* elements; 1 of what is no array */
     const void *data;
@@ -78,13 +78,20 @@ typedef struct skinslide_value {
 /* The elements of a record, indices applied; 0 where it has no value. */
 SKINSLIDE_API int64_t skinslide_value_length(const skinslide_value *value);
 
-/* The elements as int32_t, as float, and as positions: an array of whole numbers; of halves, floats or doubles; of three of
- * them each. A record of no value is an empty array.
- *   out  out [skinslide_value_length], for positions [..][3]; NULL: the record is only checked
- * Each fails with BAD_CONTROL ("NAME is not an array of int", "of float", "of points"; a whole number that does not fit; an
- * index that is out of range: names it), BAD_ARGUMENT. */
+/* The elements of an array of whole numbers; of a record of no value there are none.
+ *   out  out [skinslide_value_length]; NULL: the record is only checked
+ * Fails with BAD_CONTROL ("NAME is not an array of int"; a whole number that does not fit; an index that is out of range: names
+ * it), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_value_integers(const skinslide_value *value, int32_t *out, skinslide_error *error);
+
+/* The elements of an array of halves, floats or doubles, likewise.
+ *   out  out [skinslide_value_length]; NULL: the record is only checked
+ * Fails with BAD_CONTROL ("NAME is not an array of float"; an index that is out of range: names it), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_value_floats(const skinslide_value *value, float *out, skinslide_error *error);
+
+/* The elements of an array of three halves, floats or doubles each, likewise.
+ *   out  out [skinslide_value_length][3]; NULL: the record is only checked
+ * Fails with BAD_CONTROL ("NAME is not an array of points"; an index that is out of range: names it), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_value_positions(const skinslide_value *value, float *out, skinslide_error *error);
 
 /* ---- What there is to fetch ---------------------------------------------------------------------------------------------- */
@@ -115,8 +122,8 @@ typedef struct skinslide_stage_input {
     skinslide_stage_group group;
     const char *prefix; /* "", "primvars:", "skinSlide:", "primvars:skinSlide:" */
     skinslide_stage_when when;
-    int32_t is_primvar;   /* 1: it may have indices, in NAME:indices */
-    int32_t is_inherited; /* 1: where the mesh has none, a constant one of the nearest ancestor that has any counts */
+    skinslide_bool is_primvar;   /* it may have indices, in NAME:indices */
+    skinslide_bool is_inherited; /* where the mesh has none, a constant one of the nearest ancestor that has any counts */
 } skinslide_stage_input;
 
 /* The first input of a group, for NULL; then the one after each; NULL after the last. They live as long as the library, and are
@@ -129,27 +136,27 @@ SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_input(skinslide_
 /* "SkinSlideAPI": a prim that has it applied, as SkinSlideAPI:PATCH, carries a patch. A static string. */
 SKINSLIDE_API const char *skinslide_stage_schema(void);
 
-/* Whether a name may be a patch's, as far as the schema goes: 0 for "" and for names that it has other uses for. */
-SKINSLIDE_API int32_t skinslide_stage_can_name_patch(const char *name);
+/* Whether a name may be a patch's, as far as the schema goes: not "", nor names that it has other uses for. */
+SKINSLIDE_API skinslide_bool skinslide_stage_can_name_patch(const char *name);
 
 /* Facts of a prim. Start from SKINSLIDE_STAGE_PRIM_DEFAULT. */
 typedef struct skinslide_stage_prim {
-    size_t size;                /* sizeof(skinslide_stage_prim) */
-    const char *type_name;      /* "Mesh"; NULL: it has none */
-    int32_t is_mesh;            /* 1: a Mesh, or of a type made from it */
-    int32_t is_defined;         /* 1: it and its ancestors are, by more than overs */
-    const char *instance;       /* the path of the instance that it is inside of, or NULL */
-    const char *instancer;      /* the path of the point instancer that it, or what it is below, is a prototype of; or NULL */
-    const char *slid_by;        /* the file that computes its points as slid already, or NULL */
-    const char *baked_by;       /* the layer of an earlier bake that its points, or their default value, come from; or NULL */
-    int32_t point_samples;      /* how many points has */
-    int32_t has_joint_indices;  /* 1: primvars:skel:jointIndices has a value, be it inherited */
-    int32_t blend_shape_count;  /* targets of skel:blendShapeTargets */
-    int32_t schema_count;       /* of applied schemas */
-    int32_t property_count;     /* of authored properties whose names begin with skinSlide: or primvars:skinSlide: */
-    const char *const *schemas; /* [schema_count] their names, in order */
-    const char *const *properties; /* [property_count] their names */
-    const char *uncomposed;        /* what USD says that it could not compose of it, in one line; or NULL */
+    size_t size;               /* sizeof(skinslide_stage_prim) */
+    const char *type_name;     /* "Mesh"; NULL: it has none */
+    skinslide_bool is_mesh;    /* a Mesh, or of a type made from it */
+    skinslide_bool is_defined; /* it and its ancestors are, by more than overs */
+    const char *instance;      /* the path of the instance that it is inside of, or NULL */
+    const char *instancer;     /* the path of the point instancer that it, or what it is below, is a prototype of; or NULL */
+    const char *slid_by;       /* the file that computes its points as slid already, or NULL */
+    const char *baked_by;      /* the layer of an earlier bake that its points, or their default value, come from; or NULL */
+    int32_t point_samples;     /* how many points has */
+    skinslide_bool has_joint_indices; /* primvars:skel:jointIndices has a value, be it inherited */
+    int32_t blend_shape_count;        /* targets of skel:blendShapeTargets */
+    int32_t schema_count;             /* of applied schemas */
+    int32_t property_count;           /* of authored properties whose names begin with skinSlide: or primvars:skinSlide: */
+    const char *const *schemas;       /* [schema_count] their names, in order */
+    const char *const *properties;    /* [property_count] their names */
+    const char *uncomposed;           /* what USD says that it could not compose of it, in one line; or NULL */
 } skinslide_stage_prim;
 
 #define SKINSLIDE_STAGE_PRIM_DEFAULT                                                                                           \
@@ -165,7 +172,7 @@ typedef struct skinslide_stage_problem {
 } skinslide_stage_problem;
 
 typedef struct skinslide_stage_finding {
-    int32_t slides; /* 1: it carries patches, and none of these facts keeps them from being slid */
+    skinslide_bool slides; /* it carries patches, and none of these facts keeps them from being slid */
     int32_t patch_count;
     int32_t problem_count;
     const char *const *patches;                     /* [patch_count] their names, in the order of the schemas */
@@ -223,7 +230,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
 
 /* Whether the mesh's orientation is leftHanded. */
-SKINSLIDE_API int32_t skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh);
+SKINSLIDE_API skinslide_bool skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh);
 
 /* The points of a frame.
  *   points  out [vertex_count][3]; NULL: the record is only checked, as where its data are floats that can be used as they are
@@ -302,7 +309,7 @@ typedef struct skinslide_stage_subset {
     size_t size;                         /* sizeof(skinslide_stage_subset) */
     const char *path;                    /* of the prim, for sentences */
     const char *type_name;               /* of the prim; NULL: it has none */
-    int32_t is_subset;                   /* 1: it is a GeomSubset */
+    skinslide_bool is_subset;            /* it is a GeomSubset */
     const skinslide_value *element_type; /* its token, at the default time; NULL: none, which is face */
     const skinslide_value *indices;      /* its int[], at the first time, named PATH.indices; NULL: none */
 } skinslide_stage_subset;
@@ -325,7 +332,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_check_subset(const skinslid
 SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
 
 /* Whether its interpolation depends on how the mesh is subdivided. */
-SKINSLIDE_API int32_t skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch);
+SKINSLIDE_API skinslide_bool skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch);
 
 /* ---- Controls ------------------------------------------------------------------------------------------------------------ */
 
@@ -388,7 +395,7 @@ typedef struct skinslide_stage_file {
 
 /* Whether the image of a file is held from the time before, for the texture that is asked for: its bytes are then not
  * needed. */
-SKINSLIDE_API int32_t skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path);
+SKINSLIDE_API skinslide_bool skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path);
 
 /* Takes the file that is asked for, and with its last file samples the texture. Where that fails, its others are asked for no
  * more.
@@ -433,13 +440,13 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_p
 /* Puts times in order; of those that differ by no more than the noise that layer offsets leave, 1e-6, the one given first
  * stays. Give the samples of points first, then those of each patch's controls that vary in the order of its inputs, with the
  * samples of indices and of texture coordinates.
- *   times  in  [count], finite; out  those that stay
- *   count  in out
+ *   times  in, out  [count], finite; then those that stay
+ *   count  in, out
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_merge_times(double *times, int64_t *count, skinslide_error *error);
 
 /* "1012" for 1012.0 and "1012.25" for 1012.25, without the noise of layer offsets: how sentences write a frame.
- *   text  out, of 32 bytes */
+ *   text  out [32] */
 SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
 
 /* ---- What follows from points -------------------------------------------------------------------------------------------- */
@@ -447,7 +454,8 @@ SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
 /* Normals, velocities and accelerations that a mesh has beside its points. */
 typedef struct skinslide_stage_derived skinslide_stage_derived;
 
-/*   mesh         in  has its points and faces; must outlive this
+/* Makes what follows from the points of a mesh: nothing yet.
+ *   mesh         in  has its points and faces; must outlive this
  *   point_times  in  [point_time_count] the samples of points, ascending; copied
  *   rate         in  time codes per second
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
