@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from pxr import Sdf
+from pxr import Sdf, Usd
 
 import skinslide
 import stages
@@ -74,7 +74,7 @@ def test_a_stage_that_is_a_link_in_a_circle(tmp_path, capfd):
     assert "circle.usda: Too many levels of symbolic links" in capfd.readouterr().err
 
 
-@pytest.mark.parametrize("rate", ["0", "inf", "nan", "-24"])
+@pytest.mark.parametrize("rate", ["0", "inf", "nan"])
 @pytest.mark.parametrize("arc", ["root", "sublayer", "reference"])
 def test_a_clock_that_stands_still(arc, rate, tmp_path):
     """USD would count the samples of a cache for ever, so another process looks."""
@@ -90,16 +90,17 @@ def test_a_clock_that_stands_still(arc, rate, tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
     assert done.stderr.startswith("error: cannot read ")
-    assert done.stderr.endswith(f"still.usda: timeCodesPerSecond is {rate}; it must be above 0\n")
+    assert done.stderr.endswith(f"still.usda: timeCodesPerSecond is {rate}, and another layer's is not\n")
 
 
 def test_an_open_stage_whose_clock_stands_still(tmp_path):
-    stage, _mesh = stages.patched_stage()
+    cache = stages.save(stages.patched_stage()[0], tmp_path / "cache.usda")
+    stage = Usd.Stage.CreateInMemory()
+    stage.GetRootLayer().subLayerPaths.append(str(cache))
     stage.SetTimeCodesPerSecond(0)
-    with pytest.raises(StageError, match="timeCodesPerSecond is 0; it must be above 0"):
-        skinslide.check(stage)
-    with pytest.raises(StageError, match="timeCodesPerSecond is 0; it must be above 0"):
-        skinslide.bake(stage)
+    for function in (skinslide.check, skinslide.bake):
+        with pytest.raises(StageError, match="timeCodesPerSecond is 0, and another layer's is not"):
+            function(stage)
 
 
 def test_no_name_of_a_prim(tmp_path, capfd):

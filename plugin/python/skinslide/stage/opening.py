@@ -68,11 +68,15 @@ def _sublayers(root: Sdf.Layer | None, path: str) -> list[Sdf.Layer]:
 
 
 def check_clocks(stage: Usd.Stage) -> None:
-    """Raises StageError for a layer whose time USD cannot scale: it would count a cache's samples for ever."""
-    for layer in stage.GetUsedLayers():
+    """Raises StageError for a layer whose time USD cannot scale to another's: it would look for samples for ever."""
+    layers = [layer for layer in stage.GetUsedLayers() if layer != stage.GetSessionLayer()]  # which has the root's
+    rates = {layer.timeCodesPerSecond for layer in layers}  # each nan is one of its own
+    for layer in layers:
         rate = layer.timeCodesPerSecond
-        if not 0 < rate < math.inf:
-            raise StageError(f"cannot read {layer.identifier}: timeCodesPerSecond is {rate:g}; it must be above 0")
+        if len(rates) > 1 and (rate == 0 or not math.isfinite(rate)):
+            raise StageError(
+                f"cannot read {layer.identifier}: timeCodesPerSecond is {rate:g}, and another layer's is not"
+            )
 
 
 def is_live(layer: Sdf.Layer) -> bool:
