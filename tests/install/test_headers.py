@@ -76,4 +76,4 @@ def test_defaults_set_the_size(text):
         (values,) = re.findall(rf"#define {name.upper()}_DEFAULT[\s\\]*\{{(.*?)\}}", text, re.DOTALL)
         given = [each.strip(" \\\n") for each in values.split(",")]
         assert given[0] == f"sizeof({name})" and len(given) == count
-        assert re.search(rf"Start from[\s*]+{name.upper()}_DEFAULT", text)
+        assert re.search(rf"Start[\s*]+from[\s*]+{name.upper()}_DEFAULT", text)
