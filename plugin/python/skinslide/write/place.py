@@ -42,15 +42,15 @@ def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
     try:
         fault = find_fault(output)
     except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
-        too_long = isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG
-        fault = _too_long(output) if too_long else getattr(error, "strerror", None) or str(error)
+        fault = getattr(error, "strerror", None) or str(error)
+        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG and not _has_long_name(output):
+            fault = "its path from the root is too long"
     if fault:
         raise UsageError(f"output {output}: {fault}")
 
 
-def _too_long(output: Path) -> str:
-    longest = max(len(os.fsencode(part)) for part in output.parts)
-    return f"{'the name' if longest > _MOST_BYTES else 'its path from the root'} is too long"
+def _has_long_name(output: Path) -> bool:
+    return any(len(os.fsencode(part)) > _MOST_BYTES for part in output.parts)
 
 
 def _fault(output: Path, made: Path | None) -> str | None:
