@@ -1,4 +1,4 @@
-/* One connected patch: its vertices, edges and loops, which must make a disk with holes, and what of it may slide. */
+/* One connected patch: its vertices, edges and loops, and what of it may slide. */
 #include "patch.h"
 
 #include <math.h>
@@ -96,7 +96,7 @@ static void trace_loops(ss_patch *patch) {
 }
 
 /* Euler: V - E + F + loops = 2 for a sphere with loops cut out; every handle takes 2 away. */
-static skinslide_status check_disk(const ss_patch *patch, skinslide_error *error) {
+skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error) {
     int32_t euler = patch->vertex_count - patch->faces.edge_count + patch->faces.face_count + patch->loop_count;
     if (patch->loop_count == 0)
         return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: the patch is closed; it needs a boundary to hold on to", patch->label);
@@ -247,7 +247,7 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
         return status;
     trace_loops(patch);
     list_edges(patch);
-    if ((status = check_disk(patch, error)) || (status = measure_rest(patch, rest_points, error)))
+    if ((status = measure_rest(patch, rest_points, error)))
         return status;
     put_outer_first(patch, scratch[0]);
     hold_loops(patch);

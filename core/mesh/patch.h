@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* ---- patch.c: one connected patch, a disk with holes ---- */
+/* ---- patch.c: one connected patch ---- */
 
 /* The triangles of the fans of its faces, and how they meet. Side k of a triangle goes from its vertex k to the next. */
 typedef struct ss_triangles {
@@ -34,7 +34,9 @@ typedef struct ss_patch {
     double *rest_length;       /* [edge_count] clamped to shortest */
     double shortest;           /* 1e-6 of the mean rest edge */
     int32_t zero_length_edges;
-    int32_t *loop_start; /* [loop_count + 1]; loop 0 is the outer boundary, the others holes, as faces go round them */
+    int32_t *
+        loop_start; /* [loop_count + 1]; loop 0 is the outer boundary, the others holes, as faces go round them; none where it is
+                            closed */
     int32_t *loop_vertex;
     uint8_t *fixed;       /* [vertex_count] */
     int32_t *free_vertex; /* [free_count] in an order in which each has a neighbour before it */
@@ -48,6 +50,8 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_pat
                                  const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
                                  ss_patch **out, skinslide_error *error);
 void ss_patch_destroy(ss_patch *patch);
+/* BAD_PATCH where it is closed or has handles: only a disk with holes can be laid out in the plane. */
+skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error);
 /* "patch elbow", or "patch elbow (piece 2 of 2)". */
 void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size);
 /* The patch vertex of a mesh vertex, or -1. */

@@ -52,7 +52,9 @@ static skinslide_status embed_rest(plane_rest *own, skinslide_error *error) {
 static skinslide_status lay_out_rest(plane_rest *own, const float *rest_points, skinslide_error *error) {
     const ss_patch *patch = own->head.patch;
     ss_net net = ss_net_of(patch, patch->fixed);
-    skinslide_status status = ss_place_boundary(patch, patch->setup->boundary, rest_points, own->uv, error);
+    skinslide_status status = ss_check_disk(patch, error);
+    if (!status)
+        status = ss_place_boundary(patch, patch->setup->boundary, rest_points, own->uv, error);
     if (!status && patch->setup->holes == SKINSLIDE_HOLES_PINNED)
         status = ss_place_holes(patch, rest_points, own->uv, error);
     if (!status)

@@ -36,21 +36,11 @@ void ss_chart_gradient(const ss_chart *chart, const double (*points)[3], double 
 
 /* ---- Creation ---- */
 
-/* The sine of half the angle at a corner, which plain arithmetic gives. */
-static double half_angle(const ss_chart *chart, const int32_t v[3], int k) {
-    double a[3], b[3];
-    ss_subtract(chart->plane.point[v[(k + 1) % 3]], chart->plane.point[v[k]], a);
-    ss_subtract(chart->plane.point[v[(k + 2) % 3]], chart->plane.point[v[k]], b);
-    ss_normalise(a);
-    ss_normalise(b);
-    return sqrt(fmax(0, 0.5 - 0.5 * ss_dot(a, b)));
-}
-
 static void set_shares(ss_chart *chart, double *sums) {
     const ss_triangles *triangles = &chart->patch->triangles;
     for (int32_t t = 0; t < triangles->count; t++)
         for (int k = 0; k < 3 && chart->plane.facet[t].has_area; k++) {
-            chart->share[t][k] = half_angle(chart, triangles->vertex[t], k);
+            chart->share[t][k] = ss_half_angle(&chart->plane, t, k);
             sums[triangles->vertex[t][k]] += chart->share[t][k];
         }
     for (int32_t t = 0; t < triangles->count; t++)
@@ -110,6 +100,8 @@ static skinslide_status lay_out(const ss_patch *patch, const float *rest_points,
     uint8_t *fixed = SS_NEW(&scratch, uint8_t, patch->vertex_count);
     double *density = SS_NEW(&scratch, double, patch->faces.edge_count);
     skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status)
+        status = ss_check_disk(patch, error);
     if (!status)
         status = ss_place_boundary(patch, SKINSLIDE_BOUNDARY_CIRCLE, rest_points, uv, error);
     if (!status)

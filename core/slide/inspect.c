@@ -37,7 +37,7 @@ skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int
         .edge_count = own->faces.edge_count,
         .face_count = own->faces.face_count,
         .free_count = own->free_count,
-        .hole_count = own->loop_count - 1,
+        .hole_count = own->loop_count > 0 ? own->loop_count - 1 : 0,
         .zero_length_edges = own->zero_length_edges,
         .collapsed_faces = part->rest_layout.collapsed,
         .folded_faces = part->rest_layout.folded,
@@ -64,19 +64,32 @@ skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, in
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv, skinslide_error *error) {
-    const ss_part *part = find_part(slider, patch, uv, error);
-    if (!part)
+/* The same, of a rule that lays patches out in the plane: else UNSUPPORTED. */
+static skinslide_status find_plane(const skinslide_slider *slider, int32_t patch, const void *out, const ss_part **part,
+                                   skinslide_error *error) {
+    *part = find_part(slider, patch, out, error);
+    if (!*part)
         return SKINSLIDE_BAD_ARGUMENT;
+    if (!(*part)->rest->uv)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its rule has no embedding", (*part)->patch->label);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv, skinslide_error *error) {
+    const ss_part *part;
+    skinslide_status status = find_plane(slider, patch, uv, &part, error);
+    if (status)
+        return status;
     memcpy(uv, part->rest->uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
     return SKINSLIDE_OK;
 }
 
 skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
                                                skinslide_error *error) {
-    const ss_part *part = find_part(workspace ? workspace->slider : NULL, patch, uv, error);
-    if (!part)
-        return SKINSLIDE_BAD_ARGUMENT;
+    const ss_part *part;
+    skinslide_status status = find_plane(workspace ? workspace->slider : NULL, patch, uv, &part, error);
+    if (status)
+        return status;
     if (!workspace->has_frame)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
     memcpy(uv, workspace->patches[patch].slide->uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
@@ -85,15 +98,15 @@ skinslide_status skinslide_workspace_embedding(const skinslide_workspace *worksp
 
 skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side, uint32_t *texels,
                                                skinslide_error *error) {
-    const ss_part *part = find_part(workspace ? workspace->slider : NULL, patch, side, error);
-    if (!part)
-        return SKINSLIDE_BAD_ARGUMENT;
+    const ss_part *part;
+    skinslide_status status = find_plane(workspace ? workspace->slider : NULL, patch, side, &part, error);
+    if (status)
+        return status;
     if (!workspace->idbuffer)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace's lookup is exact: it draws no ID buffer");
     if (!workspace->has_frame)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
     const double(*uv)[2] = workspace->patches[patch].slide->uv;
-    skinslide_status status = SKINSLIDE_OK;
     if (texels)
         status = ss_idbuffer_read(workspace->idbuffer, patch, uv, texels, error);
     if (!status)

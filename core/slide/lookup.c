@@ -87,11 +87,12 @@ skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace
     return status;
 }
 
-/* The part of each patch that is drawn: [part_count]. */
+/* The part of each patch that is drawn: [part_count]. Without a plane nothing is, in the least texture. */
 static void describe_patches(const skinslide_slider *slider, ss_id_patch *patches) {
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_part *part = &slider->parts[p];
-        patches[p] = (ss_id_patch){&part->patch->faces, part->patch->free_count, ss_id_side(part->patch, part->rest->uv)};
+        int32_t side = part->rest->uv ? ss_id_side(part->patch, part->rest->uv) : 1;
+        patches[p] = (ss_id_patch){&part->patch->faces, part->patch->free_count, side};
     }
 }
 

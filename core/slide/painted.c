@@ -27,6 +27,13 @@ static skinslide_status check_edge_density(const char *name, const skinslide_con
     return SKINSLIDE_OK;
 }
 
+static skinslide_status check_response(float response, const char *name, const char *of, skinslide_error *error) {
+    if (response >= 0 && response <= 1)
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: response to %s is %g; it must be between 0 and 1", name, of,
+                   response);
+}
+
 skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
                                    skinslide_error *error) {
     skinslide_status status = check_density(controls->vertex_density, mesh->vertex_count, name, "vertex", error);
@@ -45,7 +52,12 @@ skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name,
                            v, controls->max_distance[v]);
     if (isnan(controls->envelope))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: envelope is not a number", name);
-    return SKINSLIDE_OK;
+    for (int32_t v = 0; controls->hold && v < mesh->vertex_count; v++)
+        if (!(controls->hold[v] > 0) || isinf(controls->hold[v]))
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: hold of vertex %d is %g; it must be finite and > 0", name,
+                           v, controls->hold[v]);
+    status = check_response(controls->stretch_response, name, "stretch", error);
+    return status ? status : check_response(controls->compression_response, name, "compression", error);
 }
 
 /* ---- Paint ---- */
@@ -114,4 +126,9 @@ bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls
         any = any || !isinf(limits[i]);
     }
     return any;
+}
+
+void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls, double *holds) {
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        holds[v] = controls->hold ? controls->hold[patch->mesh_vertex[v]] : 1;
 }

@@ -8,11 +8,13 @@
 
 static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, skinslide_error *error) {
     if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE ||
-        (unsigned)setup->rule > SKINSLIDE_RULE_RELAXED || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
+        (unsigned)setup->rule > SKINSLIDE_RULE_EVEN || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no such boundary, holes, rule or interpolation", setup->name);
     if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT && !ss_is_subdivided(mesh))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: interpolation limit needs a mesh that is subdivided",
                        setup->name);
+    if (setup->rule == SKINSLIDE_RULE_EVEN && setup->interpolation != SKINSLIDE_INTERPOLATION_LINEAR)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "patch %s: rule even needs interpolation linear", setup->name);
     return SKINSLIDE_OK;
 }
 
@@ -87,7 +89,8 @@ skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const sk
 static const ss_rule *rule_of(skinslide_rule rule) {
     static const ss_rule *const rules[] = {[SKINSLIDE_RULE_UNIT] = &ss_plane_rule,
                                            [SKINSLIDE_RULE_FAST] = &ss_plane_rule,
-                                           [SKINSLIDE_RULE_RELAXED] = &ss_relaxed_rule};
+                                           [SKINSLIDE_RULE_RELAXED] = &ss_relaxed_rule,
+                                           [SKINSLIDE_RULE_EVEN] = &ss_even_rule};
     return rules[rule];
 }
 
@@ -98,13 +101,16 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
     part->paint = SS_NEW(memory, double, patch->faces.edge_count);
     part->weights = SS_NEW(memory, double, patch->free_count);
     part->limits = SS_NEW(memory, double, patch->free_count);
+    part->holds = SS_NEW(memory, double, patch->vertex_count);
     if (memory->failed)
         return ss_out_of_memory(error);
     ss_paint(patch, controls, part->paint);
     part->clamped_weights = ss_control_weights(patch, controls, part->weights);
     part->limited = ss_control_limits(patch, controls, part->limits);
+    ss_control_holds(patch, controls, part->holds);
+    part->stretch_response = controls->stretch_response, part->compression_response = controls->compression_response;
     skinslide_status status = rule_of(patch->setup->rule)->create(patch, mesh->rest_points, part->paint, &part->rest, error);
-    if (!status)
+    if (!status && part->rest->uv)
         part->rest_layout = ss_lay_out(patch, part->rest->uv);
     return status;
 }
@@ -224,10 +230,11 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
 
 /* ---- The slider ---- */
 
-static skinslide_interpolation choose_interpolation(const skinslide_mesh *mesh, skinslide_interpolation choice) {
-    if (choice != SKINSLIDE_INTERPOLATION_AUTO)
-        return choice;
-    return ss_is_subdivided(mesh) ? SKINSLIDE_INTERPOLATION_LIMIT : SKINSLIDE_INTERPOLATION_LINEAR;
+static skinslide_interpolation choose_interpolation(const skinslide_mesh *mesh, const skinslide_patch_setup *setup) {
+    if (setup->interpolation != SKINSLIDE_INTERPOLATION_AUTO)
+        return setup->interpolation;
+    return setup->rule != SKINSLIDE_RULE_EVEN && ss_is_subdivided(mesh) ? SKINSLIDE_INTERPOLATION_LIMIT
+                                                                        : SKINSLIDE_INTERPOLATION_LINEAR;
 }
 
 static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
@@ -248,7 +255,7 @@ static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_me
         status = copy ? ss_take(own->controls, "skinslide_controls", &controls[i], sizeof *controls, error)
                       : ss_out_of_memory(error);
         own->name = copy ? strcpy(copy, name) : copy;
-        own->interpolation = choose_interpolation(mesh, own->interpolation);
+        own->interpolation = choose_interpolation(mesh, own);
         own->controls = &controls[i];
     }
     return status;

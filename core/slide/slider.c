@@ -6,17 +6,22 @@
 
 /* ---- Stages of one patch ---- */
 
-/* Paint, weights and limits: the set-up's, or this frame's own. */
+/* Paint, weights, limits, holds and responses: the set-up's, or this frame's own. */
 static void apply_controls(const ss_part *part, ss_patch_work *work, const skinslide_controls *controls,
                            skinslide_patch_result *result) {
     ss_frame *frame = &work->frame;
     frame->paint = part->paint, frame->weights = part->weights, frame->limits = part->limited ? part->limits : NULL;
+    frame->holds = part->holds;
+    frame->stretch_response = part->stretch_response, frame->compression_response = part->compression_response;
     result->clamped_weights = part->clamped_weights;
     if (!controls)
         return;
     result->clamped_weights = ss_control_weights(part->patch, controls, work->own_weights);
     frame->weights = work->own_weights;
     frame->limits = ss_control_limits(part->patch, controls, work->own_limits) ? work->own_limits : NULL;
+    ss_control_holds(part->patch, controls, work->own_holds);
+    frame->holds = work->own_holds;
+    frame->stretch_response = controls->stretch_response, frame->compression_response = controls->compression_response;
     ss_paint(part->patch, controls, work->own_paint);
     if (memcmp(work->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) != 0)
         frame->paint = work->own_paint;

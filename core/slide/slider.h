@@ -2,6 +2,7 @@
 #ifndef SKINSLIDE_SLIDER_H
 #define SKINSLIDE_SLIDER_H
 
+#include "even.h"
 #include "limit.h"
 #include "relax.h"
 
@@ -12,10 +13,12 @@ typedef struct ss_part {
     double *paint;   /* [edge_count] of the set-up's controls */
     double *weights; /* [free_count] weight times envelope of the set-up's controls */
     double *limits;  /* [free_count] largest distances of the set-up's controls */
+    double *holds;   /* [vertex_count] of the set-up's controls */
     bool limited;    /* whether any is finite */
+    double stretch_response, compression_response;
     int32_t clamped_weights;
-    ss_layout rest_layout;
-    ss_cage *cage; /* NULL unless its interpolation is LIMIT */
+    ss_layout rest_layout; /* of no faces where the rule has no plane */
+    ss_cage *cage;         /* NULL unless its interpolation is LIMIT */
 } ss_part;
 
 struct skinslide_slider {
@@ -30,10 +33,11 @@ struct skinslide_slider {
 /* What one thread needs to slide one patch. */
 typedef struct ss_patch_work {
     ss_slide *slide;
-    ss_frame frame;                   /* paint, weights and limits are the part's, or its own */
+    ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
     double *lengths;                  /* [edge_count] */
     double *own_paint;                /* [edge_count] */
     double *own_weights, *own_limits; /* [free_count] */
+    double *own_holds;                /* [vertex_count] */
     double (*displacement)[3];        /* [free_count] */
     double *corner_weights;           /* [largest face] */
     ss_cage_work *cage;               /* NULL unless the part has one */
@@ -63,6 +67,8 @@ void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double 
 int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
 /* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */
 bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits);
+/* How much every vertex keeps to its neighbours: [vertex_count]. */
+void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls, double *holds);
 
 /* ---- setup.c ---- */
 

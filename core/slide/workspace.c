@@ -13,6 +13,7 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     work->own_paint = SS_NEW(memory, double, edges);
     work->own_weights = SS_NEW(memory, double, free_count);
     work->own_limits = SS_NEW(memory, double, free_count);
+    work->own_holds = SS_NEW(memory, double, part->patch->vertex_count);
     work->displacement = ss_new(memory, free_count, sizeof *work->displacement);
     work->corner_weights = SS_NEW(memory, double, ss_largest_face(&part->patch->faces));
     if (memory->failed)

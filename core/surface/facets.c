@@ -49,3 +49,13 @@ void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]) 
     ss_add(place->weight[1], pose->facet[place->triangle].first, out);
     ss_add(place->weight[2], pose->facet[place->triangle].second, out);
 }
+
+double ss_half_angle(const ss_posed *pose, int32_t triangle, int corner) {
+    const int32_t *v = pose->patch->triangles.vertex[triangle];
+    double a[3], b[3];
+    ss_subtract(pose->point[v[(corner + 1) % 3]], pose->point[v[corner]], a);
+    ss_subtract(pose->point[v[(corner + 2) % 3]], pose->point[v[corner]], b);
+    ss_normalise(a);
+    ss_normalise(b);
+    return sqrt(fmax(0, 0.5 - 0.5 * ss_dot(a, b)));
+}

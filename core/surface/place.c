@@ -4,7 +4,9 @@
 #include <string.h>
 
 ss_place ss_place_of_vertex(const ss_patch *patch, const double (*uv)[2], int32_t vertex) {
-    ss_place place = {patch->triangles.vertex_triangle[vertex], {0, 0, 0}, {uv[vertex][0], uv[vertex][1]}};
+    ss_place place = {patch->triangles.vertex_triangle[vertex], {0, 0, 0}, {0, 0}};
+    for (int k = 0; k < 2 && uv; k++)
+        place.uv[k] = uv[vertex][k];
     for (int k = 0; k < 3; k++)
         place.weight[k] = patch->triangles.vertex[place.triangle][k] == vertex;
     return place;

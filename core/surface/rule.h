@@ -17,7 +17,7 @@ typedef struct ss_rest {
     const ss_rule *rule;
     const ss_patch *patch;
     const double *paint;   /* [edge_count] of the set-up's controls */
-    const double (*uv)[2]; /* [vertex_count] U0, the patch laid out in the plane */
+    const double (*uv)[2]; /* [vertex_count] U0, the patch laid out in the plane; NULL: the rule knows none */
 } ss_rest;
 
 /* One frame of a patch, before it slides. */
@@ -28,12 +28,14 @@ typedef struct ss_frame {
     const double *weights; /* [free_count] */
     const double *limits;  /* [free_count] how far each may slide; NULL: as far as it goes */
     const int *stop;       /* a flag: the frame is not wanted any more */
+    const double *holds;   /* [vertex_count] */
+    double stretch_response, compression_response;
 } ss_frame;
 
 /* Where vertices of one patch slide to: memory of one thread. Each rule's own begins with this. */
 typedef struct ss_slide {
     const ss_rest *rest;
-    const double (*uv)[2]; /* [vertex_count] the plane that places are in, in the last frame */
+    const double (*uv)[2]; /* [vertex_count] the plane that places are in, in the last frame; NULL: the rule knows none */
     double (*asked)[2];    /* [free_count] where in it each was looked up */
     ss_place *places;      /* [free_count] where it was found, settled */
 } ss_slide;

@@ -20,7 +20,7 @@ typedef struct ss_place {
     double uv[2];     /* the same in a plane that the patch is laid out in */
 } ss_place;
 
-/* uv [vertex_count][2] is that plane everywhere. */
+/* uv [vertex_count][2] is that plane everywhere; NULL where there is none, and uv of the place is 0. */
 ss_place ss_place_of_vertex(const ss_patch *patch, const double (*uv)[2], int32_t vertex);
 /* Keeps its own place. */
 ss_place ss_place_staying(const double own[2]);
@@ -53,7 +53,31 @@ bool ss_posed_allocate(ss_memory *memory, const ss_patch *patch, ss_posed *pose)
 void ss_posed_set(ss_posed *pose, const float *points);
 /* The plane as a pose: an embedding uv [vertex_count][2], to walk straight in. */
 void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]);
+/* The sine of half the angle at a corner of a triangle, which plain arithmetic gives. */
+double ss_half_angle(const ss_posed *pose, int32_t triangle, int corner);
 void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]);
+
+/* ---- step.c ---- */
+
+void ss_place_put(ss_place *place, int32_t triangle, const double weights[3]);
+/* How fast the weights change along a vector, which is projected into the plane of the triangle; and back. */
+void ss_rates_along(const ss_facet *facet, const double vector[3], double rates[3]);
+void ss_vector_along(const ss_facet *facet, const double rates[3], double vector[3]);
+/* The part of the rates that can be gone before a weight, but that of one corner, or -1, is 0: 1 where none gets there. *corner
+ * is the weight, or -1. */
+double ss_reach(const ss_place *place, const double rates[3], int except, int *corner);
+/* Goes that part, which ends on the side opposite the corner where that is not -1. rates are then what is left. */
+void ss_advance(ss_place *place, double rates[3], double part, int corner);
+/* From the side opposite a corner into the triangle beyond it. Returns that one's corner opposite the side. */
+int ss_cross_side(const ss_patch *patch, ss_place *place, int corner);
+
+/* What a walk is measured with: the way in another pose, and how far it may go there. */
+typedef struct ss_meter {
+    const ss_posed *pose;
+    double walked, limit;
+} ss_meter;
+/* How much of a part of the rates the limit allows; adds its length. */
+double ss_measure(ss_meter *meter, int32_t triangle, const double rates[3], double part);
 
 /* ---- walk.c: triangle and weights change, uv does not until the place settles ---- */
 
@@ -66,6 +90,25 @@ void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]);
 void ss_walk_border(const ss_posed *pose, ss_place *place, double distance);
 /* How far the place is along its loop from a vertex of it, the shorter way: less than 0 against the faces' way. */
 double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *place);
+
+/* ---- ground.c: a pose with normals, blended from vertex to vertex ---- */
+
+typedef struct ss_ground {
+    ss_posed pose;
+    double (*normal)[3]; /* [vertex_count] of unit length; 0 where no triangle at the vertex has an area */
+} ss_ground;
+
+bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground);
+/* points is the whole mesh's. */
+void ss_ground_set(ss_ground *ground, const float *points);
+/* The unit normal at a place. */
+void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out[3]);
+
+/* ---- turned.c ---- */
+
+/* Walks from a vertex for the length of a vector tangent there, in the direction that this has at each place that the walk comes
+ * to: see turned.c. With a meter, no farther than that lets it. Returns the part that was walked. */
+double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[3], ss_meter *meter, ss_place *place);
 
 /* ---- travel.c ---- */
 

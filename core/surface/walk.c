@@ -5,26 +5,7 @@
 
 #define MOST_CROSSED 1000
 
-static void put(ss_place *place, int32_t triangle, const double weights[3]) {
-    place->triangle = triangle;
-    for (int k = 0; k < 3; k++)
-        place->weight[k] = weights[k];
-}
-
 /* ---- Setting out: a step as rates of the weights ---- */
-
-/* How fast the weights change along a vector, which is projected into the plane of the triangle. */
-static void rates_along(const ss_facet *facet, const double vector[3], double rates[3]) {
-    double first = ss_dot(facet->first, vector), second = ss_dot(facet->second, vector);
-    rates[1] = facet->gram[0] * first + facet->gram[1] * second;
-    rates[2] = facet->gram[1] * first + facet->gram[2] * second;
-    rates[0] = -rates[1] - rates[2];
-}
-
-static void vector_of(const ss_facet *facet, const double rates[3], double vector[3]) {
-    for (int k = 0; k < 3; k++)
-        vector[k] = rates[1] * facet->first[k] + rates[2] * facet->second[k];
-}
 
 /* Solves step = a p + b q; false where p and q turn right or make no angle. */
 static bool split(const double p[3], const double q[3], const double step[3], double out[2]) {
@@ -48,7 +29,7 @@ static void leave_vertex(const ss_posed *plane, ss_place *place, const double st
         ss_subtract(plane->point[v[last]], plane->point[vertex], q);
         if (split(p, q, step, along) && fmin(along[0], along[1]) > best) {
             best = fmin(along[0], along[1]);
-            put(place, t, (double[3]){k == 0, k == 1, k == 2});
+            ss_place_put(place, t, (double[3]){k == 0, k == 1, k == 2});
             rates[next] = fmax(along[0], 0), rates[last] = fmax(along[1], 0), rates[k] = -rates[next] - rates[last];
         }
         t = patch->triangles.neighbour[t][last];
@@ -60,70 +41,27 @@ static void leave(const ss_posed *plane, ss_place *place, const double step[3], 
     if (ss_place_corner(place) >= 0)
         leave_vertex(plane, place, step, rates);
     else
-        rates_along(&plane->facet[place->triangle], step, rates);
+        ss_rates_along(&plane->facet[place->triangle], step, rates);
 }
 
 /* ---- Walking ---- */
 
-/* The part of the rates that can be gone before a weight is 0: 1 where none gets there; *corner is the weight. */
-static double reach(const ss_place *place, const double rates[3], int *corner) {
-    double most = 1;
-    *corner = -1;
-    for (int k = 0; k < 3; k++)
-        if (rates[k] < 0 && place->weight[k] < -rates[k] * most) {
-            most = place->weight[k] / -rates[k];
-            *corner = k;
-        }
-    return most;
-}
-
-static void advance(ss_place *place, double rates[3], double part, int corner) {
-    double second = fmin(1, fmax(0, place->weight[1] + part * rates[1]));
-    double third = fmin(1, fmax(0, place->weight[2] + part * rates[2])), sum = second + third;
-    second = corner == 1 ? 0 : second, third = corner == 2 ? 0 : third;
-    if (corner == 0 || second + third > 1)
-        second /= sum, third = 1 - second;
-    put(place, place->triangle, (double[3]){corner == 0 ? 0 : 1 - second - third, second, third});
-    for (int k = 0; k < 3; k++)
-        rates[k] *= 1 - part;
-}
-
 /* Over the side opposite a corner into the next triangle, at the same angle to it. */
-static void cross_side(const ss_posed *pose, ss_place *place, int corner, double rates[3]) {
+static void go_over(const ss_posed *pose, ss_place *place, int corner, double rates[3]) {
     const ss_patch *patch = pose->patch;
     int32_t here = place->triangle, there = patch->triangles.neighbour[here][(corner + 1) % 3];
     int32_t a = patch->triangles.vertex[here][(corner + 1) % 3], b = patch->triangles.vertex[here][(corner + 2) % 3];
-    double side[3], out[3], in[3], vector[3], weights[2] = {place->weight[(corner + 1) % 3], place->weight[(corner + 2) % 3]};
+    double side[3], out[3], in[3], vector[3];
     ss_subtract(pose->point[b], pose->point[a], side);
     ss_normalise(side);
     ss_cross(side, pose->facet[here].normal, out);
     ss_cross(side, pose->facet[there].normal, in);
-    vector_of(&pose->facet[here], rates, vector);
+    ss_vector_along(&pose->facet[here], rates, vector);
     double along = ss_dot(vector, side), over = ss_dot(vector, out);
     for (int k = 0; k < 3; k++)
         vector[k] = along * side[k] + over * in[k];
-    rates_along(&pose->facet[there], vector, rates);
-    place->triangle = there;
-    for (int k = 0; k < 3; k++) {
-        int32_t v = patch->triangles.vertex[there][k];
-        place->weight[k] = v == a ? weights[0] : v == b ? weights[1] : 0;
-    }
-}
-
-/* What a walk is measured with: the way in another pose, and how far it may go there. */
-typedef struct ss_meter {
-    const ss_posed *pose;
-    double walked, limit;
-} ss_meter;
-
-/* How much of a part of the rates the limit allows; adds its length. */
-static double measure(ss_meter *meter, int32_t triangle, const double rates[3], double part) {
-    double vector[3];
-    vector_of(&meter->pose->facet[triangle], rates, vector);
-    double length = part * ss_length(vector), allowed = meter->limit - meter->walked;
-    bool too_far = length > allowed;
-    meter->walked += too_far ? allowed : length;
-    return too_far ? part * (allowed / length) : part;
+    ss_rates_along(&pose->facet[there], vector, rates);
+    ss_cross_side(patch, place, corner);
 }
 
 /* One straight walk. A facet without area ends it, and so does the border. */
@@ -132,14 +70,15 @@ static void walk(const ss_posed *plane, ss_place *place, const double step[3], s
     leave(plane, place, step, rates);
     for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
         int corner;
-        double whole = reach(place, rates, &corner), part = meter ? measure(meter, place->triangle, rates, whole) : whole;
-        advance(place, rates, part, part < whole ? -1 : corner);
+        double whole = ss_reach(place, rates, -1, &corner),
+               part = meter ? ss_measure(meter, place->triangle, rates, whole) : whole;
+        ss_advance(place, rates, part, part < whole ? -1 : corner);
         if (corner < 0 || part < whole)
             return;
         int32_t there = plane->patch->triangles.neighbour[place->triangle][(corner + 1) % 3];
         if (there < 0 || !plane->facet[there].has_area)
             return;
-        cross_side(plane, place, corner, rates);
+        go_over(plane, place, corner, rates);
     }
 }
 
@@ -232,7 +171,7 @@ void ss_walk_border(const ss_posed *pose, ss_place *place, double distance) {
         length = side_vector(pose, triangle, side, vector);
     }
     double share = length > 0 ? fmin(1, fmax(0, along / length)) : 0;
-    put(place, triangle, (double[3]){0, 0, 0});
+    ss_place_put(place, triangle, (double[3]){0, 0, 0});
     place->weight[side] = 1 - share;
     place->weight[(side + 1) % 3] = share;
 }

@@ -160,15 +160,20 @@ typedef enum skinslide_holes {
 } skinslide_holes;
 
 /* Where skin slides to. The first two are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
- * plane. The third goes farther, and knows no plane. */
+ * plane. RELAXED goes farther, in a plane that is laid out once. These three need a patch that is a disk with holes. EVEN slides
+ * on the rest surface itself, and takes a patch with any number of handles and boundaries, or none. */
 typedef enum skinslide_rule {
-    SKINSLIDE_RULE_UNIT,   /* 1/l */
-    SKINSLIDE_RULE_FAST,   /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
-    SKINSLIDE_RULE_RELAXED /* to where every edge is as near its rest length as the deformed surface allows: towards a minimum
+    SKINSLIDE_RULE_UNIT,    /* 1/l */
+    SKINSLIDE_RULE_FAST,    /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
+    SKINSLIDE_RULE_RELAXED, /* to where every edge is as near its rest length as the deformed surface allows: towards a minimum
                               of the sum of k log^2(l / rest l), k the painted force density; no face turns over. Every step
                               there is continuous in the pose, so a slide does not jump from one minimum to another, but may
                               go there fast. The patch is always laid out in the circle, holes pinned, and that at rest:
                               corners and boundary count for nothing */
+    SKINSLIDE_RULE_EVEN /* to where the logarithms of edge lengths over rest lengths are in balance, less their median, which is
+                           the character's scale, and those of compressed edges bounded: smooth in the pose, and so in time. Needs
+                           interpolation LINEAR, to which AUTO then comes; corners and boundary count for nothing. There is no
+                           embedding */
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
@@ -198,12 +203,16 @@ typedef struct skinslide_controls {
     float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
     const float *weight; /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted). Under LIMIT
                             a vertex of weight 0 still moves as its neighbours slide, so that its limit point stays */
-    const float *max_distance; /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
+    const float *max_distance;  /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
                                   object units; measured on the triangles that `linear` interpolates in */
+    const float *hold;          /* [mesh vertex_count] or NULL: 1; of EVEN: how much a vertex keeps to how its neighbours
+                                   slide, finite and > 0: low where surplus skin is to come from, high where it must not */
+    float stretch_response;     /* of EVEN: how much of stretch is evened out, 0..1 */
+    float compression_response; /* and of compression */
 } skinslide_controls;
 
 #define SKINSLIDE_CONTROLS_DEFAULT                                                                                             \
-    { sizeof(skinslide_controls), 0, 0, 0, 0, 0, 1.0f, 0, 0 }
+    { sizeof(skinslide_controls), 0, 0, 0, 0, 0, 1.0f, 0, 0, 0, 1.0f, 1.0f }
 
 /* One patch as an artist sets it up. Faces that fall into several pieces, connected through edges, become several patches with
  * the same settings; corners then count for the piece that has them. Start from SKINSLIDE_PATCH_SETUP_DEFAULT. */
@@ -236,9 +245,10 @@ typedef struct skinslide_slider skinslide_slider;
  *   out     out, the caller's to destroy
  * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of
  * repeated vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an
- * edge with three faces, faces wound against each other, a boundary that touches itself, a handle), BAD_CONTROL (a density not
- * > 0, a weight not finite, a largest distance not >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT
- * (NULL, a negative count, no such choice), SINGULAR, UNSUPPORTED, OUT_OF_MEMORY.
+ * edge with three faces, faces wound against each other, a boundary that touches itself, a handle; EVEN needs no boundary, and
+ * takes handles), BAD_CONTROL (a density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
+ * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR,
+ * UNSUPPORTED (EVEN: another interpolation than LINEAR, too), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
  * edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a hole of
  * the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face with
@@ -291,7 +301,7 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slid
 
 /* The rest embedding U0 of a patch.
  *   uv  out [vertex_count of the patch][2], in [0,1]^2 up to rounding
- * Fails with BAD_ARGUMENT (there is no such patch). */
+ * Fails with BAD_ARGUMENT (there is no such patch), UNSUPPORTED (its rule has none). */
 SKINSLIDE_API skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv,
                                                           skinslide_error *error);
 
@@ -393,7 +403,8 @@ typedef struct skinslide_patch_result {
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
     int32_t damped_vertices;   /* LIMIT only: brought back towards their place under LINEAR */
     int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes. Of the
-                                  relaxed rule: in the slid patch; none but by weights or largest distances that differ */
+                                  relaxed rule: in the slid patch; none but by weights or largest distances that differ. Of the
+                                  even rule: on the rest surface where its corners come from */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t found_in_centre;   /* vertices in the face of their own texel of the texture */
     int32_t found_in_3x3;      /* in another face of the texels around it */
@@ -409,13 +420,14 @@ typedef struct skinslide_patch_result {
 
     double density_seconds;     /* force densities from edge lengths */
     double embed_seconds;       /* the frame's embedding */
-    double relax_seconds;       /* of the relaxed rule, in place of embedding and locating */
+    double relax_seconds;       /* of the relaxed and the even rule, in place of embedding and locating */
     double locate_seconds;      /* looking rest vertices up in the embedding */
     double interpolate_seconds; /* their places on the deformed surface; of LIMIT, the faces fitted to them, too */
+    int32_t cut_steps;          /* of the even rule: those of its four steps that faces would not have stood whole */
 } skinslide_patch_result;
 
 #define SKINSLIDE_PATCH_RESULT_DEFAULT                                                                                         \
-    { sizeof(skinslide_patch_result), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_patch_result), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* Slides the skin of one frame (paper, section 3): density, embed, locate, interpolate for every patch, then the blend.
  *   points    in  [vertex_count][3] the deformed mesh
@@ -434,14 +446,15 @@ SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, c
 
 /* The embedding Ud of a patch in the last frame that this workspace slid.
  *   uv  out [vertex_count of the patch][2]
- * Fails with BAD_ARGUMENT where there is no such patch or no frame yet. */
+ * Fails with BAD_ARGUMENT where there is no such patch or no frame yet, UNSUPPORTED where the rule has none. */
 SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
                                                              skinslide_error *error);
 
 /* The texture of lookup EGL: the last frame's embedding, drawn again. Pictures are made of it.
  *   side    out  texels along a side
  *   texels  out  [side][side], in rows of u from v = 0 on: 1 + patch face, 0 where there is none; NULL: only side is wanted
- * Fails with BAD_ARGUMENT where there is no such patch, no frame yet, or the lookup is EXACT; DEVICE_FAILED, OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT where there is no such patch, no frame yet, or the lookup is EXACT; UNSUPPORTED where the rule has no
+ * embedding; DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
                                                              uint32_t *texels, skinslide_error *error);
 

@@ -1,0 +1,183 @@
+/* One slide: four steps towards the balance of stretch. */
+#include "even.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define STEPS            4
+#define MOST_COMPRESSION 0.5   /* what drives skin apart comes to this at most */
+#define LEAST_SQUARE     1e-12 /* of an edge's length over that at rest */
+
+skinslide_status ss_evener_create(const ss_sheet *sheet, ss_evener **out, skinslide_error *error) {
+    ss_evener *evener = calloc(1, sizeof *evener);
+    if (!evener)
+        return ss_out_of_memory(error);
+    ss_memory *memory = &evener->memory;
+    int32_t vertices = sheet->patch->vertex_count;
+    evener->sheet = sheet;
+    evener->paint = SS_NEW(memory, double, sheet->patch->faces.edge_count);
+    evener->weight = SS_NEW(memory, double, vertices), evener->next_weight = SS_NEW(memory, double, vertices);
+    evener->hold = SS_NEW(memory, double, vertices);
+    evener->place = SS_NEW(memory, ss_place, vertices);
+    evener->at = ss_new(memory, vertices, sizeof *evener->at);
+    evener->up = ss_new(memory, vertices, sizeof *evener->up);
+    evener->slide = ss_new(memory, vertices, sizeof *evener->slide);
+    evener->step = ss_new(memory, vertices, sizeof *evener->step);
+    evener->part = SS_NEW(memory, double, vertices);
+    evener->stretch = SS_NEW(memory, double, sheet->spring_count);
+    evener->sorted = SS_NEW(memory, ss_weighted, sheet->spring_count);
+    ss_posed_allocate(memory, sheet->patch, &evener->pose);
+    skinslide_status status = memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status)
+        status = ss_blocks_create(sheet->system, &evener->K, error);
+    if (status)
+        ss_evener_destroy(evener);
+    else
+        *out = evener;
+    return status;
+}
+
+void ss_evener_destroy(ss_evener *evener) {
+    if (!evener)
+        return;
+    ss_blocks_destroy(evener->K);
+    ss_free(&evener->memory);
+    free(evener);
+}
+
+/* ---- Where the vertices are ---- */
+
+static void start(ss_evener *evener, const float *points) {
+    const ss_patch *patch = evener->sheet->patch;
+    ss_posed_set(&evener->pose, points);
+    memcpy(evener->at, evener->pose.point, (size_t)patch->vertex_count * sizeof *evener->at);
+    memset(evener->slide, 0, (size_t)patch->vertex_count * sizeof *evener->slide);
+    memset(evener->step, 0, (size_t)patch->vertex_count * sizeof *evener->step);
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        evener->place[v] = ss_place_of_vertex(patch, NULL, v);
+}
+
+/* Walks anew from the vertex's own place; what is beyond the border is no slide. */
+static void slide_vertex(ss_evener *evener, int32_t v) {
+    const ss_sheet *sheet = evener->sheet;
+    double *slide = evener->slide[v], way[3] = {0, 0, 0};
+    for (int j = 0; j < 2; j++) {
+        slide[j] += evener->step[v][j];
+        ss_add(slide[j], sheet->tangent[v][j], way);
+    }
+    if (sheet->patch->vertex_loop[v] >= 0) {
+        evener->place[v] = ss_place_of_vertex(sheet->patch, NULL, v);
+        ss_walk_border(&sheet->ground.pose, &evener->place[v], slide[0]);
+    } else {
+        double part = ss_walk_turned(&sheet->ground, v, way, NULL, &evener->place[v]);
+        for (int j = 0; j < 2 && part < 1; j++)
+            slide[j] *= part;
+    }
+    ss_place_point(&evener->pose, &evener->place[v], evener->at[v]);
+}
+
+/* ---- The balance ---- */
+
+static void measure_stretch(ss_evener *evener) {
+    for (int32_t i = 0; i < evener->sheet->spring_count; i++) {
+        const ss_spring *spring = &evener->sheet->springs[i];
+        double way[3];
+        ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
+        evener->stretch[i] = spring->square > 0 ? 0.5 * log(fmax(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
+    }
+}
+
+static double find_scale(const ss_evener *evener, const double *paint) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < evener->sheet->spring_count; i++)
+        if (evener->sheet->springs[i].square > 0)
+            evener->sorted[count++] = (ss_weighted){evener->stretch[i], paint[evener->sheet->springs[i].edge]};
+    return ss_find_scale(evener->sorted, count);
+}
+
+/* s(z), z over the scale. */
+static double drive(const ss_frame *frame, double z) {
+    double share = z / MOST_COMPRESSION;
+    return z < 0 ? frame->compression_response * z / sqrt(1 + share * share) : frame->stretch_response * z;
+}
+
+static void add_force(ss_evener *evener, const ss_spring *spring, double force) {
+    for (int end = 0; end < 2; end++) {
+        int32_t v = spring->end[end];
+        if (evener->weight[v] == 0)
+            continue;
+        double *right = evener->K->right[ss_blocks_unknown(evener->K, v)];
+        for (int j = 0; j < 2; j++)
+            right[j] += force * spring->slope[end][j];
+    }
+}
+
+/* Solves K goal = J' k (J d - s), and takes the way there for the step. */
+static void solve(ss_evener *evener, const ss_frame *frame, double scale) {
+    const ss_sheet *sheet = evener->sheet;
+    memset(evener->K->right, 0, (size_t)sheet->system->n * sizeof *evener->K->right);
+    for (int32_t i = 0; i < sheet->spring_count; i++) {
+        const ss_spring *spring = &sheet->springs[i];
+        double linear = 0;
+        for (int end = 0; end < 2; end++)
+            for (int j = 0; j < 2; j++)
+                linear += spring->slope[end][j] * evener->slide[spring->end[end]][j];
+        add_force(evener, spring, evener->paint[spring->edge] * (linear - drive(frame, evener->stretch[i] - scale)));
+    }
+    ss_blocks_solve(evener->K);
+    for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
+        for (int j = 0; j < 2 && evener->weight[v] > 0; j++)
+            evener->step[v][j] = evener->K->right[ss_blocks_unknown(evener->K, v)][j] - evener->slide[v][j];
+}
+
+/* ---- The slide ---- */
+
+/* By vertex: those that do not slide have no weight. */
+static void spread_weights(ss_evener *evener, const ss_frame *frame) {
+    const ss_patch *patch = evener->sheet->patch;
+    memset(evener->next_weight, 0, (size_t)patch->vertex_count * sizeof *evener->next_weight);
+    for (int32_t i = 0; i < patch->free_count; i++)
+        if (!evener->sheet->held[patch->free_vertex[i]])
+            evener->next_weight[patch->free_vertex[i]] = frame->weights[i];
+}
+
+static bool stays(const ss_evener *evener, int32_t vertex) {
+    const ss_place *place = &evener->place[vertex];
+    int corner = ss_place_corner(place);
+    return corner >= 0 && evener->sheet->patch->triangles.vertex[place->triangle][corner] == vertex;
+}
+
+static void write_places(const ss_evener *evener, ss_place *places) {
+    const ss_patch *patch = evener->sheet->patch;
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        places[i] = evener->place[patch->free_vertex[i]];
+        if (stays(evener, patch->free_vertex[i]))
+            places[i].triangle = SS_STAYS;
+    }
+}
+
+static bool take_step(ss_evener *evener, const ss_frame *frame, double scale) {
+    solve(evener, frame, scale);
+    bool cut = ss_shorten_steps(evener->sheet, (const double(*)[2])evener->slide, evener->step, evener->part);
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        if (evener->weight[v] > 0)
+            slide_vertex(evener, v);
+    return cut;
+}
+
+skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, ss_place *places, int32_t *cut, skinslide_error *error) {
+    start(evener, frame->points);
+    measure_stretch(evener);
+    double scale = find_scale(evener, frame->paint);
+    spread_weights(evener, frame);
+    skinslide_status status = ss_need_stiffness(evener, frame->paint, evener->next_weight, frame->holds, error);
+    if (status)
+        return status;
+    for (int step = 0; step < STEPS; step++) {
+        if (step > 0)
+            measure_stretch(evener);
+        *cut += take_step(evener, frame, scale);
+    }
+    write_places(evener, places);
+    return SKINSLIDE_OK;
+}

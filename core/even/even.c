@@ -1,0 +1,86 @@
+/* The rule `even`: its functions, as every rule has them. */
+#include "even.h"
+
+#include <stdlib.h>
+
+typedef struct even_rest {
+    ss_rest head;
+    ss_sheet *sheet;
+} even_rest;
+
+typedef struct even_slide {
+    ss_slide head;
+    ss_memory memory;
+    ss_evener *evener;
+} even_slide;
+
+/* ---- Once a shot ---- */
+
+static void destroy(ss_rest *rest) {
+    even_rest *own = (even_rest *)rest;
+    ss_sheet_destroy(own->sheet);
+    free(own);
+}
+
+static skinslide_status create(const ss_patch *patch, const float *rest_points, const double *paint, ss_rest **out,
+                               skinslide_error *error) {
+    even_rest *own = calloc(1, sizeof *own);
+    if (!own)
+        return ss_out_of_memory(error);
+    own->head = (ss_rest){&ss_even_rule, patch, paint, NULL};
+    skinslide_status status = ss_sheet_create(patch, rest_points, &own->sheet, error);
+    if (status)
+        destroy(&own->head);
+    else
+        *out = &own->head;
+    return status;
+}
+
+/* ---- Once a thread ---- */
+
+static void close_slide(ss_slide *slide) {
+    even_slide *own = (even_slide *)slide;
+    ss_evener_destroy(own->evener);
+    ss_free(&own->memory);
+    free(own);
+}
+
+static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
+                                   skinslide_error *error) {
+    (void)idbuffer, (void)number; /* nothing is looked up */
+    even_slide *own = calloc(1, sizeof *own);
+    if (!own)
+        return ss_out_of_memory(error);
+    own->head.rest = rest;
+    own->head.places = SS_NEW(&own->memory, ss_place, rest->patch->free_count);
+    skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status)
+        status = ss_evener_create(((const even_rest *)rest)->sheet, &own->evener, error);
+    if (status)
+        close_slide(&own->head);
+    else
+        *out = &own->head;
+    return status;
+}
+
+/* ---- In every frame ---- */
+
+static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
+    double time = ss_now();
+    skinslide_status status = ss_even_out(((even_slide *)slide)->evener, frame, slide->places, &result->cut_steps, error);
+    ss_lap(&time, &result->relax_seconds);
+    return status;
+}
+
+static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
+    (void)error;
+    ss_evener *evener = ((even_slide *)slide)->evener;
+    double time = ss_now();
+    if (frame->limits)
+        ss_limit_ways(evener, frame, slide->places);
+    result->folded_faces = ss_count_turned_over(evener->sheet, slide->places, evener->at, evener->up);
+    ss_lap(&time, &result->relax_seconds);
+    return SKINSLIDE_OK;
+}
+
+const ss_rule ss_even_rule = {create, destroy, open_slide, close_slide, start, finish};

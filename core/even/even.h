@@ -1,0 +1,123 @@
+/* The rule `even`: stretch evened out over the rest surface itself, on any patch, open or closed, with no plane. With d the slides
+ * of the vertices along tangents of rest,
+ *
+ *     J' k s(z(d)) + eta B d + A d = 0
+ *
+ * z of an edge is the logarithm of how much longer it is, where its ends have slid to on the pose, than at rest, and s what of
+ * that drives; k is its painted force density. J is how z changes with d at rest; B holds neighbours together, and A, where
+ * weights are below 1, each vertex at its own place. K = J' k J + eta B + A does not depend on the pose, and
+ *
+ *     d <- K^-1 J' k (J d - s(z(d)))
+ *
+ * is done four times, always, from 0: what comes is smooth in the pose, and no frame depends on another. */
+#ifndef SKINSLIDE_EVEN_H
+#define SKINSLIDE_EVEN_H
+
+#include "linear.h"
+#include "rule.h"
+
+/* ---- sheet.c ---- */
+
+/* An edge of which an end may slide. */
+typedef struct ss_spring {
+    int32_t edge;
+    int32_t end[2];
+    double square;      /* of its length at rest; 0 where that is under the patch's shortest: such an edge only holds */
+    double slope[2][2]; /* J: of its z as either end slides along its tangents */
+} ss_spring;
+
+/* A corner of a face, in the plane of the face at rest. */
+typedef struct ss_flat_corner {
+    double at[2];
+    double along[2][2]; /* [axis][tangent] how it moves there as its vertex slides */
+} ss_flat_corner;
+
+/* A patch at rest, and what of that every frame needs: immutable. */
+typedef struct ss_sheet {
+    ss_memory memory;
+    const ss_patch *patch;
+    ss_ground ground;        /* rest */
+    uint8_t *held;           /* [vertex_count] fixed, or without a normal or a way along its loop */
+    double (*tangent)[2][3]; /* [vertex_count] unit; along a free loop the first alone, and the second is 0 */
+    int32_t spring_count;
+    ss_spring *springs;
+    ss_flat_corner *corner; /* [corner_count] */
+    double *area;           /* [face_count] twice, in the same plane */
+    uint8_t *turned;        /* [face_count] which are turned over against the normals of their corners at rest already */
+    ss_system *system;      /* of what K joins */
+} ss_sheet;
+
+/* rest_points is the whole mesh's. */
+skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points, ss_sheet **out, skinslide_error *error);
+void ss_sheet_destroy(ss_sheet *sheet);
+
+/* ---- balance.c ---- */
+
+/* How much an edge is stretched, and its force density. */
+typedef struct ss_weighted {
+    double z, k;
+} ss_weighted;
+
+/* Memory of one thread for one patch, and where its slide has got to. */
+typedef struct ss_evener {
+    ss_memory memory;
+    const ss_sheet *sheet;
+    ss_blocks *K; /* factored for the paint, weights and holds below */
+    bool factored;
+    double *paint;         /* [edge_count] */
+    double *weight, *hold; /* [vertex_count]; the weight of held vertices is 0 */
+    double *next_weight;   /* of the frame that begins */
+    ss_posed pose;
+    ss_place *place;     /* [vertex_count] where each vertex is */
+    double (*at)[3];     /* [vertex_count] of it in the pose */
+    double (*up)[3];     /* [vertex_count] scratch for normals */
+    double (*slide)[2];  /* [vertex_count] d */
+    double (*step)[2];   /* [vertex_count] to be added to it */
+    double *stretch;     /* [spring_count] z */
+    double *part;        /* [vertex_count] of a step that is taken */
+    ss_weighted *sorted; /* [spring_count] */
+} ss_evener;
+
+skinslide_status ss_evener_create(const ss_sheet *sheet, ss_evener **out, skinslide_error *error);
+void ss_evener_destroy(ss_evener *evener);
+/* Where every free vertex slides to, in their order: places [free_count]. Returns through *cut how many of the steps were cut short
+ * by a face. Fails with SINGULAR. */
+skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, ss_place *places, int32_t *cut, skinslide_error *error);
+
+/* ---- limits.c ---- */
+
+/* Cuts ways of the last slide short that are longer in the pose than the frame lets them be. */
+void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places);
+
+/* ---- stiffness.c, anchor.c ---- */
+
+/* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR, OUT_OF_MEMORY. */
+skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const double *weight, const double *hold,
+                                   skinslide_error *error);
+/* Stiffnesses [vertex_count] that hold each vertex at its own place so that it slides about its weight as far as it would.
+ * False where memory is short. */
+bool ss_find_anchors(const ss_evener *evener, double *anchor);
+
+/* ---- scale.c ---- */
+
+/* The smoothed median of z by k, 0 of none; sorts them. */
+double ss_find_scale(ss_weighted *values, int32_t count);
+
+/* ---- shorten.c ---- */
+
+/* Shortens steps [vertex_count] so that no face turns over. part is scratch [vertex_count]. Returns whether some face had to be
+ * kept from it, beyond the ease that all steps have. */
+bool ss_shorten_steps(const ss_sheet *sheet, const double (*slide)[2], double (*step)[2], double *part);
+
+/* ---- folds.c ---- */
+
+/* Whether a face with vertices at points, where normals are those given, both [vertex_count], is turned over against them. */
+bool ss_is_turned(const ss_patch *patch, int32_t face, const double (*at)[3], const double (*normal)[3]);
+/* Faces that places [free_count] turn over on the rest surface. normal is scratch [vertex_count]. */
+int32_t ss_count_turned_over(const ss_sheet *sheet, const ss_place *places, double (*at)[3], double (*normal)[3]);
+
+/* ---- even.c ---- */
+
+extern const ss_rule ss_even_rule;
+
+#endif
