@@ -173,7 +173,7 @@ skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, ss_place 
     skinslide_status status = ss_need_stiffness(evener, frame->paint, evener->next_weight, frame->holds, error);
     if (status)
         return status;
-    for (int step = 0; step < STEPS; step++) {
+    for (int step = 0; step < STEPS && !ss_is_set(frame->stop); step++) {
         if (step > 0)
             measure_stretch(evener);
         *cut += take_step(evener, frame, scale);

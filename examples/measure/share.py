@@ -20,7 +20,7 @@ from pxr import Usd
 
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
-RULES = ("unit", "fast", "relaxed")
+RULES = ("unit", "fast", "even", "relaxed")  # the search begins at the last, too
 HEADINGS = ("example", "frame", "cache", "best", *RULES, "steps", "off", "folded")
 MOST_STEPS = 400
 LEAST_GAIN = 1e-9  # of the energy, by one step of the search

@@ -22,7 +22,7 @@ from scipy.interpolate import CubicSpline
 
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
-RULES = ("unit", "relaxed")
+RULES = ("unit", "even", "relaxed")
 HEADINGS = ("example", "rule", "ratio", "above 2", "worst", "vertex", "frame", "shrinks")
 STEP = 0.25  # of a frame, between sub-frames
 SHORTER = 4

@@ -76,16 +76,18 @@ static void memory_is_zero_and_aligned(void **state) {
 
 /* ---- Every call, with every allocation failing ---- */
 
+enum { SETUPS = 3 };
+
 typedef struct scene {
     test_mesh mesh;
     int32_t *faces;
-    skinslide_patch_setup setups[2];
-    skinslide_controls controls[2];
+    skinslide_patch_setup setups[SETUPS];
+    skinslide_controls controls[SETUPS];
     painted paint;
     float *points, *slid, *slide, *normals, *limits;
 } scene;
 
-/* Two set-ups, one of them relaxed, of two grids and holes; painted and limited by the frame, with edges. */
+/* Three set-ups, one of them relaxed and one even, of two grids and holes; painted and limited by the frame, with edges. */
 static void make_scene(scene *s) {
     static const int32_t edges[2] = {0, 1};
     static const float factors[1] = {2};
@@ -93,13 +95,14 @@ static void make_scene(scene *s) {
     s->mesh = join_meshes(&sheet, &holed);
     s->faces = all_faces(&s->mesh);
     s->setups[0] = setup_of(s->faces, s->mesh.face_count), s->setups[1] = setup_of(s->faces, 20);
-    s->setups[1].rule = SKINSLIDE_RULE_RELAXED;
+    s->setups[2] = s->setups[1];
+    s->setups[1].rule = SKINSLIDE_RULE_RELAXED, s->setups[2].rule = SKINSLIDE_RULE_EVEN;
     s->paint = paint_at_random(&s->mesh, 1);
     s->limits = malloc((size_t)s->mesh.vertex_count * sizeof(float));
     for (int32_t v = 0; v < s->mesh.vertex_count; v++)
         s->limits[v] = 0.01f;
     s->paint.controls.max_distance = s->limits;
-    s->controls[0] = s->controls[1] = s->paint.controls;
+    s->controls[0] = s->controls[1] = s->controls[2] = s->paint.controls;
     s->controls[0].edges = edges, s->controls[0].edge_density = factors, s->controls[0].edge_count = 1;
     s->points = random_pose(&s->mesh, 1);
     s->slid = malloc(POINT_BYTES(&s->mesh)), s->slide = malloc(POINT_BYTES(&s->mesh));
@@ -149,7 +152,7 @@ static skinslide_status run_all(void *subject, skinslide_error *error) {
     float point[3];
     const skinslide_diagnostics diagnostics = {.size = sizeof(skinslide_diagnostics), .slide = s->slide};
     skinslide_mesh view = view_of_scene(s);
-    skinslide_status status = skinslide_slider_create(&view, s->setups, 2, &slider, error);
+    skinslide_status status = skinslide_slider_create(&view, s->setups, SETUPS, &slider, error);
     if (!status)
         status = skinslide_workspace_create(slider, &options, &workspace, error);
     if (!status)
@@ -424,7 +427,7 @@ static void a_frame_allocates_nothing(void **state) {
     rig r = {0};
     skinslide_mesh view = view_of_scene(&s);
     skinslide_error error;
-    assert_ok(skinslide_slider_create(&view, s.setups, 2, &r.slider, &error), &error);
+    assert_ok(skinslide_slider_create(&view, s.setups, SETUPS, &r.slider, &error), &error);
     assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
     left_to_give = 0, watching = true;
     skinslide_status plain = skinslide_slide(r.workspace, s.points, NULL, s.slid, NULL, &error);

@@ -96,7 +96,7 @@ def test_fields_are_those_of_the_header(sheet, rest):
 def test_tokens_are_those_of_the_stage():
     assert slider.tokens("boundary") == ("auto", "square", "circle")
     assert slider.tokens("holes") == ("pinned", "free")
-    assert slider.tokens("rule") == ("unit", "fast", "relaxed")
+    assert slider.tokens("rule") == ("unit", "fast", "relaxed", "even")
     assert slider.tokens("interpolation") == ("auto", "linear", "meanValue", "limit")
     assert slider.tokens("lookup") == ("auto", "egl", "exact")
 

@@ -74,8 +74,11 @@ static void expect_patch(const test_mesh *mesh, const char *text) {
     ss_patch *patch = NULL;
     skinslide_status status = ss_patch_create(&view, &setup, 0, faces, mesh->face_count, 0, 1, &patch, &error);
     free(faces);
-    assert_null(patch);
+    assert_true((patch == NULL) == (status != SKINSLIDE_OK));
+    if (!status)
+        status = ss_check_disk(patch, &error);
     assert_fails(status, &error, SKINSLIDE_BAD_PATCH, text);
+    ss_patch_destroy(patch);
 }
 
 static void expect_patch_of(int32_t vertices, int32_t face_count, const int32_t *counts, const int32_t *indices,

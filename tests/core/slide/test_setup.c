@@ -177,7 +177,7 @@ static void bad_choices(void **state) {
     expect_setup(setup, SKINSLIDE_BAD_ARGUMENT, text);
     setup = setup_of(nine, 9), setup.holes = (skinslide_holes)-1;
     expect_setup(setup, SKINSLIDE_BAD_ARGUMENT, text);
-    setup = setup_of(nine, 9), setup.rule = (skinslide_rule)3;
+    setup = setup_of(nine, 9), setup.rule = (skinslide_rule)4;
     expect_setup(setup, SKINSLIDE_BAD_ARGUMENT, text);
     setup = setup_of(nine, 9), setup.interpolation = (skinslide_interpolation)4;
     expect_setup(setup, SKINSLIDE_BAD_ARGUMENT, text);

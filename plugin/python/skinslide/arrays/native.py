@@ -32,6 +32,9 @@ class Controls:
         weight: How far each vertex slides (V,), 0 to 1; None: 1.
         envelope: Scales the slide of the whole patch, 0 to 1.
         max_distance: How far each vertex may slide along the surface (V,), in the mesh's units; None: no limit.
+        hold: How much a vertex keeps to its neighbours' slide (V,), above 0; None: 1. Of the rule even.
+        stretch_response: How much of stretch is evened out, 0 to 1. Of the rule even.
+        compression_response: How much of compression is. Of the rule even.
     """
 
     vertex_density: np.ndarray | None = None
@@ -41,6 +44,9 @@ class Controls:
     weight: np.ndarray | None = None
     envelope: float = 1.0
     max_distance: np.ndarray | None = None
+    hold: np.ndarray | None = None
+    stretch_response: float = 1.0
+    compression_response: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,6 +261,7 @@ class Arguments:
             "face_density": sizes.faces,
             "weight": sizes.vertices,
             "max_distance": sizes.vertices,
+            "hold": sizes.vertices,
         }
         for name, count in counts.items():
             values = getattr(controls, name)
@@ -268,6 +275,8 @@ class Arguments:
         target.edges = self.optional(edges, np.int32, (-1, 2), f"{where}edges")
         target.edge_density = self.optional(density, np.float32, (target.edge_count,), f"{where}edge density")
         target.envelope = controls.envelope
+        target.stretch_response = controls.stretch_response
+        target.compression_response = controls.compression_response
 
     def frame_controls(self, controls: Sequence[Controls] | None, names: tuple[str, ...], sizes: Sizes) -> Any:
         if controls is None:

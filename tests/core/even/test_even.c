@@ -1,0 +1,514 @@
+/* The rule `even`: what it promises of any patch, and what no rule in a plane can do. */
+#include "distance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static skinslide_patch_setup even(void) {
+    skinslide_patch_setup choices = setup_of(NULL, 0);
+    choices.rule = SKINSLIDE_RULE_EVEN, choices.interpolation = SKINSLIDE_INTERPOLATION_LINEAR;
+    return choices;
+}
+
+/* ---- Fixtures ---- */
+
+/* A cube of n x n quads a side, its points on the unit sphere: shared along the edges, closed. */
+static int32_t cube_vertex(int32_t n, const int32_t at[3]) {
+    return at[0] + (n + 1) * (at[1] + (n + 1) * at[2]);
+}
+
+static test_mesh sphere(int32_t n) {
+    int32_t points_a_side = n + 1, faces = 6 * n * n, vertices = points_a_side * points_a_side * points_a_side, count = 0;
+    int32_t *counts = malloc((size_t)faces * sizeof *counts), *indices = malloc(4 * (size_t)faces * sizeof *indices);
+    float *points = malloc(3 * (size_t)vertices * sizeof *points);
+    for (int32_t v = 0; v < vertices; v++) {
+        double p[3] = {v % points_a_side, v / points_a_side % points_a_side, v / (points_a_side * points_a_side)};
+        for (int k = 0; k < 3; k++)
+            p[k] = tan((2 * p[k] / n - 1) * atan(1));
+        double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        for (int k = 0; k < 3; k++)
+            points[3 * v + k] = length > 0 ? (float)(p[k] / length) : 0; /* inner points belong to no face */
+    }
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++)
+            for (int32_t i = 0; i < n * n; i++, count++)
+                for (int k = 0; k < 4; k++) {
+                    int32_t corner[3], u = (axis + 1) % 3, w = (axis + 2) % 3, turn = side ? k : 3 - k;
+                    corner[axis] = side * n;
+                    corner[u] = i % n + (turn == 1 || turn == 2), corner[w] = i / n + (turn >= 2);
+                    indices[4 * count + k] = cube_vertex(n, corner);
+                    counts[count] = 4;
+                }
+    test_mesh mesh = copy_mesh(vertices, faces, counts, indices, points);
+    free(counts), free(indices), free(points);
+    return mesh;
+}
+
+/* A bump that swells a closed body on one side. */
+static float *swollen(const test_mesh *mesh, double amount) {
+    float *points = copy_points(mesh);
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *p = mesh->points + 3 * v;
+        double share = exp(-4 * ((p[0] - 1.0) * (p[0] - 1) + p[1] * p[1] + p[2] * p[2]));
+        for (int k = 0; k < 3; k++)
+            points[3 * v + k] = (float)(p[k] * (1 + amount * share) + (k == 2 ? 0.3 * amount * share : 0));
+    }
+    return points;
+}
+
+static bool all_finite(const float *points, int32_t count) {
+    for (int32_t i = 0; i < count; i++)
+        if (!isfinite(points[i]))
+            return false;
+    return true;
+}
+
+static double mean_edge(const test_mesh *mesh) {
+    skinslide_patch_setup choices = even();
+    ss_patch *patch = patch_of(mesh, choices);
+    double edge = 1e6 * patch->shortest;
+    ss_patch_destroy(patch);
+    return edge;
+}
+
+/* ---- Rest ---- */
+
+static void rest_keeps_its_bits(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
+        fixture f = make_fixture(i);
+        skinslide_patch_setup choices = even();
+        choices.holes = (skinslide_holes)(i % 2);
+        rig r = rig_of(&f.mesh, choices);
+        painted paint = paint_at_random(&f.mesh, 5);
+        skinslide_patch_result result;
+        float *pose = random_pose(&f.mesh, 2);
+        free(slide_with(&r, &f.mesh, pose, NULL, NULL)); /* leaves nothing behind */
+        float *slid = slide_with(&r, &f.mesh, f.mesh.points, &paint.controls, &result);
+        assert_same_bytes(slid, f.mesh.points, POINT_BYTES(&f.mesh));
+        assert_true(result.slid_vertices == 0 && result.folded_faces == 0 && result.cut_steps == 0);
+        free(slid), free(pose);
+        free_painted(&paint);
+        free_rig(&r);
+        free_mesh(&f.mesh);
+    }
+}
+
+/* ---- Closed bodies ---- */
+
+/* Skin comes from all around: much of what the bump stretched is gone, and nothing turns over. */
+static void expect_evened(const test_mesh *mesh, double most_left) {
+    rig r = rig_of(mesh, even());
+    float *points = swollen(mesh, 0.8);
+    skinslide_patch_result result;
+    float *slid = slide_with(&r, mesh, points, NULL, &result);
+    assert_true(result.stretch_after < most_left * result.stretch_before);
+    assert_int_equal(result.folded_faces, 0);
+    double size = extent_of(points, mesh->vertex_count);
+    for (int32_t c = 0; c < mesh->index_count; c++)
+        assert_near(distance_to_mesh(mesh, points, slid + 3 * mesh->face_indices[c]), 0, 0x1p-22 * size);
+    free(points), free(slid);
+    free_rig(&r);
+}
+
+static void closed_bodies_even_out(void **state) {
+    (void)state;
+    test_mesh ball = sphere(8), ring = torus(16, 12);
+    expect_evened(&ball, 0.75);
+    expect_evened(&ring, 0.95);
+    free_mesh(&ball), free_mesh(&ring);
+}
+
+static void there_is_no_plane(void **state) {
+    (void)state;
+    test_mesh mesh = sphere(2);
+    rig r = rig_of(&mesh, even());
+    double uv[200];
+    skinslide_error error;
+    skinslide_patch_info info;
+    assert_ok(skinslide_slider_patch_info(r.slider, 0, &info, &error), &error);
+    assert_true(info.hole_count == 0 && info.folded_faces == 0 && info.free_count == info.vertex_count);
+    free(slide_with(&r, &mesh, mesh.points, NULL, NULL));
+    assert_fails(skinslide_slider_embedding(r.slider, 0, uv, &error), &error, SKINSLIDE_UNSUPPORTED,
+                 "patch all: its rule has no embedding");
+    assert_fails(skinslide_workspace_embedding(r.workspace, 0, uv, &error), &error, SKINSLIDE_UNSUPPORTED,
+                 "patch all: its rule has no embedding");
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- Motions that are no stretch ---- */
+
+/* Turned about an axis askew, moved, and scaled. */
+static float *moved(const test_mesh *mesh, const float *points, double scale, double away) {
+    float *out = copy_points(mesh);
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *p = points + 3 * v;
+        out[3 * v] = (float)(scale * (0.36 * p[0] + 0.48 * p[1] - 0.8 * p[2]) + away);
+        out[3 * v + 1] = (float)(scale * (-0.8 * p[0] + 0.6 * p[1]));
+        out[3 * v + 2] = (float)(scale * (0.48 * p[0] + 0.64 * p[1] + 0.6 * p[2]) - away);
+    }
+    return out;
+}
+
+/* A pose that is moved and turned gives the slide moved and turned; rest that is scaled, too, slides nowhere: to the rounding of
+ * points to float. */
+static void rigid_motions_and_scale_commute(void **state) {
+    (void)state;
+    test_mesh mesh = sphere(8);
+    rig r = rig_of(&mesh, even());
+    double edge = mean_edge(&mesh);
+    float *points = swollen(&mesh, 0.5), *there = moved(&mesh, points, 1, 3), *larger = moved(&mesh, mesh.points, 1.7, 0);
+    float *slid = slide_with(&r, &mesh, points, NULL, NULL), *slid_there = slide_with(&r, &mesh, there, NULL, NULL);
+    float *expected = moved(&mesh, slid, 1, 3), *still = slide_with(&r, &mesh, larger, NULL, NULL);
+    assert_near(largest_difference(slid_there, expected, 3 * (int64_t)mesh.vertex_count), 0, 1.5e-4 * edge);
+    assert_near(largest_difference(still, larger, 3 * (int64_t)mesh.vertex_count), 0, 1.5e-4 * edge);
+    free(points), free(there), free(larger), free(slid), free(slid_there), free(expected), free(still);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+static void only_ratios_of_densities_count(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(12, 12);
+    rig r = rig_of(&mesh, even());
+    painted paint = paint_at_random(&mesh, 4);
+    float *points = bumped(&mesh, 5, 7, 3, 4);
+    float *slid = slide_with(&r, &mesh, points, &paint.controls, NULL);
+    for (int32_t v = 0; v < mesh.vertex_count; v++)
+        paint.vertex_density[v] *= 4; /* exactly */
+    float *again = slide_with(&r, &mesh, points, &paint.controls, NULL);
+    assert_near(largest_difference(slid, again, 3 * (int64_t)mesh.vertex_count), 0, 1e-6);
+    free(points), free(slid), free(again);
+    free_painted(&paint);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- Pieces and frames know nothing of each other ---- */
+
+static void pieces_slide_as_each_alone(void **state) {
+    (void)state;
+    test_mesh ball = sphere(4), sheet = quad_grid(8, 8), both = join_meshes(&ball, &sheet);
+    float *swell = swollen(&ball, 0.7), *bump = bumped(&sheet, 4, 4, 2, 3), *points = copy_points(&both);
+    memcpy(points, swell, POINT_BYTES(&ball));
+    memcpy(points + 3 * ball.vertex_count, bump, POINT_BYTES(&sheet));
+    rig first = rig_of(&ball, even()), second = rig_of(&sheet, even()), together = rig_of(&both, even());
+    float *a = slide_with(&first, &ball, swell, NULL, NULL), *b = slide_with(&second, &sheet, bump, NULL, NULL);
+    skinslide_patch_result results[2];
+    float *slid = slide_with(&together, &both, points, NULL, results);
+    assert_same_bytes(slid, a, POINT_BYTES(&ball));
+    assert_same_bytes(slid + 3 * ball.vertex_count, b, POINT_BYTES(&sheet));
+    free(swell), free(bump), free(points), free(a), free(b), free(slid);
+    free_rig(&first), free_rig(&second), free_rig(&together);
+    free_mesh(&ball), free_mesh(&sheet), free_mesh(&both);
+}
+
+/* Painted frames in between leave another matrix, that must be made anew. */
+static void frames_come_in_any_order(void **state) {
+    (void)state;
+    test_mesh mesh = grid_with_holes(true);
+    rig r = rig_of(&mesh, even());
+    painted paint = paint_at_random(&mesh, 8);
+    float *points = random_pose(&mesh, 3), *other = random_pose(&mesh, 5);
+    float *slid = slide_with(&r, &mesh, points, NULL, NULL);
+    free(slide_with(&r, &mesh, other, &paint.controls, NULL));
+    float *again = slide_with(&r, &mesh, points, NULL, NULL);
+    assert_same_bytes(slid, again, POINT_BYTES(&mesh));
+    free(points), free(other), free(slid), free(again);
+    free_painted(&paint);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- In time ---- */
+
+static double roughness(float *const frames[3], int32_t vertex_count) {
+    double largest = 0;
+    for (int32_t v = 0; v < vertex_count; v++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            double off = (double)frames[0][3 * v + k] - 2 * (double)frames[1][3 * v + k] + frames[2][3 * v + k];
+            square += off * off;
+        }
+        largest = fmax(largest, sqrt(square));
+    }
+    return largest;
+}
+
+/* A bump that wanders over a sheet, in 40 steps of a fifth of a face: no frame of the slide is much rougher than the roughest of
+ * the cache, but that skin which slides over an edge between faces turns there: 2.04 measured. */
+static void slides_are_smooth_in_time(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(24, 24);
+    rig r = rig_of(&mesh, even());
+    float *cache[3] = {0}, *slid[3] = {0};
+    double cache_most = 0, slid_most = 0;
+    for (int frame = 0; frame < 40; frame++) {
+        free(cache[0]), free(slid[0]);
+        cache[0] = cache[1], cache[1] = cache[2], slid[0] = slid[1], slid[1] = slid[2];
+        cache[2] = bumped(&mesh, 6 + 0.2 * frame, 12, 5, 5);
+        skinslide_patch_result result;
+        slid[2] = slide_with(&r, &mesh, cache[2], NULL, &result);
+        assert_true(result.stretch_after < 0.9 * result.stretch_before && result.folded_faces == 0);
+        if (frame < 2)
+            continue;
+        cache_most = fmax(cache_most, roughness(cache, mesh.vertex_count));
+        slid_most = fmax(slid_most, roughness(slid, mesh.vertex_count));
+    }
+    assert_true(slid_most <= 2.3 * cache_most);
+    for (int k = 0; k < 3; k++)
+        free(cache[k]), free(slid[k]);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- Controls ---- */
+
+static float *filled(int32_t count, float value) {
+    float *values = malloc((size_t)count * sizeof *values);
+    for (int32_t i = 0; i < count; i++)
+        values[i] = value;
+    return values;
+}
+
+static double mean_slide(const rig *r, const test_mesh *mesh, const float *points, const skinslide_controls *controls) {
+    float *slid = slide_with(r, mesh, points, controls, NULL);
+    double sum = 0;
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++)
+            square += ((double)slid[3 * v + k] - points[3 * v + k]) * ((double)slid[3 * v + k] - points[3 * v + k]);
+        sum += sqrt(square) / mesh->vertex_count;
+    }
+    free(slid);
+    return sum;
+}
+
+/* Half of weight is about half of the slide, on a mesh of any fineness, and none is none. */
+static void weights_are_shares_of_the_slide(void **state) {
+    (void)state;
+    for (int32_t n = 12; n <= 24; n *= 2) {
+        test_mesh mesh = quad_grid(n, n);
+        rig r = rig_of(&mesh, even());
+        float *points = bumped(&mesh, 0.4 * n, 0.5 * n, 0.25 * n, 0.25 * n), *weight = filled(mesh.vertex_count, 0.5f);
+        skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+        double whole = mean_slide(&r, &mesh, points, &controls);
+        controls.weight = weight;
+        double half = mean_slide(&r, &mesh, points, &controls);
+        assert_true(half > 0.35 * whole && half < 0.65 * whole);
+        memset(weight, 0, (size_t)mesh.vertex_count * sizeof *weight);
+        assert_true(mean_slide(&r, &mesh, points, &controls) == 0);
+        free(points), free(weight);
+        free_rig(&r);
+        free_mesh(&mesh);
+    }
+}
+
+static void a_vertex_of_no_weight_stays(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(9, 9);
+    rig r = rig_of(&mesh, even());
+    float *points = bumped(&mesh, 4, 5, 2, 2), *weight = filled(mesh.vertex_count, 1);
+    weight[44] = 0;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.weight = weight;
+    float *slid = slide_with(&r, &mesh, points, &controls, NULL);
+    assert_same_bytes(slid + 3 * 44, points + 3 * 44, sizeof(float[3]));
+    assert_true(memcmp(slid + 3 * 45, points + 3 * 45, sizeof(float[3])) != 0);
+    free(points), free(weight), free(slid);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* Held skin slides less, skin of little hold more; without any response nothing does. */
+static void holds_and_responses(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(16, 16);
+    rig r = rig_of(&mesh, even());
+    float *points = bumped(&mesh, 7, 8, 4, 4), *hold = filled(mesh.vertex_count, 5);
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    double plain = mean_slide(&r, &mesh, points, &controls);
+    controls.hold = hold;
+    assert_true(mean_slide(&r, &mesh, points, &controls) < 0.9 * plain);
+    for (int32_t v = 0; v < mesh.vertex_count; v++)
+        hold[v] = 0.2f;
+    assert_true(mean_slide(&r, &mesh, points, &controls) > 1.1 * plain);
+    controls.stretch_response = controls.compression_response = 0;
+    assert_true(mean_slide(&r, &mesh, points, &controls) == 0);
+    free(points), free(hold);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+static void expect_control(const rig *r, const test_mesh *mesh, const skinslide_controls *controls, const char *text) {
+    skinslide_error error;
+    float *out = copy_points(mesh);
+    skinslide_status status = skinslide_slide(r->workspace, mesh->points, controls, out, NULL, &error);
+    assert_fails(status, &error, SKINSLIDE_BAD_CONTROL, text);
+    free(out);
+}
+
+static void controls_are_checked(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(2, 2);
+    rig r = rig_of(&mesh, even());
+    float hold[9] = {1, 1, 1, 0, 1, 1, 1, 1, 1};
+    skinslide_controls held = SKINSLIDE_CONTROLS_DEFAULT, stretch = held, compression = held;
+    held.hold = hold, stretch.stretch_response = 1.5f, compression.compression_response = NAN;
+    expect_control(&r, &mesh, &held, "patch all: hold of vertex 3 is 0; it must be finite and > 0");
+    expect_control(&r, &mesh, &stretch, "patch all: response to stretch is 1.5; it must be between 0 and 1");
+    expect_control(&r, &mesh, &compression, "patch all: response to compression is ...");
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+static void other_interpolations_are_refused(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(2, 2);
+    skinslide_mesh view = view_of(&mesh);
+    int32_t *faces = all_faces(&mesh);
+    skinslide_patch_setup setup = setup_of(faces, mesh.face_count);
+    setup.rule = SKINSLIDE_RULE_EVEN, setup.interpolation = SKINSLIDE_INTERPOLATION_MEAN_VALUE;
+    skinslide_slider *slider = NULL;
+    skinslide_error error;
+    assert_fails(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, SKINSLIDE_UNSUPPORTED,
+                 "patch all: rule even needs interpolation linear");
+    free(faces);
+    free_mesh(&mesh);
+}
+
+/* ---- Bad rest and bad poses ---- */
+
+/* Rest with a face in a point, vertices on a line, a spike, a vertex thrown over its neighbour: finite, and rest keeps its bits. */
+static void spoil(test_mesh *mesh, int32_t kind) {
+    float *p = mesh->points;
+    if (kind == 0)
+        memcpy(p + 3 * 24, p + 3 * 25, sizeof(float[3]));
+    if (kind == 1)
+        for (int k = 24; k < 28; k++)
+            p[3 * k + 1] = p[3 * k + 2] = 0, p[3 * k] = (float)k;
+    if (kind == 2)
+        p[3 * 24 + 2] += 30;
+    if (kind == 3)
+        p[3 * 24] += 3.5f;
+    for (int32_t v = 0; v < mesh->vertex_count && kind >= 4; v++) {
+        p[3 * v + 2] = 0;
+        p[3 * v + 1] = kind == 5 ? 0 : p[3 * v + 1];
+    }
+}
+
+static void degenerate_rest_stays_finite(void **state) {
+    (void)state;
+    for (int32_t kind = 0; kind < 6; kind++)
+        for (int closed = 0; closed < 2; closed++) {
+            test_mesh mesh = closed ? torus(8, 7) : quad_grid(6, 6);
+            spoil(&mesh, kind);
+            rig r = rig_of(&mesh, even());
+            float *slid = slide_with(&r, &mesh, mesh.points, NULL, NULL);
+            assert_same_bytes(slid, mesh.points, POINT_BYTES(&mesh));
+            free(slid);
+            for (uint64_t seed = 0; seed < 3; seed++) {
+                float *points = random_pose(&mesh, seed);
+                slid = slide_with(&r, &mesh, points, NULL, NULL);
+                assert_true(all_finite(slid, 3 * mesh.vertex_count));
+                free(points), free(slid);
+            }
+            free_rig(&r);
+            free_mesh(&mesh);
+        }
+}
+
+static void wild_poses_stay_finite(void **state) {
+    (void)state;
+    test_mesh mesh = sphere(5);
+    rig r = rig_of(&mesh, even());
+    for (int32_t kind = 0; kind < 4; kind++) {
+        float *points = shaken(&mesh, 7, kind == 0 ? 0.3 : 2);
+        for (int32_t i = 0; i < 3 * mesh.vertex_count && kind >= 2; i++)
+            points[i] = kind == 2 ? 5 : points[i] * 1e6f;
+        skinslide_patch_result result;
+        float *slid = slide_with(&r, &mesh, points, NULL, &result);
+        assert_true(all_finite(slid, 3 * mesh.vertex_count));
+        assert_int_equal(result.folded_faces, 0);
+        free(points), free(slid);
+    }
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* ---- Loops and limits ---- */
+
+static void free_loops_slide_along_themselves(void **state) {
+    (void)state;
+    test_mesh mesh = annulus(12, 4);
+    float *points = bumped(&mesh, 1, 0, 1, 1);
+    skinslide_patch_setup choices = even();
+    choices.holes = SKINSLIDE_HOLES_FREE;
+    rig r = rig_of(&mesh, choices);
+    const ss_patch *patch = r.slider->parts[0].patch;
+    float *slid = slide_with(&r, &mesh, points, NULL, NULL);
+    int32_t moved_count = 0;
+    for (int32_t i = patch->loop_start[1]; i < patch->loop_start[2]; i++) {
+        const float *p = slid + 3 * patch->mesh_vertex[patch->loop_vertex[i]];
+        double here[3] = {p[0], p[1], p[2]}, nearest = INFINITY;
+        for (int32_t k = patch->loop_start[1]; k < patch->loop_start[2]; k++) {
+            int32_t next = k + 1 < patch->loop_start[2] ? k + 1 : patch->loop_start[1];
+            const float *a = points + 3 * patch->mesh_vertex[patch->loop_vertex[k]];
+            const float *b = points + 3 * patch->mesh_vertex[patch->loop_vertex[next]];
+            nearest = fmin(nearest, distance_to_triangle(here, a, b, b));
+        }
+        assert_near(nearest, 0, 1e-6);
+        moved_count += memcmp(p, points + 3 * patch->mesh_vertex[patch->loop_vertex[i]], sizeof(float[3])) != 0;
+    }
+    assert_true(moved_count > 3);
+    free(points), free(slid);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+static void largest_distances_are_kept(void **state) {
+    (void)state;
+    test_mesh mesh = sphere(6);
+    rig r = rig_of(&mesh, even());
+    float *points = swollen(&mesh, 0.8), *limit = filled(mesh.vertex_count, 0.02f);
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.max_distance = limit;
+    float *whole = slide_with(&r, &mesh, points, NULL, NULL), *slid = slide_with(&r, &mesh, points, &controls, NULL);
+    int32_t cut = 0;
+    for (int32_t v = 0; v < mesh.vertex_count; v++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++)
+            square += ((double)slid[3 * v + k] - points[3 * v + k]) * ((double)slid[3 * v + k] - points[3 * v + k]);
+        assert_true(sqrt(square) <= 0.02 + 1e-6);
+        cut += memcmp(slid + 3 * v, whole + 3 * v, sizeof(float[3])) != 0;
+    }
+    assert_true(cut > 5);
+    free(points), free(limit), free(whole), free(slid);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rest_keeps_its_bits),
+        cmocka_unit_test(closed_bodies_even_out),
+        cmocka_unit_test(there_is_no_plane),
+        cmocka_unit_test(rigid_motions_and_scale_commute),
+        cmocka_unit_test(only_ratios_of_densities_count),
+        cmocka_unit_test(pieces_slide_as_each_alone),
+        cmocka_unit_test(frames_come_in_any_order),
+        cmocka_unit_test(slides_are_smooth_in_time),
+        cmocka_unit_test(weights_are_shares_of_the_slide),
+        cmocka_unit_test(a_vertex_of_no_weight_stays),
+        cmocka_unit_test(holds_and_responses),
+        cmocka_unit_test(controls_are_checked),
+        cmocka_unit_test(other_interpolations_are_refused),
+        cmocka_unit_test(degenerate_rest_stays_finite),
+        cmocka_unit_test(wild_poses_stay_finite),
+        cmocka_unit_test(free_loops_slide_along_themselves),
+        cmocka_unit_test(largest_distances_are_kept),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
