@@ -51,22 +51,15 @@ static void add_edges(const ss_evener *evener, double *sum) {
             sum[evener->sheet->springs[i].end[end]] += evener->paint[evener->sheet->springs[i].edge];
 }
 
-bool ss_find_anchors(const ss_evener *evener, double *anchor) {
+void ss_find_anchors(const ss_evener *evener, int32_t *region, double *area, double *anchor) {
     int32_t count = evener->sheet->patch->vertex_count;
-    ss_memory scratch = {0};
-    int32_t *region = SS_NEW(&scratch, int32_t, count);
-    double *area = SS_NEW(&scratch, double, count);
     for (int32_t v = 0; v < count; v++)
-        anchor[v] = 0;
-    if (!scratch.failed) {
-        join_regions(evener, region);
-        add_areas(evener, region, area);
-        add_edges(evener, anchor);
-        for (int32_t v = 0; v < count; v++) {
-            double weight = evener->weight[v], square = area[find(region, v)] / PI;
-            anchor[v] *= weight > 0 && square > 0 ? 2 * (1 / weight - 1) / square : 0;
-        }
+        area[v] = anchor[v] = 0;
+    join_regions(evener, region);
+    add_areas(evener, region, area);
+    add_edges(evener, anchor);
+    for (int32_t v = 0; v < count; v++) {
+        double weight = evener->weight[v], square = area[find(region, v)] / PI;
+        anchor[v] *= weight > 0 && square > 0 ? 2 * (1 / weight - 1) / square : 0;
     }
-    ss_free(&scratch);
-    return !scratch.failed;
 }

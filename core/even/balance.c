@@ -24,6 +24,8 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_evener **out, skinsl
     evener->slide = ss_new(memory, vertices, sizeof *evener->slide);
     evener->step = ss_new(memory, vertices, sizeof *evener->step);
     evener->part = SS_NEW(memory, double, vertices);
+    evener->region = SS_NEW(memory, int32_t, vertices);
+    evener->area = SS_NEW(memory, double, vertices), evener->anchor = SS_NEW(memory, double, vertices);
     evener->stretch = SS_NEW(memory, double, sheet->spring_count);
     evener->sorted = SS_NEW(memory, ss_weighted, sheet->spring_count);
     ss_posed_allocate(memory, sheet->patch, &evener->pose);

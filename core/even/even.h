@@ -68,14 +68,16 @@ typedef struct ss_evener {
     double *weight, *hold; /* [vertex_count]; the weight of held vertices is 0 */
     double *next_weight;   /* of the frame that begins */
     ss_posed pose;
-    ss_place *place;     /* [vertex_count] where each vertex is */
-    double (*at)[3];     /* [vertex_count] of it in the pose */
-    double (*up)[3];     /* [vertex_count] scratch for normals */
-    double (*slide)[2];  /* [vertex_count] d */
-    double (*step)[2];   /* [vertex_count] to be added to it */
-    double *stretch;     /* [spring_count] z */
-    double *part;        /* [vertex_count] of a step that is taken */
-    ss_weighted *sorted; /* [spring_count] */
+    ss_place *place;       /* [vertex_count] where each vertex is */
+    double (*at)[3];       /* [vertex_count] of it in the pose */
+    double (*up)[3];       /* [vertex_count] scratch for normals */
+    double (*slide)[2];    /* [vertex_count] d */
+    double (*step)[2];     /* [vertex_count] to be added to it */
+    double *stretch;       /* [spring_count] z */
+    int32_t *region;       /* [vertex_count] scratch for anchors */
+    double *area, *anchor; /* [vertex_count] */
+    double *part;          /* [vertex_count] of a step that is taken */
+    ss_weighted *sorted;   /* [spring_count] */
 } ss_evener;
 
 skinslide_status ss_evener_create(const ss_sheet *sheet, ss_evener **out, skinslide_error *error);
@@ -91,12 +93,12 @@ void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places);
 
 /* ---- stiffness.c, anchor.c ---- */
 
-/* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR, OUT_OF_MEMORY. */
+/* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR. */
 skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const double *weight, const double *hold,
                                    skinslide_error *error);
 /* Stiffnesses [vertex_count] that hold each vertex at its own place so that it slides about its weight as far as it would.
- * False where memory is short. */
-bool ss_find_anchors(const ss_evener *evener, double *anchor);
+ * region and area are scratch [vertex_count]. */
+void ss_find_anchors(const ss_evener *evener, int32_t *region, double *area, double *anchor);
 
 /* ---- scale.c ---- */
 

@@ -6,15 +6,36 @@
  * nearly, by a fixed count of reweighted means from the median. */
 #include "even.h"
 
-#include <stdlib.h>
-
 #define WIDTH  0.02
 #define ROUNDS 6
 
-/* Ascending in z, then in k, so that their order is one whatever sorts them. */
-static int compare(const void *a, const void *b) {
-    const ss_weighted *p = a, *q = b;
-    return p->z != q->z ? (p->z > q->z) - (p->z < q->z) : (p->k > q->k) - (p->k < q->k);
+static bool is_less(ss_weighted a, ss_weighted b) {
+    return a.z != b.z ? a.z < b.z : a.k < b.k;
+}
+
+/* Makes a heap, whose largest comes first, of [count] in which only the one at root may be less than those under it. */
+static void sift(ss_weighted *values, int32_t root, int32_t count) {
+    ss_weighted moving = values[root];
+    for (int32_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
+        child += child + 1 < count && is_less(values[child], values[child + 1]);
+        if (!is_less(moving, values[child]))
+            break;
+        values[root] = values[child];
+        root = child;
+    }
+    values[root] = moving;
+}
+
+/* Ascending in z, then in k. By a heap: qsort may ask for memory. */
+static void sort(ss_weighted *values, int32_t count) {
+    for (int32_t i = count / 2; i-- > 0;)
+        sift(values, i, count);
+    for (int32_t last = count; last-- > 1;) {
+        ss_weighted largest = values[0];
+        values[0] = values[last];
+        values[last] = largest;
+        sift(values, 0, last);
+    }
 }
 
 /* Each value stands at the middle of its own share of the sum; the median is on the line between the two about half of it. */
@@ -45,7 +66,7 @@ static double smoothed(const ss_weighted *values, int32_t count, double middle) 
 }
 
 double ss_find_scale(ss_weighted *values, int32_t count) {
-    qsort(values, (size_t)count, sizeof *values, compare);
+    sort(values, count);
     double middle = median(values, count);
     for (int round = 0; round < ROUNDS; round++)
         middle = smoothed(values, count, middle);

@@ -59,7 +59,7 @@ static void add_diagonal(ss_evener *evener, int32_t v, double anchor) {
         own[3] = own[0];
 }
 
-static bool add_stiffness(ss_evener *evener) {
+static void add_stiffness(ss_evener *evener) {
     const ss_sheet *sheet = evener->sheet;
     ss_blocks_clear(evener->K);
     for (int32_t i = 0; i < sheet->spring_count; i++) {
@@ -69,11 +69,9 @@ static bool add_stiffness(ss_evener *evener) {
         add_own(evener, spring, 1, k, hold);
         add_between(evener, spring, k, hold);
     }
-    if (!ss_find_anchors(evener, evener->part))
-        return false;
+    ss_find_anchors(evener, evener->region, evener->area, evener->anchor);
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        add_diagonal(evener, v, evener->part[v]);
-    return true;
+        add_diagonal(evener, v, evener->anchor[v]);
 }
 
 /* Copies values; whether that changed any. */
@@ -92,8 +90,7 @@ skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const
     if (evener->factored && !changed)
         return SKINSLIDE_OK;
     evener->factored = false;
-    if (!add_stiffness(evener))
-        return ss_out_of_memory(error);
+    add_stiffness(evener);
     if (!ss_blocks_factor(evener->K))
         return ss_fail(error, SKINSLIDE_SINGULAR, "%s: force densities, holds and weights are too far apart to slide with",
                        patch->label);

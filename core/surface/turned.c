@@ -130,6 +130,7 @@ double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[
         double whole = ss_reach(place, w.rates, w.came, &corner);
         double part = meter ? ss_measure(meter, place->triangle, w.rates, whole) : whole;
         ss_advance(place, w.rates, part, part < whole ? -1 : corner);
+        place->weight[0] = fmax(0, place->weight[0]); /* which is what rounding leaves of 1 */
         w.left *= 1 - part;
         if (corner < 0 || part < whole || !go_over(&w, place, corner))
             break;

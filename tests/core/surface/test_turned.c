@@ -1,0 +1,109 @@
+/* Walks whose direction depends on the place alone. */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct walk_scene {
+    ss_memory memory;
+    test_mesh mesh;
+    ss_patch *patch;
+    ss_ground ground;
+} walk_scene;
+
+static walk_scene scene_of(test_mesh mesh) {
+    walk_scene s = {.mesh = mesh};
+    skinslide_patch_setup choices = setup_of(NULL, 0);
+    choices.rule = SKINSLIDE_RULE_EVEN;
+    s.patch = patch_of(&mesh, choices);
+    assert_true(ss_ground_allocate(&s.memory, s.patch, &s.ground));
+    ss_ground_set(&s.ground, mesh.points);
+    return s;
+}
+
+static void free_scene(walk_scene *s) {
+    ss_free(&s->memory);
+    ss_patch_destroy(s->patch);
+    free_mesh(&s->mesh);
+}
+
+/* In a flat sheet a walk ends at its vector's end, to rounding in each of some triangles, or on the border. */
+static void straight_in_a_plane(void **state) {
+    (void)state;
+    walk_scene s = scene_of(triangle_grid(9, 9));
+    dice d = {3};
+    for (int i = 0; i < 200; i++) {
+        double way[3] = {roll_between(&d, -3, 3), roll_between(&d, -3, 3), 0}, end[3];
+        int32_t v = 10 * (3 + roll_below(&d, 4)) + 3 + roll_below(&d, 4);
+        ss_place place;
+        assert_near(ss_walk_turned(&s.ground, v, way, NULL, &place), 1, 0);
+        ss_place_point(&s.ground.pose, &place, end);
+        for (int k = 0; k < 3; k++)
+            assert_near(end[k], s.ground.pose.point[v][k] + way[k], 1e-13);
+    }
+    ss_place place;
+    assert_near(ss_walk_turned(&s.ground, 44, (double[3]){10, 0, 0}, NULL, &place), 0.5, 1e-12); /* from x = 4 to 9 */
+    free_scene(&s);
+}
+
+/* No way at all leaves the vertex itself, exactly; a meter ends the walk where it says. */
+static void nothing_and_a_meter(void **state) {
+    (void)state;
+    walk_scene s = scene_of(torus(9, 7));
+    ss_place place;
+    ss_meter meter = {&s.ground.pose, 0, 0.25};
+    assert_near(ss_walk_turned(&s.ground, 20, (double[3]){0, 0, 0}, NULL, &place), 1, 0);
+    assert_int_equal(s.patch->triangles.vertex[place.triangle][ss_place_corner(&place)], 20);
+    double *normal = s.ground.normal[20], way[3] = {0, 0, 0}, axis[3] = {0.3, -0.5, 0.8};
+    ss_cross(normal, axis, way);
+    double part = ss_walk_turned(&s.ground, 20, way, &meter, &place);
+    assert_near(meter.walked, 0.25, 0);
+    assert_near(part * ss_length(way), 0.25, 1e-12);
+    free_scene(&s);
+}
+
+/* Weights stay a place's on every fixture, however long the walk. */
+static void places_stay_places(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
+        walk_scene s = scene_of(make_fixture(i).mesh);
+        dice d = {(uint64_t)i};
+        for (int n = 0; n < 100; n++) {
+            int32_t v = roll_below(&d, s.patch->vertex_count);
+            double axis[3] = {roll_between(&d, -9, 9), roll_between(&d, -9, 9), roll_between(&d, -9, 9)}, way[3];
+            ss_place place;
+            ss_cross(s.ground.normal[v], axis, way);
+            double part = ss_walk_turned(&s.ground, v, way, NULL, &place);
+            assert_true(part >= 0 && part <= 1);
+            assert_near(place.weight[0] + place.weight[1] + place.weight[2], 1, 1e-15);
+            for (int k = 0; k < 3; k++)
+                assert_true(place.weight[k] >= 0);
+        }
+        free_scene(&s);
+    }
+}
+
+/* On a fine tube a walk round it stays at its height: the direction turns with the surface. */
+static void walks_go_round(void **state) {
+    (void)state;
+    walk_scene s = scene_of(finger(24, 8));
+    for (int32_t v = 24 * 3; v < 24 * 5; v++) {
+        double *normal = s.ground.normal[v], up[3] = {0, 0, 1}, way[3], end[3];
+        ss_place place;
+        ss_cross(up, normal, way);
+        assert_near(ss_walk_turned(&s.ground, v, way, NULL, &place), 1, 1e-12);
+        ss_place_point(&s.ground.pose, &place, end);
+        assert_near(end[2], s.ground.pose.point[v][2], 0.02);
+    }
+    free_scene(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(straight_in_a_plane),
+        cmocka_unit_test(nothing_and_a_meter),
+        cmocka_unit_test(places_stay_places),
+        cmocka_unit_test(walks_go_round),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
