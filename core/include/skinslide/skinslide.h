@@ -160,8 +160,8 @@ typedef enum skinslide_holes {
 } skinslide_holes;
 
 /* Where skin slides to. The first two are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
- * plane. RELAXED goes farther, in a plane that is laid out once. These three need a patch that is a disk with holes. EVEN slides
- * on the rest surface itself, and takes a patch with any number of handles and boundaries, or none. */
+ * plane. RELAXED goes farther, in a plane that is laid out once. These three need a patch that is a disk with holes. EVEN
+ * slides on the rest surface itself, and takes a patch with any number of handles and boundaries, or none. */
 typedef enum skinslide_rule {
     SKINSLIDE_RULE_UNIT,    /* 1/l */
     SKINSLIDE_RULE_FAST,    /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
@@ -170,10 +170,10 @@ typedef enum skinslide_rule {
                               there is continuous in the pose, so a slide does not jump from one minimum to another, but may
                               go there fast. The patch is always laid out in the circle, holes pinned, and that at rest:
                               corners and boundary count for nothing */
-    SKINSLIDE_RULE_EVEN /* to where the logarithms of edge lengths over rest lengths are in balance, less their median, which is
-                           the character's scale, and those of compressed edges bounded: smooth in the pose, and so in time. Needs
-                           interpolation LINEAR, to which AUTO then comes; corners and boundary count for nothing. There is no
-                           embedding */
+    SKINSLIDE_RULE_EVEN /* to where the logarithms of edge lengths over rest lengths are in balance, less their median, which
+                           is the character's scale, and those of compressed edges bounded: smooth in the pose, and so in
+                           time. Needs interpolation LINEAR, to which AUTO then comes; corners and boundary count for nothing.
+                           There is no embedding */
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
@@ -247,8 +247,8 @@ typedef struct skinslide_slider skinslide_slider;
  * repeated vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an
  * edge with three faces, faces wound against each other, a boundary that touches itself, a handle; EVEN needs no boundary, and
  * takes handles), BAD_CONTROL (a density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
- * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice), SINGULAR,
- * UNSUPPORTED (EVEN: another interpolation than LINEAR, too), OUT_OF_MEMORY.
+ * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice),
+ * SINGULAR, UNSUPPORTED (EVEN: another interpolation than LINEAR, too), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
  * edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a hole of
  * the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face with
