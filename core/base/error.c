@@ -4,13 +4,30 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+/* One line of what a caller may print: names and tokens that a message quotes can hold what moves a terminal's cursor. */
+static void copy_line(char *out, size_t size, const char *text) {
+    size_t end = 0;
+    for (; *text; text++) {
+        unsigned char c = (unsigned char)*text;
+        const char *named = c == '\n' ? "\\n" : c == '\r' ? "\\r" : c == '\t' ? "\\t" : NULL;
+        const char *format = named ? named : c < ' ' || c == 127 ? "\\x%02x" : "%c";
+        int length = snprintf(out + end, size - end, format, c);
+        if ((size_t)length >= size - end)
+            break; /* what does not fit whole is left out */
+        end += (size_t)length;
+    }
+    out[end] = 0;
+}
+
 skinslide_status ss_fail(skinslide_error *error, skinslide_status status, const char *format, ...) {
     if (error) {
+        char text[sizeof error->message];
         va_list arguments;
         va_start(arguments, format);
         error->status = status;
-        vsnprintf(error->message, sizeof error->message, format, arguments);
+        vsnprintf(text, sizeof text, format, arguments);
         va_end(arguments);
+        copy_line(error->message, sizeof error->message, text);
     }
     return status;
 }

@@ -115,6 +115,8 @@ static void bad_tokens_are_named(void **state) {
     expect("forceDensityRule", text_of("rule", "slow"), "rule is 'slow'; it must be one of unit, fast, relaxed");
     expect("interpolation", text_of("interpolation", "Linear"),
            "interpolation is 'Linear'; it must be one of auto, linear, meanValue, limit");
+    expect("boundary", text_of("boundary", "z\n\x1b[2J\xc3\xa9"),
+           "boundary is 'z\\n\\x1b[2J\xc3\xa9'; it must be one of auto, square, circle");
     expect("boundary", NUMBER("boundary", 1), "boundary is '1'; it must be one of auto, square, circle");
     expect("boundary", other_of("boundary", "token[]"), "boundary is token[]; it must be one of auto, square, circle");
     expect("mapSt", NUMBER("mapSt", 3), "mapSt is 3; it must be a token");
