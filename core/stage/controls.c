@@ -285,6 +285,7 @@ skinslide_status skinslide_stage_controls_take_coordinates(skinslide_stage_contr
         control *own = &controls->controls[row];
         if (!ss_texture_wanted(own->own_texture))
             continue;
+        controls->controls[inputs()[row].multiplies].product = NULL;
         skinslide_status status = good ? ss_texture_find_tiles(own->own_texture, controls->st, first ? NULL : error) : first;
         if (status)
             refuse(own);

@@ -191,7 +191,18 @@ const skinslide_stage_need *ss_texture_need(const ss_texture *texture) {
     return texture && texture->tiles && texture->given < texture->tile_count ? &texture->need : NULL;
 }
 
+/* Other coordinates may be given for one asset: then its files are asked for again. */
+static void begin(ss_texture *texture) {
+    if (texture->held.images) {
+        destroy_images(&texture->before);
+        texture->before = texture->held, texture->held = (held_images){0};
+    }
+    texture->given = texture->found = 0, texture->missing = -1;
+    texture->sampled = false;
+}
+
 static skinslide_status find_tiles(ss_texture *texture, const float *st, skinslide_error *error) {
+    begin(texture);
     bool is_udim = strstr(texture->asset, udim) != NULL;
     /* As many as there are corners, at most. */
     int32_t most = is_udim ? ss_faces_of(texture->patch->mesh).index_count : 1;

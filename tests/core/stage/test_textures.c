@@ -231,6 +231,27 @@ static void images_are_held_between_frames(void **state) {
     tear_down(&s);
 }
 
+/* Of one asset, with no need to take it again. */
+static void other_coordinates_ask_for_files_again(void **state) {
+    (void)state;
+    scene s = set_up();
+    skinslide_value st;
+    for (int32_t taken = 1; taken <= 2; taken++) { /* from the second on, images are held */
+        ask(s.controls, "weightMap", "w.<UDIM>.exr", 2);
+        for (int32_t tile = 0; tile < 4; tile++)
+            assert_ok(give(s.controls, "/w.exr", 1), &error);
+        st = st_of(1);
+        assert_ok(skinslide_stage_controls_take_coordinates(s.controls, &st, &error), &error);
+        expect_need(s.controls, "weightMap", "w.1001.exr", 1001);
+        assert_ok(give(s.controls, "/other.exr", 0.5f), &error);
+        assert_true(got(s.controls).weight[0] == 0.5f);
+        st = st_of(2);
+        assert_ok(skinslide_stage_controls_take_coordinates(s.controls, &st, &error), &error);
+        expect_need(s.controls, "weightMap", "w.1001.exr", 1001);
+    }
+    tear_down(&s);
+}
+
 /* ---- What fails ---- */
 
 static void expect_refused(scene *s, skinslide_status status, skinslide_status expected, const char *text) {
@@ -345,6 +366,7 @@ int main(void) {
         cmocka_unit_test(a_channel_of_its_own),
         cmocka_unit_test(a_frame_multiplies_the_texture_of_its_base),
         cmocka_unit_test(images_are_held_between_frames),
+        cmocka_unit_test(other_coordinates_ask_for_files_again),
         cmocka_unit_test(assets_of_another_type),
         cmocka_unit_test(no_coordinates),
         cmocka_unit_test(no_such_file),
