@@ -70,7 +70,7 @@ def test_apply_get_and_all(stage, prim):
     assert UsdGeom.PrimvarsAPI(patch).GetPrim() == prim  # as any schema of pxr's
 
 
-@pytest.mark.parametrize("name", ["", "elbow L", "1st", "live", "restPoints:a", "envelope", "left:corners"])
+@pytest.mark.parametrize("name", ["", "elbow L", "1st", "live", "restPoints:a", "envelope", "left:corners", None, 3])
 def test_names_that_no_patch_can_have(name, stage, prim):
     can = SkinSlideAPI.CanApply(prim, name)
     assert not can and "cannot name a patch" in can.whyNot
@@ -505,6 +505,8 @@ def test_prims_that_are_none(prims, tmp_path):
         skinslide.bake_to_file(path, tmp_path / "out.usda", prims=prims)
     with pytest.raises(UsageError, match="prims is an invalid null prim"):
         skinslide.check(path, Usd.Prim())
+    with pytest.raises(UsageError, match="prims is empty; leave it out to take every prim"):
+        skinslide.check(path, [])
 
 
 @pytest.mark.parametrize(

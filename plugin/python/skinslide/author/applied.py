@@ -274,11 +274,11 @@ def _given(name: str, value: Any, declared: Sdf.AttributeSpec) -> Any:
 
 def _why_no_name(patch: str) -> str:
     """Why no patch can have a name; empty where one can."""
-    parts = patch.split(":")
     if (
-        not Sdf.Path.IsValidNamespacedIdentifier(patch)
+        not isinstance(patch, str)
+        or not Sdf.Path.IsValidNamespacedIdentifier(patch)
         or not can_name_patch(patch)
-        or parts[-1] in schema.declared_names()  # USD does not allow those
+        or patch.split(":")[-1] in schema.declared_names()  # USD does not allow those
     ):
         return f"{patch!r} cannot name a patch; use letters, digits and _, such as elbow_L"
     return ""

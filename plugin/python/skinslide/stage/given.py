@@ -58,7 +58,10 @@ def given_paths(name: str, prims: PrimsLike) -> list[str]:
         return [_path_text(name, prims)]
     if not isinstance(prims, Iterable):
         raise TypeError(f"{name} is {prims!r}; it must be a Usd.Prim, an Sdf.Path or a str, or several of them")
-    return [_path_text(name, prim) for prim in prims]
+    paths = [_path_text(name, prim) for prim in prims]
+    if not paths:
+        raise UsageError(f"{name} is empty; leave it out to take every prim")
+    return paths
 
 
 def given_path(name: str, prim: PrimLike) -> Sdf.Path:
