@@ -15,7 +15,7 @@ def test_relaxed_skin_does_not_jump(name, example_stage):
     mesh = read_meshes(Usd.Stage.Open(str(stage)))[0][0]
     _, times, moves = smoothness.motions(mesh)
     edge = smoothness.mean_edge(mesh, mesh.patches[0].faces)
-    unit, relaxed = (smoothness.Rough.of(moves[rule], times) for rule in smoothness.RULES)
+    unit, relaxed = (smoothness.Rough.of(moves[rule], times) for rule in ("unit", "relaxed"))
     # A jump stays where steps are four times as short, a sharp turn shrinks by 4, a smooth motion by 16.
     assert smoothness.shrinks(moves["relaxed"], relaxed) > 2
     # A tenth of an edge in a quarter of a frame is what no eye tells from the motion that it is part of.
