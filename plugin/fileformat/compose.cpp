@@ -11,7 +11,6 @@
 #include "pxr/base/gf/vec3d.h"
 #include "pxr/base/gf/vec3f.h"
 #include "pxr/base/gf/vec3h.h"
-#include "pxr/base/tf/errorMark.h"
 #include "pxr/base/tf/stringUtils.h"
 #include "pxr/base/vt/array.h"
 #include "pxr/base/vt/dictionary.h"
@@ -195,10 +194,7 @@ std::vector<std::pair<SdfLayerRefPtr, SdfPath>> manifestsAt(const SdfLayerRefPtr
         const VtDictionary set = value.IsHolding<VtDictionary>() ? value.UncheckedGet<VtDictionary>() : VtDictionary();
         std::string prim = VtDictionaryGet<std::string>(set, "primPath", VtDefault = "");
         std::string file = VtDictionaryGet<SdfAssetPath>(set, "manifestAssetPath", VtDefault = SdfAssetPath()).GetAssetPath();
-        TfErrorMark mark;
-        SdfLayerRefPtr manifest =
-            file.empty() ? nullptr : SdfLayer::FindOrOpen(SdfComputeAssetPathRelativeToLayer(layer, file));
-        mark.Clear();
+        SdfLayerRefPtr manifest = file.empty() ? nullptr : openLayer(SdfComputeAssetPathRelativeToLayer(layer, file));
         manifests.emplace_back(manifest, SdfPath::IsValidPathString(prim) ? SdfPath(prim) : SdfPath());
     }
     return manifests;

@@ -5,8 +5,11 @@
 #include "params.h"
 
 #include "pxr/base/tf/errorMark.h"
+#include "pxr/base/tf/fileUtils.h"
+#include "pxr/base/tf/pathUtils.h"
 #include "pxr/base/tf/stringUtils.h"
 #include "pxr/usd/ar/asset.h"
+#include "pxr/usd/ar/packageUtils.h"
 #include "pxr/usd/ar/resolvedPath.h"
 #include "pxr/usd/ar/resolver.h"
 #include "pxr/usd/sdf/fileFormat.h"
@@ -22,6 +25,8 @@ namespace skinslide {
 namespace {
 
 std::string readFile(const std::string &resolvedPath) {
+    if (isIrregular(resolvedPath))
+        throw Fault("is not a regular file");
     std::shared_ptr<ArAsset> asset = ArGetResolver().OpenAsset(ArResolvedPath(resolvedPath));
     if (!asset)
         throw Fault("cannot be opened");
@@ -61,6 +66,26 @@ std::string readText(const std::string &resolvedPath) {
 }
 
 // ---- What it leads to ----
+
+bool isIrregular(const std::string &resolvedPath) {
+    std::string file = ArSplitPackageRelativePathOuter(resolvedPath).first;
+    return TfPathExists(file, true) && !TfIsFile(file, true) && !TfIsDir(file, true);
+}
+
+SdfLayerRefPtr openLayer(const std::string &identifier) {
+    std::string path;
+    SdfLayer::FileFormatArguments arguments;
+    SdfLayer::SplitIdentifier(identifier, &path, &arguments);
+    path = ArGetResolver().Resolve(path).GetPathString();
+    if (Reading::isRead(path))
+        throw Fault("leads back to itself");
+    if (isIrregular(path))
+        throw fault("leads to %s, which is not a regular file", path.c_str());
+    TfErrorMark mark;
+    SdfLayerRefPtr layer = SdfLayer::FindOrOpen(identifier);
+    mark.Clear();
+    return layer;
+}
 
 namespace {
 
@@ -136,7 +161,7 @@ class Walk {
     }
 
     SdfLayerRefPtr openSource(const std::string &identifier) {
-        SdfLayerRefPtr layer = SdfLayer::FindOrOpen(identifier);
+        SdfLayerRefPtr layer = openLayer(identifier);
         if (layer && _again && !layer->IsDirty())
             layer->Reload();
         if (layer)

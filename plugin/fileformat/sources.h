@@ -28,6 +28,12 @@ std::string readText(const std::string &resolvedPath);
 // An asset path, evaluated where it is an expression; empty where that fails.
 std::string evaluate(const std::string &asset, const VtDictionary &variables);
 
+// Whether a path is of a pipe, a socket or a device: opened, it may be waited for without end.
+bool isIrregular(const std::string &resolvedPath);
+
+// A layer of any format; null where it cannot be opened. Throws Fault where it is irregular.
+SdfLayerRefPtr openLayer(const std::string &identifier);
+
 // What a layer leads to, through any number of others.
 struct Sources {
     std::vector<SdfLayerRefPtr> layers; // those of other formats, nearest first

@@ -1,5 +1,7 @@
 #include "textures.h"
 
+#include "sources.h"
+
 #include "pxr/usd/ar/asset.h"
 #include "pxr/usd/ar/resolver.h"
 
@@ -14,7 +16,7 @@ std::string pathFor(const std::string &asset) {
 
 // The bytes of a resolved file; false where it cannot be read. Those of one that is too large are not read.
 bool readBytes(const ArResolvedPath &path, int64_t largest, std::vector<uint8_t> *bytes, int64_t *size) {
-    std::shared_ptr<ArAsset> asset = ArGetResolver().OpenAsset(path);
+    std::shared_ptr<ArAsset> asset = isIrregular(path) ? nullptr : ArGetResolver().OpenAsset(path);
     if (!asset)
         return false;
     *size = static_cast<int64_t>(asset->GetSize());

@@ -128,6 +128,56 @@ def test_a_reload_that_leads_back_is_refused(tmp_path):
     assert done.returncode == 1 and "leads back to itself" in done.stderr
 
 
+def pipe_as_sublayer(folder: Path, pipe: Path) -> Path:
+    return write(folder / "x.skinslide", cache=str(pipe))
+
+
+def pipe_below_a_source(folder: Path, pipe: Path) -> Path:
+    reference(folder / "a.usda", f"./{pipe.name}")
+    return write(folder / "x.skinslide", cache="./a.usda")
+
+
+def pipe_in_a_variant(folder: Path, pipe: Path) -> Path:
+    (folder / "x.skinslide").write_text(
+        '#usda 1.0\ndef "World" (variants = { string v = "a" }; add variantSets = "v") '
+        f'{{\nvariantSet "v" = {{\n"a" {{}}\n"b" (payload = @{pipe}@</World>) {{}}\n}}\n}}'
+    )
+    return folder / "x.skinslide"
+
+
+def pipe_as_manifest(folder: Path, pipe: Path) -> Path:
+    def with_clips(mesh):
+        clips = Usd.ClipsAPI(mesh.GetPrim().GetStage().GetPrimAtPath("/World/char"))
+        clips.SetClipPrimPath("/World/char")
+        clips.SetClipManifestAssetPath(Sdf.AssetPath(str(pipe)))
+
+    return make(folder, with_clips)
+
+
+@pytest.mark.parametrize("lay", [pipe_as_sublayer, pipe_below_a_source, pipe_in_a_variant, pipe_as_manifest])
+def test_a_file_that_leads_to_a_pipe_is_refused(tmp_path, lay):
+    """To open one is to wait for somebody who writes into it."""
+    pipe = tmp_path / "pipe.usda"
+    os.mkfifo(pipe)
+    done = run_python(f"import skinslide; from pxr import Sdf; Sdf.Layer.FindOrOpen({str(lay(tmp_path, pipe))!r})")
+    assert done.returncode == 1 and f"x.skinslide leads to {pipe}, which is not a regular file" in done.stderr
+
+
+def test_a_pipe_is_refused(tmp_path):
+    os.mkfifo(tmp_path / "pipe.skinslide")
+    for path in (tmp_path / "pipe.skinslide", write(tmp_path / "x.skinslide", cache="./pipe.skinslide")):
+        done = run_python(f"import skinslide; from pxr import Usd; Usd.Stage.Open({str(path)!r})")
+        assert "pipe.skinslide is not a regular file" in done.stderr
+
+
+def test_a_manifest_that_is_the_file_itself_is_refused(tmp_path):
+    done = run_python(
+        "import skinslide; from pxr import Sdf; "
+        f"Sdf.Layer.FindOrOpen({str(pipe_as_manifest(tmp_path, tmp_path / 'x.skinslide'))!r})"
+    )
+    assert done.returncode == 1 and "x.skinslide leads back to itself" in done.stderr
+
+
 def test_a_variable_that_leads_elsewhere_is_no_cycle(tmp_path):
     """By the layer's own variable b leads to x; what refers to it says otherwise."""
     save(patched_stage(grid())[0], tmp_path / "cache.usda")

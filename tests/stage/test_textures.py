@@ -346,6 +346,17 @@ def test_a_pipe_is_not_opened(tmp_path):
     assert done.returncode == 3 and "pipe.exr: cannot be read" in done.stdout
 
 
+def test_a_layer_does_not_open_a_pipe(tmp_path):
+    stage, mesh = mapped_stage()
+    os.mkfifo(tmp_path / "pipe.exr")
+    set_map(mesh, "weight", "./pipe.exr")
+    stages.save(stage, tmp_path / "cache.usda")
+    script = "import sys, skinslide; from pxr import Sdf; Sdf.Layer.FindOrOpen(sys.argv[1])"
+    command = [sys.executable, "-c", script, str(layers.write(tmp_path / "x.skinslide"))]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+    assert done.returncode == 0 and "pipe.exr: cannot be read" in done.stderr
+
+
 def test_a_large_file_that_is_no_image_is_told_by_its_start(tmp_path):
     """3 GB without a block on the disk: its content is never asked for."""
     stage, mesh = mapped_stage()
