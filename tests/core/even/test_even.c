@@ -82,7 +82,7 @@ static void rest_keeps_its_bits(void **state) {
         choices.holes = (skinslide_holes)(i % 2);
         rig r = rig_of(&f.mesh, choices);
         painted paint = paint_at_random(&f.mesh, 5);
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *pose = random_pose(&f.mesh, 2);
         free(slide_with(&r, &f.mesh, pose, NULL, NULL)); /* leaves nothing behind */
         float *slid = slide_with(&r, &f.mesh, f.mesh.points, &paint.controls, &result);
@@ -101,7 +101,7 @@ static void rest_keeps_its_bits(void **state) {
 static void expect_evened(const test_mesh *mesh, double most_left) {
     rig r = rig_of(mesh, even());
     float *points = swollen(mesh, 0.8);
-    skinslide_patch_result result;
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, mesh, points, NULL, &result);
     assert_true(result.stretch_after < most_left * result.stretch_before);
     assert_int_equal(result.folded_faces, 0);
@@ -126,7 +126,7 @@ static void there_is_no_plane(void **state) {
     rig r = rig_of(&mesh, even());
     double uv[200];
     skinslide_error error;
-    skinslide_patch_info info;
+    skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
     assert_ok(skinslide_slider_patch_info(r.slider, 0, &info, &error), &error);
     assert_true(info.hole_count == 0 && info.folded_faces == 0 && info.free_count == info.vertex_count);
     free(slide_with(&r, &mesh, mesh.points, NULL, NULL));
@@ -249,7 +249,7 @@ static void slides_are_smooth_in_time(void **state) {
         free(cache[0]), free(slid[0]);
         cache[0] = cache[1], cache[1] = cache[2], slid[0] = slid[1], slid[1] = slid[2];
         cache[2] = bumped(&mesh, 6 + 0.2 * frame, 12, 5, 5);
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         slid[2] = slide_with(&r, &mesh, cache[2], NULL, &result);
         assert_true(result.stretch_after < 0.9 * result.stretch_before && result.folded_faces == 0);
         if (frame < 2)
@@ -428,7 +428,7 @@ static void wild_poses_stay_finite(void **state) {
         float *points = shaken(&mesh, 7, kind == 0 ? 0.3 : 2);
         for (int32_t i = 0; i < 3 * mesh.vertex_count && kind >= 2; i++)
             points[i] = kind == 2 ? 5 : points[i] * 1e6f;
-        skinslide_patch_result result;
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
         float *slid = slide_with(&r, &mesh, points, NULL, &result);
         assert_true(all_finite(slid, 3 * mesh.vertex_count));
         assert_int_equal(result.folded_faces, 0);
