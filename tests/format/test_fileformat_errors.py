@@ -27,6 +27,7 @@ FUZZER = Path(__file__).parent / "fuzz_fileformat.py"
         (b"PXR-USDC\x00\x08", "is not USDA text"),
         (b"#usda 1.0\n\x00def", "it holds a zero byte"),
         (b'#usda 1.0\ndef "World" {\n', "is not valid USDA text"),
+        (b"#usda 1.0\n" + b'over "a" {\n' * 20000 + b"}\n" * 20000, "nests brackets more than 500 deep, in line 502"),
     ],
 )
 def test_what_is_not_usda_text_is_refused(tmp_path, content, message):

@@ -128,6 +128,22 @@ def test_a_byte_that_is_not_utf_8(at, name, tmp_path, capfd):
         assert code == 1 and len(said.splitlines()) == 1 and said.startswith("error: cannot open")
 
 
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("words", "it is not USDA text: the first line must be #usda 1.0"),
+        ("#usda 1.0\n\0", "it is not USDA text: it holds a zero byte"),
+        ("#usda 1.0\n" + 'over "a" {\n' * 20000, "it nests brackets more than 500 deep, in line 502"),
+    ],
+)
+def test_text_that_usd_cannot_be_given(text, message, tmp_path):
+    """In a process of its own, which USD's parser would end."""
+    path = tmp_path / "x.skinslide"
+    path.write_text(text)
+    done = subprocess.run([sys.executable, "-m", "skinslide", "check", str(path)], capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr == f"error: cannot open {path}: {message}\n"
+
+
 def test_weight_out_of_range_is_clamped_and_told(tmp_path, capfd):
     stage, mesh = stages.patched_stage()
     weight = [1.0] * 12 + [1.5] + [1.0] * 36

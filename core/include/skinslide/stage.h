@@ -523,6 +523,15 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_sta
                                                              const skinslide_stage_pose *poses, int32_t pose_count, float *out,
                                                              skinslide_error *error);
 
+/* ---- Text ---------------------------------------------------------------------------------------------------------------- */
+
+/* Whether the text of a .skinslide file may be given to USD, whose parser runs out of stack where brackets nest too deep, and
+ * takes what is before a zero byte for the whole.
+ *   text  in  [byte_count] USDA, which need not end with 0
+ * Fails with BAD_ARGUMENT (it does not begin as USDA does, or holds a zero byte), UNSUPPORTED (brackets nest more than 500
+ * deep: names the line). The sentence goes behind the name of the file. */
+SKINSLIDE_API skinslide_status skinslide_stage_text(const char *text, int64_t byte_count, skinslide_error *error);
+
 #ifndef SKINSLIDE_CDEF
 #ifdef __cplusplus
 }

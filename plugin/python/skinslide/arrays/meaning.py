@@ -107,6 +107,12 @@ def can_name_patch(name: str) -> bool:
     return bool(lib.skinslide_stage_can_name_patch(name.encode(errors="replace")))
 
 
+def check_text(usda: str) -> None:
+    """Raises Fault for text that USD cannot parse, or would end the process over."""
+    encoded = usda.encode()
+    _call(lib.skinslide_stage_text, ffi.from_buffer(encoded), len(encoded))
+
+
 def nothing_to_slide(where: str) -> str:
     """The sentence for a scene in which no mesh carries a patch."""
     error = ffi.new("skinslide_error *")

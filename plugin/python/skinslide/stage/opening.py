@@ -11,7 +11,8 @@ from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd, UsdUtils
 
-from skinslide.problems import StageError, usd_message
+from skinslide.arrays.meaning import check_text
+from skinslide.problems import Fault, StageError, usd_message
 from skinslide.registration import registered
 
 EXTENSION = ".skinslide"
@@ -107,9 +108,11 @@ def why_not_opened(path: str, error: Exception) -> str:
 def read_text_layer(path: Path) -> Sdf.Layer:
     """The USDA text of a file in an anonymous layer, as it stands."""
     text = path.read_text(encoding="utf-8")
+    try:
+        check_text(text)
+    except Fault as fault:
+        raise StageError(f"cannot open {path}: it {fault}") from fault
     layer = Sdf.Layer.CreateAnonymous(f"{path.name}.usda")
-    if not text.startswith("#usda"):
-        raise StageError(f"cannot open {path}: it is not USDA text (the first line must be #usda 1.0)")
     layer.ImportFromString(text)
     return layer
 
