@@ -1,9 +1,11 @@
-/* Memory and errors. Names begin with ss_, so that the static library can be linked into any program. */
+/* Memory, errors, clocks, callers' structs, vectors. Names begin with ss_, so that the static library can be linked into any program. */
 #ifndef SKINSLIDE_BASE_H
 #define SKINSLIDE_BASE_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "skinslide/skinslide.h"
 
@@ -62,6 +64,49 @@ skinslide_status ss_take_all(const void *given, int64_t count, const char *name,
 void ss_give(const void *own, size_t own_size, void *given);
 /* The same for arrays, of which only the first element need have its size. */
 void ss_give_all(const void *own, int64_t count, size_t own_size, void *given);
+
+/* ---- Halves: IEEE 754 binary16, as bits ---- */
+
+/* Sign, 5 bits of exponent, 10 of fraction; exact as a float. */
+static inline float ss_half_to_float(uint16_t half) {
+    int exponent = half >> 10 & 31, fraction = half & 1023;
+    float size = exponent == 31 ? (fraction ? NAN : INFINITY)
+                 : exponent     ? ldexpf((float)(1024 + fraction), exponent - 25)
+                                : ldexpf((float)fraction, -24);
+    return half & 0x8000 ? -size : size;
+}
+
+/* ---- Vectors of three doubles ---- */
+
+static inline double ss_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double ss_length(const double a[3]) {
+    return sqrt(ss_dot(a, a));
+}
+
+static inline void ss_subtract(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
+/* out += factor a */
+static inline void ss_add(double factor, const double a[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] += factor * a[k];
+}
+
+static inline void ss_cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1], out[1] = a[2] * b[0] - a[0] * b[2], out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* A vector of no length stays. */
+static inline void ss_normalise(double a[3]) {
+    double length = ss_length(a);
+    for (int k = 0; k < 3 && length > 0; k++)
+        a[k] /= length;
+}
 
 #ifdef __cplusplus
 }

@@ -1,27 +1,13 @@
-/* What a device draws: the only room that knows EGL. */
+/* Faces of embeddings drawn as numbers by a device. */
 #ifndef SKINSLIDE_DEVICE_H
 #define SKINSLIDE_DEVICE_H
 
-#include "patch.h"
+#include "egl.h"
+#include "mesh.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* ---- egl.c: the only file that knows EGL ---- */
-
-/* Fills the table of EGL's and OpenGL ES's functions (egl.h); where it cannot, says why. Tests give tables that fail. */
-struct ss_egl_api;
-typedef bool (*ss_egl_loader)(struct ss_egl_api *api, char *why, size_t size);
-bool ss_egl_load(struct ss_egl_api *api, char *why, size_t size);
-
-typedef struct ss_device_request {
-    ss_egl_loader load;
-    int32_t device;     /* of EGL's devices, or SKINSLIDE_ANY_DEVICE */
-    bool hardware_only; /* a software rasteriser will not do */
-} ss_device_request;
-
-/* ---- idbuffer.c: the faces of embeddings drawn as numbers ---- */
 
 /* What is drawn of one patch. */
 typedef struct ss_id_patch {

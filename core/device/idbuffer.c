@@ -12,7 +12,7 @@
  *
  * Resolution: a power of two from 256 to 4096. Four texels a free vertex, along a side; more where the smallest face of the
  * rest embedding would be under a texel, up to four times as many. */
-#include "egl.h"
+#include "device.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -14,7 +14,7 @@
 #define SKINSLIDE_EVEN_H
 
 #include "linear.h"
-#include "rule.h"
+#include "surface.h"
 
 /* ---- sheet.c ---- */
 

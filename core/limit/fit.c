@@ -18,8 +18,8 @@
  *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D)^-1 (1 - nn')      1/2 the mean of uu' in the plane
  *
  * Steps are counted and not watched, so that the time is known and neighbouring frames go the same way. */
+#include "base.h"
 #include "limit.h"
-#include "vector.h"
 
 #include <math.h>
 #include <stdlib.h>

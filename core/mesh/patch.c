@@ -1,5 +1,5 @@
 /* One connected patch: its vertices, edges and loops, and what of it may slide. */
-#include "patch.h"
+#include "mesh.h"
 
 #include <math.h>
 #include <stdio.h>

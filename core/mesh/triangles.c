@@ -1,5 +1,5 @@
 /* The fan triangles of a patch's faces, as `linear` interpolates in them, and how they meet. */
-#include "patch.h"
+#include "mesh.h"
 
 /* The triangle of the fan that has the side which begins at a corner. */
 static int32_t fan_of_side(const ss_faces *faces, int32_t corner) {

@@ -1,6 +1,6 @@
 /* Curves drawn near a mesh: which edges lie by them, and whether along or across them. */
+#include "base.h"
 #include "paint.h"
-#include "vector.h"
 
 #include <string.h>
 

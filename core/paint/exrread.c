@@ -1,6 +1,6 @@
 /* Reads OpenEXR files in memory by OpenEXR's own C library, which only this file and exrwrite.c know. Headers are untrusted:
  * what they claim is held against limits and against the size of the file before memory is taken. */
-#include "half.h"
+#include "base.h"
 #include "paint.h"
 
 #include <math.h>

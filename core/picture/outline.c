@@ -1,5 +1,5 @@
 /* The outline of a patch on a tessellated mesh: the sides of its faces with no other face of it beyond. Any faces will do. */
-#include "draw.h"
+#include "picture.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* A tessellated mesh in a pose: where its vertices are, their normals, and the values at them. */
-#include "draw.h"
+#include "picture.h"
 
 #include <math.h>
 

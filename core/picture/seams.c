@@ -1,7 +1,7 @@
 /* Where the grids of a tessellation meet. Each has vertices of its own along the sides that it shares, and OpenSubdiv's surfaces
  * of faces with creases meet their neighbours' only to some hundredths of the mesh: so one of the vertices at a place has its
  * place taken by all, or a picture would have cracks. */
-#include "draw.h"
+#include "picture.h"
 
 /* ---- Vertices that are one ---- */
 

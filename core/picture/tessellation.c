@@ -1,7 +1,7 @@
 /* Makes a mesh into triangles to be drawn: fans of its faces, or grids on its limit surface. Each face has vertices of its own,
  * so that what differs from face to face at a mesh vertex, such as st at a seam, can; places and normals of neighbouring faces
  * meet all the same. Grids are fine in the patch and around it, where a picture looks, and coarse elsewhere. */
-#include "draw.h"
+#include "picture.h"
 
 #include <math.h>
 #include <stdlib.h>

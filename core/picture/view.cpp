@@ -1,6 +1,6 @@
 /* Where pictures are seen from: matrices for drawing, and a camera that has faces in sight. Behind C functions, and nothing here
  * throws. */
-#include "draw.h"
+#include "picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "device.h"
 #include "linear.h"
-#include "rule.h"
+#include "surface.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -5,7 +5,7 @@
  *     slide(v)   = |slid(v) - cached(v)|
  *     density(v) = mean of k_e over the edges of a patch; where patches overlap, the mean of theirs
  */
-#include "slider.h"
+#include "slide.h"
 
 #include <math.h>
 

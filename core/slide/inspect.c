@@ -1,5 +1,5 @@
 /* What a slider holds and what a workspace did last: copies of it, patch by patch. */
-#include "slider.h"
+#include "slide.h"
 
 #include <string.h>
 

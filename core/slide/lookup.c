@@ -1,5 +1,5 @@
 /* Which lookup a workspace has: what its options come to on this machine. */
-#include "slider.h"
+#include "slide.h"
 
 #include <stdio.h>
 #include <string.h>

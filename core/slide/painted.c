@@ -1,5 +1,5 @@
 /* The artist's controls: what every edge pulls with, and how far each vertex goes. */
-#include "slider.h"
+#include "slide.h"
 
 #include <math.h>
 

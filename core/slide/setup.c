@@ -1,5 +1,5 @@
 /* Builds a slider from its set-ups. */
-#include "slider.h"
+#include "slide.h"
 
 #include <stdlib.h>
 #include <string.h>

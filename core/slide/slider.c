@@ -1,5 +1,5 @@
 /* A mesh with all its patches. skinslide_slide is one frame, its stages in order: read this first. */
-#include "slider.h"
+#include "slide.h"
 
 #include <math.h>
 #include <string.h>

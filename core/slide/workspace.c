@@ -1,5 +1,5 @@
 /* What one thread needs to slide the patches of a slider. */
-#include "slider.h"
+#include "slide.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  * them. */
 #include "stage.h"
 
-#include "half.h"
+#include "base.h"
 
 #include <math.h>
 #include <stdio.h>

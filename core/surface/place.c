@@ -1,5 +1,5 @@
 /* Places on a patch: a triangle of it, weights of its vertices, and the same in a plane that the patch is laid out in. */
-#include "rule.h"
+#include "surface.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
  * they can be compared where milliseconds cannot. */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include "meshes.h"
-#include "slider.h"
+#include "slide.h"
 
 #include <stdio.h>
 #include <stdlib.h>

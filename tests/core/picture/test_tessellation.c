@@ -1,7 +1,7 @@
 /* Meshes made into triangles: on the limit surface or the faces, without cracks, each face wound as it was, outlined where the
  * patch ends. On every fixture, whole and with a part of its faces as the patch, under every scheme. */
 #include "creases.h"
-#include "draw.h"
+#include "picture.h"
 #include "support.h"
 
 #include <math.h>

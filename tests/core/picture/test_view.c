@@ -1,6 +1,6 @@
 /* Cameras: that they have all of their subject in sight and little else, from its outside, wherever it is and however large; and
  * the matrices that are drawn with. */
-#include "draw.h"
+#include "picture.h"
 #include "support.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef SKINSLIDE_TEST_MESHES_H
 #define SKINSLIDE_TEST_MESHES_H
 
-#include "patch.h"
+#include "mesh.h"
 
 /* ---- Random numbers: the same on every machine ---- */
 

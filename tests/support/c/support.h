@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "meshes.h"
-#include "slider.h"
+#include "slide.h"
 
 /* Aborts the test with the library's message where status is not OK. */
 #define assert_ok(status, error) assert_ok_at((status), (error), __FILE__, __LINE__)

@@ -2,8 +2,8 @@
 #ifndef SKINSLIDE_CANVAS_H
 #define SKINSLIDE_CANVAS_H
 
-#include "draw.h"
 #include "egl.h"
+#include "picture.h"
 
 /* A program and its uniforms. */
 typedef struct ss_surface_program {

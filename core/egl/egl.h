@@ -1,5 +1,4 @@
-/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. For egl.c, gl.c, what
- * draws with them and their tests. */
+/* EGL and OpenGL ES 3.0 as tables of functions, and a context of our own on them. */
 #ifndef SKINSLIDE_EGL_H
 #define SKINSLIDE_EGL_H
 
@@ -8,7 +7,11 @@
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
 
-#include "device.h"
+#include "base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* What every EGL since 1.4 exports. */
 #define SS_EGL_FUNCTIONS(X)                                                                                                    \
@@ -107,6 +110,16 @@ typedef struct ss_egl_api {
     GLenum (*glGetGraphicsResetStatus)(void); /* NULL where contexts cannot tell that they were lost */
 } ss_egl_api;
 
+/* Fills the table; where it cannot, says why. Tests give tables that fail. */
+typedef bool (*ss_egl_loader)(ss_egl_api *api, char *why, size_t size);
+bool ss_egl_load(ss_egl_api *api, char *why, size_t size);
+
+typedef struct ss_device_request {
+    ss_egl_loader load;
+    int32_t device;     /* of EGL's devices, or SKINSLIDE_ANY_DEVICE */
+    bool hardware_only; /* a software rasteriser will not do */
+} ss_device_request;
+
 /* A context on a display, made current only between enter and leave. */
 typedef struct ss_egl {
     ss_egl_api api;
@@ -150,5 +163,9 @@ void ss_gl_read_numbers(const ss_egl_api *gl, const int32_t low[2], const int32_
 /* Links a program, capturing the outputs [captured_count] of its vertex shader where there are any. */
 skinslide_status ss_gl_program(const ss_egl_api *gl, const char *vertex, const char *fragment, const char *const *captured,
                                int32_t captured_count, GLuint *program, skinslide_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
