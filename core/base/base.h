@@ -43,6 +43,13 @@ static inline void ss_set(int *flag, int to) {
     __atomic_store_n(flag, to, __ATOMIC_RELAXED);
 }
 
+/* ---- logarithm.c: the same bytes on every machine ---- */
+
+/* Of finite x > 0: exactly 0 of 1. */
+double ss_log(double x);
+/* Of |x| under 700. */
+double ss_exp(double x);
+
 /* ---- clock.c ---- */
 
 /* Seconds since some moment. */

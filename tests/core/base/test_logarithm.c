@@ -1,0 +1,38 @@
+/* Logarithm and exponential against the C library's, whose own error is under one unit in the last place. */
+#include "support.h"
+
+#include <float.h>
+#include <math.h>
+
+static void one_has_none(void **state) {
+    (void)state;
+    assert_true(ss_log(1) == 0 && ss_exp(0) == 1);
+}
+
+/* A quotient and a product are each half a unit off, and so are the sums: three of them. */
+static void logarithms_are_those_of_the_library(void **state) {
+    (void)state;
+    for (double x = 1e-12; x < 1e12; x *= 1.00137)
+        assert_near(ss_log(x), log(x), 3 * DBL_EPSILON * fabs(log(x)));
+    for (double off = 0x1p-52; off < 0.5; off *= 1.7) {
+        assert_near(ss_log(1 + off), log(1 + off), 3 * DBL_EPSILON * fabs(log(1 + off)));
+        assert_near(ss_log(1 - off), log(1 - off), 3 * DBL_EPSILON * fabs(log(1 - off)));
+    }
+    assert_near(ss_log(0x1p-1074), log(0x1p-1074), 1e-12);
+    assert_near(ss_log(DBL_MAX), log(DBL_MAX), 1e-12);
+}
+
+static void exponentials_are_those_of_the_library(void **state) {
+    (void)state;
+    for (double x = -700; x < 700; x += 0.37)
+        assert_near(ss_exp(x), exp(x), 4 * DBL_EPSILON * exp(x));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_has_none),
+        cmocka_unit_test(logarithms_are_those_of_the_library),
+        cmocka_unit_test(exponentials_are_those_of_the_library),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
