@@ -8,13 +8,13 @@
 #define MOST_COMPRESSION 0.5   /* what drives skin apart comes to this at most */
 #define LEAST_SQUARE     1e-12 /* of an edge's length over that at rest */
 
-skinslide_status ss_evener_create(const ss_sheet *sheet, ss_evener **out, skinslide_error *error) {
+skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error) {
     ss_evener *evener = calloc(1, sizeof *evener);
     if (!evener)
         return ss_out_of_memory(error);
     ss_memory *memory = &evener->memory;
     int32_t vertices = sheet->patch->vertex_count;
-    evener->sheet = sheet;
+    evener->sheet = sheet, evener->temper = temper;
     evener->paint = SS_NEW(memory, double, sheet->patch->faces.edge_count);
     evener->weight = SS_NEW(memory, double, vertices), evener->next_weight = SS_NEW(memory, double, vertices);
     evener->hold = SS_NEW(memory, double, vertices);
@@ -80,12 +80,12 @@ static void slide_vertex(ss_evener *evener, int32_t v) {
 
 /* ---- The balance ---- */
 
-static void measure_stretch(ss_evener *evener) {
+void ss_measure_stretch(ss_evener *evener) {
     for (int32_t i = 0; i < evener->sheet->spring_count; i++) {
         const ss_spring *spring = &evener->sheet->springs[i];
         double way[3];
         ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
-        evener->stretch[i] = spring->square > 0 ? 0.5 * log(fmax(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
+        evener->stretch[i] = spring->square > 0 ? 0.5 * ss_log(fmax(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
     }
 }
 
@@ -97,10 +97,11 @@ static double find_scale(const ss_evener *evener, const double *paint) {
     return ss_find_scale(evener->sorted, count);
 }
 
-/* s(z), z over the scale. */
-static double drive(const ss_frame *frame, double z) {
-    double share = z / MOST_COMPRESSION;
-    return z < 0 ? frame->compression_response * z / sqrt(1 + share * share) : frame->stretch_response * z;
+double ss_drive(const ss_frame *frame, double z, double *slope) {
+    double share = z < 0 ? z / MOST_COMPRESSION : 0, response = z < 0 ? frame->compression_response : frame->stretch_response;
+    double least = sqrt(1 + share * share);
+    *slope = response / (least * least * least);
+    return response * z / least;
 }
 
 static void add_force(ss_evener *evener, const ss_spring *spring, double force) {
@@ -115,16 +116,17 @@ static void add_force(ss_evener *evener, const ss_spring *spring, double force) 
 }
 
 /* Solves K goal = J' k (J d - s), and takes the way there for the step. */
-static void solve(ss_evener *evener, const ss_frame *frame, double scale) {
+static void solve(ss_evener *evener, const ss_frame *frame) {
     const ss_sheet *sheet = evener->sheet;
     memset(evener->K->right, 0, (size_t)sheet->system->n * sizeof *evener->K->right);
     for (int32_t i = 0; i < sheet->spring_count; i++) {
         const ss_spring *spring = &sheet->springs[i];
-        double linear = 0;
+        double linear = 0, slope;
         for (int end = 0; end < 2; end++)
             for (int j = 0; j < 2; j++)
                 linear += spring->slope[end][j] * evener->slide[spring->end[end]][j];
-        add_force(evener, spring, evener->paint[spring->edge] * (linear - drive(frame, evener->stretch[i] - scale)));
+        add_force(evener, spring,
+                  evener->paint[spring->edge] * (linear - ss_drive(frame, evener->stretch[i] - evener->scale, &slope)));
     }
     ss_blocks_solve(evener->K);
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
@@ -149,7 +151,7 @@ static bool stays(const ss_evener *evener, int32_t vertex) {
     return corner >= 0 && evener->sheet->patch->triangles.vertex[place->triangle][corner] == vertex;
 }
 
-static void write_places(const ss_evener *evener, ss_place *places) {
+void ss_write_places(const ss_evener *evener, ss_place *places) {
     const ss_patch *patch = evener->sheet->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         places[i] = evener->place[patch->free_vertex[i]];
@@ -158,28 +160,25 @@ static void write_places(const ss_evener *evener, ss_place *places) {
     }
 }
 
-static bool take_step(ss_evener *evener, const ss_frame *frame, double scale) {
-    solve(evener, frame, scale);
-    bool cut = ss_shorten_steps(evener->sheet, (const double(*)[2])evener->slide, evener->step, evener->part);
+bool ss_take_step(ss_evener *evener) {
+    bool cut = ss_shorten_step(evener);
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         if (evener->weight[v] > 0)
             slide_vertex(evener, v);
     return cut;
 }
 
-skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, ss_place *places, int32_t *cut, skinslide_error *error) {
+skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error) {
     start(evener, frame->points);
-    measure_stretch(evener);
-    double scale = find_scale(evener, frame->paint);
+    ss_measure_stretch(evener);
+    evener->scale = find_scale(evener, frame->paint);
     spread_weights(evener, frame);
     skinslide_status status = ss_need_stiffness(evener, frame->paint, evener->next_weight, frame->holds, error);
-    if (status)
-        return status;
-    for (int step = 0; step < STEPS && !ss_is_set(frame->stop); step++) {
+    for (int step = 0; step < STEPS && !status && !ss_is_set(frame->stop); step++) {
         if (step > 0)
-            measure_stretch(evener);
-        *cut += take_step(evener, frame, scale);
+            ss_measure_stretch(evener);
+        solve(evener, frame);
+        *cut += ss_take_step(evener);
     }
-    write_places(evener, places);
-    return SKINSLIDE_OK;
+    return status;
 }

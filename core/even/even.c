@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+static const ss_temper temper = {.hold = 0.2, .most_lost = 0.5, .least_area = 0.1};
+
 typedef struct even_rest {
     ss_rest head;
     ss_sheet *sheet;
@@ -55,7 +57,7 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
     own->head.places = SS_NEW(&own->memory, ss_place, rest->patch->free_count);
     skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_evener_create(((const even_rest *)rest)->sheet, &own->evener, error);
+        status = ss_evener_create(((const even_rest *)rest)->sheet, temper, &own->evener, error);
     if (status)
         close_slide(&own->head);
     else
@@ -66,8 +68,11 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
 /* ---- In every frame ---- */
 
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
+    ss_evener *evener = ((even_slide *)slide)->evener;
     double time = ss_now();
-    skinslide_status status = ss_even_out(((even_slide *)slide)->evener, frame, slide->places, &result->cut_steps, error);
+    skinslide_status status = ss_even_out(evener, frame, &result->cut_steps, error);
+    if (!status)
+        ss_write_places(evener, slide->places);
     ss_lap(&time, &result->relax_seconds);
     return status;
 }

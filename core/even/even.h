@@ -58,10 +58,18 @@ typedef struct ss_weighted {
     double z, k;
 } ss_weighted;
 
+/* What rules that even out differ in. */
+typedef struct ss_temper {
+    double hold;       /* eta */
+    double most_lost;  /* by one step, of what a face has over the least area */
+    double least_area; /* of that at rest */
+} ss_temper;
+
 /* Memory of one thread for one patch, and where its slide has got to. */
 typedef struct ss_evener {
     ss_memory memory;
     const ss_sheet *sheet;
+    ss_temper temper;
     ss_blocks *K; /* factored for the paint, weights and holds below */
     bool factored;
     double *paint;         /* [edge_count] */
@@ -74,17 +82,25 @@ typedef struct ss_evener {
     double (*slide)[2];    /* [vertex_count] d */
     double (*step)[2];     /* [vertex_count] to be added to it */
     double *stretch;       /* [spring_count] z */
+    double scale;          /* of the frame, to be taken off z */
     int32_t *region;       /* [vertex_count] scratch for anchors */
     double *area, *anchor; /* [vertex_count] */
     double *part;          /* [vertex_count] of a step that is taken */
     ss_weighted *sorted;   /* [spring_count] */
 } ss_evener;
 
-skinslide_status ss_evener_create(const ss_sheet *sheet, ss_evener **out, skinslide_error *error);
+skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error);
 void ss_evener_destroy(ss_evener *evener);
-/* Where every free vertex slides to, in their order: places [free_count]. Returns through *cut how many of the steps were cut short
- * by a face. Fails with SINGULAR. */
-skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, ss_place *places, int32_t *cut, skinslide_error *error);
+/* Slides every vertex from its own place. Adds to *cut how many of the steps were cut short by a face. Fails with SINGULAR. */
+skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error);
+/* Measures the stretch where vertices are. */
+void ss_measure_stretch(ss_evener *evener);
+/* s(z), z over the scale, and how fast that changes with z. */
+double ss_drive(const ss_frame *frame, double z, double *slope);
+/* Shortens the step, and takes it. Returns whether a face cut it short. */
+bool ss_take_step(ss_evener *evener);
+/* Where every free vertex is, in their order: [free_count]. */
+void ss_write_places(const ss_evener *evener, ss_place *places);
 
 /* ---- limits.c ---- */
 
@@ -96,6 +112,8 @@ void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places);
 /* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR. */
 skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const double *weight, const double *hold,
                                    skinslide_error *error);
+/* Of an edge, over eta: k / l^2 times what is painted. */
+double ss_hold_of(const ss_evener *evener, const ss_spring *spring);
 /* Stiffnesses [vertex_count] that hold each vertex at its own place so that it slides about its weight as far as it would.
  * region and area are scratch [vertex_count]. */
 void ss_find_anchors(const ss_evener *evener, int32_t *region, double *area, double *anchor);
@@ -107,9 +125,9 @@ double ss_find_scale(ss_weighted *values, int32_t count);
 
 /* ---- shorten.c ---- */
 
-/* Shortens steps [vertex_count] so that no face turns over. part is scratch [vertex_count]. Returns whether some face had to be
- * kept from it, beyond the ease that all steps have. */
-bool ss_shorten_steps(const ss_sheet *sheet, const double (*slide)[2], double (*step)[2], double *part);
+/* Shortens the step so that no face turns over. Returns whether some face had to be kept from it, beyond the ease that all steps
+ * have. */
+bool ss_shorten_step(ss_evener *evener);
 
 /* ---- folds.c ---- */
 

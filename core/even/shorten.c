@@ -1,16 +1,14 @@
 /* Steps that turn no face over. In the plane of each face at rest, where its corners slide on straight lines, its area is
- * quadratic in the part of the step that is taken: no face may lose more than half of what it has over a tenth of its area at
- * rest. What that leaves a face is shared with all faces about each vertex, smoothly, so that steps shrink before they must;
+ * quadratic in the part of the step that is taken: no face may lose more than a share of what it has over the least, which is a
+ * share of its area at rest. What that leaves a face is shared with all faces about each vertex, smoothly, so that steps shrink before they must;
  * what is still too far is cut, easing off over the neighbours, and in the end for all vertices alike. */
 #include "even.h"
 
-#define MOST_LOST  0.5  /* of what a face has over the least, by one step */
-#define LEAST_AREA 0.1  /* of that at rest */
-#define FAR        30.0 /* parts of a step beyond which a face has no say */
-#define NEAR       1e-6 /* parts that count as no less */
-#define ROUNDS     4    /* of cutting */
-#define PASSES     10   /* of easing off */
-#define EASE       0.1  /* a neighbour may take as much more */
+#define FAR    30.0 /* parts of a step beyond which a face has no say */
+#define NEAR   1e-6 /* parts that count as no less */
+#define ROUNDS 4    /* of cutting */
+#define PASSES 10   /* of easing off */
+#define EASE   0.1  /* a neighbour may take as much more */
 
 /* ---- One face ---- */
 
@@ -18,13 +16,14 @@ typedef struct moving_point {
     double at[2], by[2];
 } moving_point;
 
-static moving_point corner_of(const ss_sheet *sheet, int32_t corner, const double (*slide)[2], const double (*step)[2]) {
-    const ss_flat_corner *own = &sheet->corner[corner];
-    int32_t v = sheet->patch->faces.corner_vertex[corner];
+static moving_point corner_of(const ss_evener *evener, int32_t corner) {
+    const ss_flat_corner *own = &evener->sheet->corner[corner];
+    int32_t v = evener->sheet->patch->faces.corner_vertex[corner];
+    const double *slide = evener->slide[v], *step = evener->step[v];
     moving_point p;
     for (int i = 0; i < 2; i++) {
-        p.at[i] = own->at[i] + own->along[i][0] * slide[v][0] + own->along[i][1] * slide[v][1];
-        p.by[i] = own->along[i][0] * step[v][0] + own->along[i][1] * step[v][1];
+        p.at[i] = own->at[i] + own->along[i][0] * slide[0] + own->along[i][1] * slide[1];
+        p.by[i] = own->along[i][0] * step[0] + own->along[i][1] * step[1];
     }
     return p;
 }
@@ -40,85 +39,89 @@ static double cross(const double a[2], const double b[2]) {
 }
 
 /* The part of the step at which a face has lost what it may, or more: what makes it larger is left out. */
-static double face_reach(const ss_sheet *sheet, int32_t face, const double (*slide)[2], const double (*step)[2]) {
-    const int32_t *start = sheet->patch->faces.face_start;
-    double now = 0, slope = 0, bend = 0;
-    moving_point origin = corner_of(sheet, start[face], slide, step);
-    moving_point p = from(origin, corner_of(sheet, start[face] + 1, slide, step));
+static double face_reach(const ss_evener *evener, int32_t face) {
+    const int32_t *start = evener->sheet->patch->faces.face_start;
+    double now = 0, slope = 0, bend = 0, rest = evener->sheet->area[face];
+    moving_point origin = corner_of(evener, start[face]);
+    moving_point p = from(origin, corner_of(evener, start[face] + 1));
     for (int32_t c = start[face] + 2; c < start[face + 1]; c++) {
-        moving_point q = from(origin, corner_of(sheet, c, slide, step));
+        moving_point q = from(origin, corner_of(evener, c));
         now += cross(p.at, q.at), bend += cross(p.by, q.by);
         slope += cross(p.at, q.by) + cross(p.by, q.at);
         p = q;
     }
-    double spare = MOST_LOST * fmax(0, now - LEAST_AREA * sheet->area[face]);
+    double spare = evener->temper.most_lost * fmax(0, now - evener->temper.least_area * rest);
     slope = fmax(0, -slope), bend = fmax(0, -bend);
     double loss = slope + sqrt(slope * slope + 4 * bend * spare);
-    return loss > 0 && sheet->area[face] > 0 ? 2 * spare / loss : INFINITY;
+    return loss > 0 && rest > 0 ? 2 * spare / loss : INFINITY;
 }
 
 /* ---- All of them ---- */
 
-static void scale_steps(const ss_sheet *sheet, double (*step)[2], const double *part) {
-    for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        step[v][0] *= part[v], step[v][1] *= part[v];
+static void fill_parts(ss_evener *evener, double part) {
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        evener->part[v] = part;
 }
 
-/* Every step by (1 + sum of r^-4)^(-1/4), r the reaches of the faces at its vertex. */
-static void share_reaches(const ss_sheet *sheet, const double (*slide)[2], double (*step)[2], double *part) {
-    const ss_faces *faces = &sheet->patch->faces;
-    for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        part[v] = 1;
+static void scale_step(ss_evener *evener) {
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        evener->step[v][0] *= evener->part[v], evener->step[v][1] *= evener->part[v];
+}
+
+/* Every vertex goes (1 + sum of r^-4)^(-1/4) of its step, r the reaches of the faces there. */
+static void share_reaches(ss_evener *evener) {
+    const ss_faces *faces = &evener->sheet->patch->faces;
+    double *part = evener->part;
+    fill_parts(evener, 1);
     for (int32_t f = 0; f < faces->face_count; f++) {
-        double reach = face_reach(sheet, f, slide, (const double(*)[2])step);
+        double reach = face_reach(evener, f);
         if (reach > FAR)
             continue;
         double square = 1 / (fmax(reach, NEAR) * fmax(reach, NEAR));
         for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1]; c++)
             part[faces->corner_vertex[c]] += square * square;
     }
-    for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         part[v] = 1 / sqrt(sqrt(part[v]));
-    scale_steps(sheet, step, part);
+    scale_step(evener);
 }
 
 /* Lowers the parts of a face's corners to its reach, where it has less than a step; returns the least reach. */
-static double lower_parts(const ss_sheet *sheet, const double (*slide)[2], const double (*step)[2], double *part) {
-    const ss_faces *faces = &sheet->patch->faces;
+static double lower_parts(ss_evener *evener) {
+    const ss_faces *faces = &evener->sheet->patch->faces;
     double least = 1;
     for (int32_t f = 0; f < faces->face_count; f++) {
-        double reach = face_reach(sheet, f, slide, step);
+        double reach = face_reach(evener, f);
         least = fmin(least, reach);
         for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1] && reach < 1; c++)
-            part[faces->corner_vertex[c]] = fmin(part[faces->corner_vertex[c]], reach);
+            evener->part[faces->corner_vertex[c]] = fmin(evener->part[faces->corner_vertex[c]], reach);
     }
     return least;
 }
 
-static void ease_off(const ss_sheet *sheet, double *part) {
+static void ease_off(ss_evener *evener) {
+    const ss_sheet *sheet = evener->sheet;
     for (int pass = 0; pass < PASSES; pass++)
         for (int32_t i = 0; i < sheet->spring_count; i++) {
-            double *a = &part[sheet->springs[i].end[0]], *b = &part[sheet->springs[i].end[1]];
+            double *a = &evener->part[sheet->springs[i].end[0]], *b = &evener->part[sheet->springs[i].end[1]];
             *a = fmin(*a, *b + EASE), *b = fmin(*b, *a + EASE);
         }
 }
 
-bool ss_shorten_steps(const ss_sheet *sheet, const double (*slide)[2], double (*step)[2], double *part) {
-    share_reaches(sheet, slide, step, part);
+bool ss_shorten_step(ss_evener *evener) {
+    share_reaches(evener);
     double least = 0;
     for (int round = 0; round <= ROUNDS; round++) {
-        for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-            part[v] = 1;
-        least = lower_parts(sheet, slide, (const double(*)[2])step, part);
+        fill_parts(evener, 1);
+        least = lower_parts(evener);
         if (least >= 1)
             return round > 0;
         if (round < ROUNDS) {
-            ease_off(sheet, part);
-            scale_steps(sheet, step, part);
+            ease_off(evener);
+            scale_step(evener);
         }
     }
-    for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        part[v] = least;
-    scale_steps(sheet, step, part);
+    fill_parts(evener, least);
+    scale_step(evener);
     return true;
 }

@@ -7,7 +7,6 @@
 
 #include <string.h>
 
-#define HOLD      0.2 /* eta */
 #define TIE       1e6 /* of the ends of an edge without length: of eta k, over the square of the mean edge */
 #define SHORTNESS 1e6 /* mean edge over the shortest that has a length */
 
@@ -15,11 +14,11 @@ static bool slides(const ss_evener *evener, int32_t vertex) {
     return evener->weight[vertex] > 0;
 }
 
-static double hold_of(const ss_evener *evener, const ss_spring *spring) {
+double ss_hold_of(const ss_evener *evener, const ss_spring *spring) {
     const double *hold = evener->hold;
     double mean = 0.5 * (hold[spring->end[0]] + hold[spring->end[1]]), shortest = evener->sheet->patch->shortest;
     double stiffness = spring->square > 0 ? 1 / spring->square : TIE / (SHORTNESS * SHORTNESS * shortest * shortest);
-    return HOLD * mean * evener->paint[spring->edge] * stiffness;
+    return mean * evener->paint[spring->edge] * stiffness;
 }
 
 static void add_own(ss_evener *evener, const ss_spring *spring, int end, double k, double hold) {
@@ -64,7 +63,8 @@ static void add_stiffness(ss_evener *evener) {
     ss_blocks_clear(evener->K);
     for (int32_t i = 0; i < sheet->spring_count; i++) {
         const ss_spring *spring = &sheet->springs[i];
-        double k = spring->square > 0 ? evener->paint[spring->edge] : 0, hold = hold_of(evener, spring);
+        double k = spring->square > 0 ? evener->paint[spring->edge] : 0,
+               hold = evener->temper.hold * ss_hold_of(evener, spring);
         add_own(evener, spring, 0, k, hold);
         add_own(evener, spring, 1, k, hold);
         add_between(evener, spring, k, hold);
