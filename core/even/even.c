@@ -29,13 +29,15 @@ static skinslide_status create(const ss_patch *patch, const float *rest_points, 
     even_rest *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
-    own->head = (ss_rest){&ss_even_rule, patch, paint, NULL};
+    own->head = (ss_rest){.rule = &ss_even_rule, .patch = patch, .paint = paint};
     skinslide_status status = ss_sheet_create(patch, rest_points, &own->sheet, error);
-    if (status)
+    if (status) {
         destroy(&own->head);
-    else
-        *out = &own->head;
-    return status;
+        return status;
+    }
+    own->head.ground = &own->sheet->ground;
+    *out = &own->head;
+    return SKINSLIDE_OK;
 }
 
 /* ---- Once a thread ---- */
@@ -53,11 +55,12 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
     even_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
-    own->head.rest = rest;
+    const ss_sheet *sheet = ((const even_rest *)rest)->sheet;
+    own->head.rest = rest, own->head.flat.corner = (const double(*)[2])sheet->flat;
     own->head.places = SS_NEW(&own->memory, ss_place, rest->patch->free_count);
     skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_evener_create(((const even_rest *)rest)->sheet, temper, &own->evener, error);
+        status = ss_evener_create(sheet, temper, &own->evener, error);
     if (status)
         close_slide(&own->head);
     else

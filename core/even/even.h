@@ -26,12 +26,6 @@ typedef struct ss_spring {
     double slope[2][2]; /* J: of its z as either end slides along its tangents */
 } ss_spring;
 
-/* A corner of a face, in the plane of the face at rest. */
-typedef struct ss_flat_corner {
-    double at[2];
-    double along[2][2]; /* [axis][tangent] how it moves there as its vertex slides */
-} ss_flat_corner;
-
 /* A patch at rest, and what of that every frame needs: immutable. */
 typedef struct ss_sheet {
     ss_memory memory;
@@ -41,10 +35,11 @@ typedef struct ss_sheet {
     double (*tangent)[2][3]; /* [vertex_count] unit; along a free loop the first alone, and the second is 0 */
     int32_t spring_count;
     ss_spring *springs;
-    ss_flat_corner *corner; /* [corner_count] */
-    double *area;           /* [face_count] twice, in the same plane */
-    uint8_t *turned;        /* [face_count] which are turned over against the normals of their corners at rest already */
-    ss_system *system;      /* of what K joins */
+    double (*flat)[2];     /* [corner_count] faces at rest, each in its own plane */
+    double (*along)[2][2]; /* [corner_count] [axis][tangent] how a corner moves there as its vertex slides */
+    double *area;          /* [face_count] twice, in the same plane */
+    uint8_t *turned;       /* [face_count] which are turned over against the normals of their corners at rest already */
+    ss_system *system;     /* of what K joins */
 } ss_sheet;
 
 /* rest_points is the whole mesh's. */

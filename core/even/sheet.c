@@ -82,9 +82,9 @@ static void set_face(ss_sheet *sheet, int32_t face) {
     for (int32_t c = begin; c < end; c++) {
         ss_subtract(point[v[c]], point[v[begin]], first);
         for (int i = 0; i < 2; i++) {
-            sheet->corner[c].at[i] = ss_dot(first, axes[i]);
+            sheet->flat[c][i] = ss_dot(first, axes[i]);
             for (int j = 0; j < 2; j++)
-                sheet->corner[c].along[i][j] = ss_dot(axes[i], sheet->tangent[v[c]][j]);
+                sheet->along[c][i][j] = ss_dot(axes[i], sheet->tangent[v[c]][j]);
         }
     }
 }
@@ -97,7 +97,8 @@ static bool allocate(ss_sheet *sheet) {
     sheet->held = SS_NEW(memory, uint8_t, patch->vertex_count);
     sheet->tangent = ss_new(memory, patch->vertex_count, sizeof *sheet->tangent);
     sheet->springs = SS_NEW(memory, ss_spring, patch->faces.edge_count);
-    sheet->corner = SS_NEW(memory, ss_flat_corner, patch->faces.corner_count);
+    sheet->flat = ss_new(memory, patch->faces.corner_count, sizeof *sheet->flat);
+    sheet->along = ss_new(memory, patch->faces.corner_count, sizeof *sheet->along);
     sheet->area = SS_NEW(memory, double, patch->faces.face_count);
     sheet->turned = SS_NEW(memory, uint8_t, patch->faces.face_count);
     return ss_ground_allocate(memory, patch, &sheet->ground);

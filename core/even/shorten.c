@@ -17,13 +17,13 @@ typedef struct moving_point {
 } moving_point;
 
 static moving_point corner_of(const ss_evener *evener, int32_t corner) {
-    const ss_flat_corner *own = &evener->sheet->corner[corner];
+    const double *at = evener->sheet->flat[corner], (*along)[2] = (const double(*)[2])evener->sheet->along[corner];
     int32_t v = evener->sheet->patch->faces.corner_vertex[corner];
     const double *slide = evener->slide[v], *step = evener->step[v];
     moving_point p;
     for (int i = 0; i < 2; i++) {
-        p.at[i] = own->at[i] + own->along[i][0] * slide[0] + own->along[i][1] * slide[1];
-        p.by[i] = own->along[i][0] * step[0] + own->along[i][1] * step[1];
+        p.at[i] = at[i] + along[i][0] * slide[0] + along[i][1] * slide[1];
+        p.by[i] = along[i][0] * step[0] + along[i][1] * step[1];
     }
     return p;
 }

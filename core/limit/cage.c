@@ -43,7 +43,7 @@ struct ss_cage_work {
     ss_memory memory;
     const ss_cage *cage;
     ss_fit_work *fit;
-    ss_face_tree *tree;
+    ss_middles *middles;
     double (*residual)[3]; /* [sample_count] t - L Md */
     double (*normal)[3];   /* [sample_count] n */
     double (*solution)[3]; /* [free_count] d */
@@ -206,7 +206,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     if (!status)
         status = ss_fit_work_create(cage->fit, &work->fit, error);
     if (!status)
-        status = ss_face_tree_create(cage->patch, &work->tree, error);
+        status = ss_middles_create(cage->patch, cage->free_index, &work->middles, error);
     if (status)
         ss_cage_work_destroy(work);
     else
@@ -217,7 +217,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
 void ss_cage_work_destroy(ss_cage_work *work) {
     if (!work)
         return;
-    ss_face_tree_destroy(work->tree);
+    ss_middles_destroy(work->middles);
     ss_fit_work_destroy(work->fit);
     ss_free(&work->memory);
     free(work);
@@ -225,32 +225,13 @@ void ss_cage_work_destroy(ss_cage_work *work) {
 
 /* ---- Targets of one frame ---- */
 
-/* Looks the middle of a face up, at the mean of where its corners are looked up. It stays where all of them do. */
-static ss_place locate_middle(const ss_cage_work *work, const ss_slide *slide, int32_t face) {
-    const ss_faces *faces = &work->cage->patch->faces;
-    int32_t begin = faces->face_start[face], end = faces->face_start[face + 1];
-    ss_place found = {.triangle = SS_STAYS};
-    double mean[2] = {0, 0};
-    bool stays = true;
-    for (int32_t c = begin; c < end; c++) {
-        int32_t vertex = faces->corner_vertex[c], i = work->cage->free_index[vertex];
-        const double *at = i < 0 ? slide->uv[vertex] : slide->asked[i];
-        stays = stays && (i < 0 || slide->places[i].triangle == SS_STAYS);
-        for (int k = 0; k < 2; k++)
-            mean[k] += at[k] / (end - begin);
-    }
-    if (!stays && !ss_face_tree_holding(work->tree, mean, &found))
-        ss_face_tree_nearest(work->tree, mean, &found);
-    return found;
-}
-
 /* Where a sample is looked up: t less the origin, and n. A sample that stays is looked up where it is. */
-static void find_target(const ss_cage_work *work, const float *points, const double (*uv)[2], const sample *own,
+static void find_target(const ss_cage_work *work, const float *points, const ss_flat *flat, const sample *own,
                         const ss_place *place, const double origin[3], double target[3], double normal[3]) {
     const ss_cage *cage = work->cage;
     bool stays = place->triangle == SS_STAYS;
     int32_t face = stays ? own->face : cage->patch->triangles.face[place->triangle];
-    ss_parameter at = stays ? own->at : ss_parametrise(cage->patch, cage->loop, uv, place);
+    ss_parameter at = stays ? own->at : ss_parametrise(cage->patch, cage->loop, flat, place);
     ss_limit_prepare(cage->surfaces, face, points, origin, work->scratch);
     ss_limit_normal(cage->surfaces, face, &at, work->scratch, target, normal);
 }
@@ -259,10 +240,10 @@ static void find_target(const ss_cage_work *work, const float *points, const dou
 static void list_target(const ss_cage_work *work, const float *points, const ss_slide *slide, int32_t s) {
     const sample *own = &work->cage->samples[s];
     const ss_rows *stencils = &work->cage->stencils;
-    ss_place place = own->free_index < 0 ? locate_middle(work, slide, own->face) : slide->places[own->free_index];
+    ss_place place = own->free_index < 0 ? ss_middle(work->middles, own->face) : slide->places[own->free_index];
     const float *near = points + 3 * (int64_t)own->origin;
     double origin[3] = {near[0], near[1], near[2]}, *residual = work->residual[s];
-    find_target(work, points, slide->uv, own, &place, origin, residual, work->normal[s]);
+    find_target(work, points, &slide->flat, own, &place, origin, residual, work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
             residual[axis] -= stencils->value[k] * (points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
@@ -271,7 +252,7 @@ static void list_target(const ss_cage_work *work, const float *points, const ss_
 }
 
 static void list_targets(const ss_cage_work *work, const ss_frame *frame, const ss_slide *slide) {
-    ss_face_tree_build(work->tree, slide->uv);
+    ss_middles_set(work->middles, slide);
     for (int32_t s = 0; s < work->cage->sample_count && !ss_is_set(frame->stop); s++)
         list_target(work, frame->points, slide, s);
 }

@@ -17,8 +17,8 @@ typedef struct ss_parameter {
     double st[2];
 } ss_parameter;
 
-/* The parameters of a place in an embedding. loop: the scheme is. */
-ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const double (*uv)[2], const ss_place *place);
+/* The parameters of a place. loop: the scheme is. */
+ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const ss_flat *flat, const ss_place *place);
 
 typedef struct ss_topology ss_topology;             /* a subdivided mesh, checked; keeps the mesh and its arrays */
 typedef struct ss_limit_surfaces ss_limit_surfaces; /* limit surfaces of some of its faces: immutable, and good without it */
@@ -73,6 +73,17 @@ void ss_fit_work_destroy(ss_fit_work *work);
  * along normal: unit, or 0 for in every direction. Both are [row_count]. points is the whole mesh's. */
 void ss_fit_samples(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*normal)[3],
                     double (*displacement)[3]);
+
+/* ---- middle.c: where the middles of faces are looked up ---- */
+
+typedef struct ss_middles ss_middles; /* memory of one thread for one patch */
+
+/* free_index [vertex_count] is the place in free_vertex, or -1; it is kept. */
+skinslide_status ss_middles_create(const ss_patch *patch, const int32_t *free_index, ss_middles **out, skinslide_error *error);
+void ss_middles_destroy(ss_middles *middles);
+/* Whose middles are asked for next. */
+void ss_middles_set(ss_middles *middles, const ss_slide *slide);
+ss_place ss_middle(const ss_middles *middles, int32_t face);
 
 /* ---- cage.c: interpolation LIMIT ---- */
 

@@ -1,4 +1,4 @@
-/* From a point in a face of the embedding to the face's own parameters, as OpenSubdiv lays them: barycentric in triangles of
+/* From a point in a face laid flat to the face's own parameters, as OpenSubdiv lays them: barycentric in triangles of
  * the loop scheme, bilinear in quads, and in other polygons bilinear in one of the quads that join a corner, the middles of its
  * two sides and the mean of all corners. Along every side all of these run evenly from corner to corner, so that faces of
  * different kinds meet in the same point. */
@@ -11,8 +11,8 @@ namespace {
 
 using glm::dvec2;
 
-dvec2 corner_of(const ss_faces *faces, const double (*uv)[2], int32_t face, int32_t k) {
-    const double *corner = uv[faces->corner_vertex[faces->face_start[face] + k]];
+dvec2 corner_of(const ss_patch *patch, const ss_flat &flat, int32_t face, int32_t k) {
+    const double *corner = ss_flat_corner(patch, &flat, patch->faces.face_start[face] + k);
     return {corner[0], corner[1]};
 }
 
@@ -83,17 +83,17 @@ ss_parameter from_fan(const ss_patch *patch, const ss_place *place, int32_t n) {
 
 /* The quad at corner k of a polygon: the corner, the middle of the side after it, the mean of all, the middle of that before.
  */
-Quad corner_quad(const ss_faces *faces, const double (*uv)[2], int32_t face, int32_t k, int32_t n, dvec2 mean) {
-    dvec2 here = corner_of(faces, uv, face, k), next = corner_of(faces, uv, face, (k + 1) % n);
-    dvec2 previous = corner_of(faces, uv, face, (k + n - 1) % n);
+Quad corner_quad(const ss_patch *patch, const ss_flat &flat, int32_t face, int32_t k, int32_t n, dvec2 mean) {
+    dvec2 here = corner_of(patch, flat, face, k), next = corner_of(patch, flat, face, (k + 1) % n);
+    dvec2 previous = corner_of(patch, flat, face, (k + n - 1) % n);
     return {{here, 0.5 * (here + next), mean, 0.5 * (previous + here)}};
 }
 
-ss_parameter in_quad(const ss_patch *patch, const double (*uv)[2], const ss_place *place, dvec2 p) {
+ss_parameter in_quad(const ss_patch *patch, const ss_flat &flat, const ss_place *place, dvec2 p) {
     int32_t face = patch->triangles.face[place->triangle];
     Quad quad;
     for (int32_t k = 0; k < 4; k++)
-        quad.corners[k] = corner_of(&patch->faces, uv, face, k);
+        quad.corners[k] = corner_of(patch, flat, face, k);
     double missed;
     dvec2 st = inverse_bilinear(quad, p, &missed);
     if (missed > accepted_miss)
@@ -101,16 +101,15 @@ ss_parameter in_quad(const ss_patch *patch, const double (*uv)[2], const ss_plac
     return {-1, {st.x, st.y}};
 }
 
-ss_parameter in_polygon(const ss_patch *patch, const double (*uv)[2], const ss_place *place, dvec2 p, int32_t n) {
-    const ss_faces *faces = &patch->faces;
+ss_parameter in_polygon(const ss_patch *patch, const ss_flat &flat, const ss_place *place, dvec2 p, int32_t n) {
     int32_t face = patch->triangles.face[place->triangle];
     dvec2 mean(0);
     for (int32_t k = 0; k < n; k++)
-        mean += corner_of(faces, uv, face, k) / double(n);
+        mean += corner_of(patch, flat, face, k) / double(n);
     double least = INFINITY;
     ss_parameter best = {-1, {0, 0}};
     for (int32_t k = 0; k < n; k++) {
-        Quad quad = corner_quad(faces, uv, face, k, n, mean);
+        Quad quad = corner_quad(patch, flat, face, k, n, mean);
         double missed;
         dvec2 st = inverse_bilinear(quad, p, &missed);
         if (missed < least)
@@ -121,10 +120,11 @@ ss_parameter in_polygon(const ss_patch *patch, const double (*uv)[2], const ss_p
 
 } // namespace
 
-ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const double (*uv)[2], const ss_place *place) {
+ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const ss_flat *flat, const ss_place *place) {
     int32_t n = ss_fan_size(&patch->faces, patch->triangles.face[place->triangle]) + 2;
-    dvec2 p(place->uv[0], place->uv[1]);
     if (loop)
         return {-1, {place->weight[1], place->weight[2]}};
-    return n == 4 ? in_quad(patch, uv, place, p) : in_polygon(patch, uv, place, p, n);
+    double p[2];
+    ss_flat_place(patch, flat, place, p);
+    return n == 4 ? in_quad(patch, *flat, place, {p[0], p[1]}) : in_polygon(patch, *flat, place, {p[0], p[1]}, n);
 }

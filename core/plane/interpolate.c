@@ -1,5 +1,5 @@
-/* From a point in a face of the embedding to a point on the deformed mesh (paper, section 3.4): the weights of the face's
- * corners there, applied to the corners of the deformed face. `linear`: barycentric in a triangle of the fan. `meanValue`: mean
+/* From a point in a face laid flat, that of the embedding or that of rest, to a point on the deformed mesh (paper, section 3.4):
+ * the weights of the face's corners there, applied to the corners of the deformed face. `linear`: barycentric in a triangle of the fan. `meanValue`: mean
  * value coordinates in the polygon (Floater 2003; Hormann and Floater 2006), smooth across the fan's diagonals. */
 #include "plane.h"
 
@@ -11,8 +11,8 @@ typedef struct spoke { /* from the point to a corner */
     double x, y, length;
 } spoke;
 
-static spoke spoke_to(const double (*uv)[2], const int32_t *corners, const double p[2], int32_t k) {
-    const double *corner = uv[corners[k]];
+static spoke spoke_to(const ss_patch *patch, const ss_flat *flat, int32_t corner_index, const double p[2]) {
+    const double *corner = ss_flat_corner(patch, flat, corner_index);
     double x = corner[0] - p[0], y = corner[1] - p[1];
     return (spoke){x, y, sqrt(x * x + y * y)};
 }
@@ -36,12 +36,13 @@ static void weigh_side(double *weights, int32_t n, int32_t k, double first, doub
     weights[k] = 1 - weights[(k + 1) % n];
 }
 
-bool ss_mean_value_weights(const double (*uv)[2], const int32_t *corners, int32_t count, const double p[2], double *weights) {
+bool ss_mean_value_weights(const ss_patch *patch, const ss_flat *flat, int32_t face, const double p[2], double *weights) {
+    int32_t begin = patch->faces.face_start[face], count = patch->faces.face_start[face + 1] - begin;
     double sum = 0;
-    spoke here = spoke_to(uv, corners, p, 0);
-    double before = half_tangent(spoke_to(uv, corners, p, count - 1), here);
+    spoke here = spoke_to(patch, flat, begin, p);
+    double before = half_tangent(spoke_to(patch, flat, begin + count - 1, p), here);
     for (int32_t k = 0; k < count; k++) {
-        spoke next = spoke_to(uv, corners, p, (k + 1) % count);
+        spoke next = spoke_to(patch, flat, begin + (k + 1) % count, p);
         if (here.length == 0) {
             weigh_one(weights, count, k);
             return true;
@@ -77,23 +78,28 @@ static void offset_from(const ss_patch *patch, const float *points, int32_t vert
     }
 }
 
-static void interpolate_one(const ss_patch *patch, const double (*uv)[2], int32_t vertex, const ss_place *place,
+static bool weigh_place(const ss_patch *patch, const ss_flat *flat, const ss_place *place, double *weights) {
+    double p[2];
+    ss_flat_place(patch, flat, place, p);
+    return ss_mean_value_weights(patch, flat, patch->triangles.face[place->triangle], p, weights);
+}
+
+static void interpolate_one(const ss_patch *patch, const ss_flat *flat, int32_t vertex, const ss_place *place,
                             const float *points, double *weights, double out[3]) {
     const ss_triangles *triangles = &patch->triangles;
     int32_t face = triangles->face[place->triangle], n = ss_fan_size(&patch->faces, face) + 2;
     const int32_t *corners = patch->faces.corner_vertex + patch->faces.face_start[face];
-    if (patch->setup->interpolation == SKINSLIDE_INTERPOLATION_MEAN_VALUE &&
-        ss_mean_value_weights(uv, corners, n, place->uv, weights))
+    if (patch->setup->interpolation == SKINSLIDE_INTERPOLATION_MEAN_VALUE && weigh_place(patch, flat, place, weights))
         offset_from(patch, points, vertex, corners, n, weights, out);
     else
         offset_from(patch, points, vertex, triangles->vertex[place->triangle], 3, place->weight, out);
 }
 
-void ss_interpolate(const ss_patch *patch, const double (*uv)[2], const ss_place *places, const float *points, double *weights,
+void ss_interpolate(const ss_patch *patch, const ss_flat *flat, const ss_place *places, const float *points, double *weights,
                     double (*displacement)[3]) {
     for (int32_t i = 0; i < patch->free_count; i++) {
         displacement[i][0] = displacement[i][1] = displacement[i][2] = 0;
         if (places[i].triangle != SS_STAYS)
-            interpolate_one(patch, uv, patch->free_vertex[i], &places[i], points, weights, displacement[i]);
+            interpolate_one(patch, flat, patch->free_vertex[i], &places[i], points, weights, displacement[i]);
     }
 }

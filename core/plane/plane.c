@@ -75,7 +75,7 @@ static skinslide_status create(const ss_patch *patch, const float *rest_points, 
     if (!own)
         return ss_out_of_memory(error);
     own->uv = ss_new(&own->memory, patch->vertex_count, sizeof *own->uv);
-    own->head = (ss_rest){&ss_plane_rule, patch, paint, (const double(*)[2])own->uv};
+    own->head = (ss_rest){.rule = &ss_plane_rule, .patch = patch, .paint = paint, .uv = (const double(*)[2])own->uv};
     skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : lay_out_rest(own, rest_points, error);
     if (status)
         destroy(&own->head);
@@ -103,7 +103,7 @@ static skinslide_status allocate(plane_slide *own, skinslide_error *error) {
         own->candidates = ss_new(memory, patch->free_count, sizeof *own->candidates);
     if (memory->failed)
         return ss_out_of_memory(error);
-    own->head.uv = (const double(*)[2])own->uv;
+    own->head.flat.uv = (const double(*)[2])own->uv;
     copy_rest(own->head.rest, own->uv);
     copy_rest(own->head.rest, own->own_rest_uv);
     skinslide_status status = ss_factor_create(system_of(own), &own->factor, error);
@@ -150,7 +150,7 @@ static skinslide_status choose_rest(plane_slide *own, const ss_frame *frame, ski
 static void ask(plane_slide *own, const double *weights) {
     const ss_patch *patch = own->head.rest->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
-        const double *here = own->head.uv[patch->free_vertex[i]], *rest = own->rest_uv[patch->free_vertex[i]];
+        const double *here = own->head.flat.uv[patch->free_vertex[i]], *rest = own->rest_uv[patch->free_vertex[i]];
         double weight = weights[i];
         for (int k = 0; k < 2; k++)
             own->head.asked[i][k] = weight == 1 ? rest[k] : here[k] + weight * (rest[k] - here[k]);
@@ -172,12 +172,12 @@ static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_
         return status;
     ss_lap(&time, &result->embed_seconds);
 
-    ss_layout layout = ss_lay_out(patch, slide->uv);
+    ss_layout layout = ss_lay_out(patch, slide->flat.uv);
     result->folded_faces = layout.folded;
     own->regular = layout.regular;
     ask(own, frame->weights);
     if (own->idbuffer && layout.regular)
-        ss_idbuffer_draw(own->idbuffer, own->number, slide->uv, (const double(*)[2])slide->asked);
+        ss_idbuffer_draw(own->idbuffer, own->number, slide->flat.uv, (const double(*)[2])slide->asked);
     ss_lap(&time, &result->locate_seconds);
     return SKINSLIDE_OK;
 }
@@ -186,7 +186,7 @@ static void locate(plane_slide *own, skinslide_patch_result *result) {
     ss_slide *slide = &own->head;
     bool asked = own->idbuffer && own->regular && slide->rest->patch->free_count > 0;
     bool proposed = asked && ss_idbuffer_candidates(own->idbuffer, own->number, own->candidates);
-    ss_located located = ss_locate(own->locator, slide->uv, own->regular, (const double(*)[2])slide->asked,
+    ss_located located = ss_locate(own->locator, slide->flat.uv, own->regular, (const double(*)[2])slide->asked,
                                    proposed ? (const ss_candidates *)own->candidates : NULL, slide->places);
     result->lost_textures = asked && !proposed;
     result->found_in_centre = located.centre;
@@ -207,7 +207,7 @@ static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide
     locate(own, result);
     if (frame->limits) {
         result->clamped_vertices +=
-            ss_travel(own->traveller, frame->points, slide->uv, (ss_allowance){NULL, frame->limits}, slide->places);
+            ss_travel(own->traveller, frame->points, slide->flat.uv, (ss_allowance){NULL, frame->limits}, slide->places);
         ss_ask_where_found(slide);
     }
     ss_lap(&time, &result->locate_seconds);

@@ -93,11 +93,10 @@ ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, c
 
 /* The displacement of every free vertex, in their order, from its own place to where it is looked up. points is the whole
  * mesh's; weights is scratch [largest face]. */
-void ss_interpolate(const ss_patch *patch, const double (*uv)[2], const ss_place *places, const float *points, double *weights,
+void ss_interpolate(const ss_patch *patch, const ss_flat *flat, const ss_place *places, const float *points, double *weights,
                     double (*displacement)[3]);
-/* Weights, which sum to 1, of a polygon's corners [count], vertices of uv, at a point: false where a polygon that turned over
- * leaves them without meaning. */
-bool ss_mean_value_weights(const double (*uv)[2], const int32_t *corners, int32_t count, const double p[2], double *weights);
+/* Weights, which sum to 1, of a face's corners at a point: false where a face that turned over leaves them without meaning. */
+bool ss_mean_value_weights(const ss_patch *patch, const ss_flat *flat, int32_t face, const double p[2], double *weights);
 
 /* ---- plane.c ---- */
 

@@ -40,7 +40,7 @@ static skinslide_status create(const ss_patch *patch, const float *rest_points, 
         destroy(&own->head);
         return status;
     }
-    own->head = (ss_rest){&ss_relaxed_rule, patch, paint, own->chart->uv};
+    own->head = (ss_rest){.rule = &ss_relaxed_rule, .patch = patch, .paint = paint, .uv = own->chart->uv};
     *out = &own->head;
     return SKINSLIDE_OK;
 }
@@ -62,7 +62,7 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
     relaxed_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
-    own->head.rest = rest, own->head.uv = rest->uv;
+    own->head.rest = rest, own->head.flat.uv = rest->uv;
     own->head.asked = ss_new(&own->memory, rest->patch->free_count, sizeof *own->head.asked);
     own->head.places = SS_NEW(&own->memory, ss_place, rest->patch->free_count);
     skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
@@ -100,8 +100,8 @@ static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide
         skinslide_status status = ss_traveller_need(slide->rest->patch, &own->traveller, error);
         if (status)
             return status;
-        result->clamped_vertices =
-            ss_travel(own->traveller, frame->points, slide->uv, (ss_allowance){frame->weights, frame->limits}, slide->places);
+        result->clamped_vertices = ss_travel(own->traveller, frame->points, slide->flat.uv,
+                                             (ss_allowance){frame->weights, frame->limits}, slide->places);
     }
     result->folded_faces = ss_count_turned(own->relaxer, slide->places);
     ss_ask_where_found(slide);

@@ -92,7 +92,7 @@ skinslide_status skinslide_workspace_embedding(const skinslide_workspace *worksp
         return status;
     if (!workspace->has_frame)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
-    memcpy(uv, workspace->patches[patch].slide->uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
+    memcpy(uv, workspace->patches[patch].slide->flat.uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
     return SKINSLIDE_OK;
 }
 
@@ -106,7 +106,7 @@ skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, i
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace's lookup is exact: it draws no ID buffer");
     if (!workspace->has_frame)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
-    const double(*uv)[2] = workspace->patches[patch].slide->uv;
+    const double(*uv)[2] = workspace->patches[patch].slide->flat.uv;
     if (texels)
         status = ss_idbuffer_read(workspace->idbuffer, patch, uv, texels, error);
     if (!status)

@@ -13,8 +13,6 @@ static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslid
     if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT && !ss_is_subdivided(mesh))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: interpolation limit needs a mesh that is subdivided",
                        setup->name);
-    if (setup->rule == SKINSLIDE_RULE_EVEN && setup->interpolation != SKINSLIDE_INTERPOLATION_LINEAR)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "patch %s: rule even needs interpolation linear", setup->name);
     return SKINSLIDE_OK;
 }
 
@@ -233,8 +231,7 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
 static skinslide_interpolation choose_interpolation(const skinslide_mesh *mesh, const skinslide_patch_setup *setup) {
     if (setup->interpolation != SKINSLIDE_INTERPOLATION_AUTO)
         return setup->interpolation;
-    return setup->rule != SKINSLIDE_RULE_EVEN && ss_is_subdivided(mesh) ? SKINSLIDE_INTERPOLATION_LIMIT
-                                                                        : SKINSLIDE_INTERPOLATION_LINEAR;
+    return ss_is_subdivided(mesh) ? SKINSLIDE_INTERPOLATION_LIMIT : SKINSLIDE_INTERPOLATION_LINEAR;
 }
 
 static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setups,

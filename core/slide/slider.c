@@ -51,7 +51,7 @@ static skinslide_status slide_patch(skinslide_workspace *workspace, int32_t p, s
     if (status)
         return status;
     double time = ss_now();
-    ss_interpolate(part->patch, slide->uv, slide->places, work->frame.points, work->corner_weights, work->displacement);
+    ss_interpolate(part->patch, &slide->flat, slide->places, work->frame.points, work->corner_weights, work->displacement);
     if (work->cage)
         result->damped_vertices = ss_move_cage(work->cage, &work->frame, slide, work->displacement);
     ss_lap(&time, &result->interpolate_seconds);

@@ -33,6 +33,22 @@ void ss_place_settle(const ss_patch *patch, const double (*uv)[2], ss_place *pla
 /* Which vertex of its triangle the place is, or -1. */
 int ss_place_corner(const ss_place *place);
 
+/* ---- flat.c: faces laid flat ---- */
+
+/* All of them in one plane, by vertex, or each in a plane of its own, by corner. */
+typedef struct ss_flat {
+    const double (*uv)[2];     /* [vertex_count], or NULL */
+    const double (*corner)[2]; /* [corner_count] where there is no uv */
+} ss_flat;
+
+static inline const double *ss_flat_corner(const ss_patch *patch, const ss_flat *flat, int32_t corner) {
+    return flat->uv ? flat->uv[patch->faces.corner_vertex[corner]] : flat->corner[corner];
+}
+/* Where a place is there. */
+void ss_flat_place(const ss_patch *patch, const ss_flat *flat, const ss_place *place, double out[2]);
+/* The mean of a face's corners: in the triangle of its fan that holds it, or most nearly does. */
+ss_place ss_flat_middle(const ss_patch *patch, const ss_flat *flat, int32_t face);
+
 /* ---- facets.c: triangles in a pose ---- */
 
 typedef struct ss_facet {
@@ -109,6 +125,8 @@ void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out
 /* Walks from a vertex for the length of a vector tangent there, in the direction that this has at each place that the walk comes
  * to: see turned.c. With a meter, no farther than that lets it. Returns the part that was walked. */
 double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[3], ss_meter *meter, ss_place *place);
+/* The same from a place inside a triangle, or on a side of it, by what of the vector is tangent there. */
+void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place *place);
 
 /* ---- travel.c ---- */
 
@@ -138,8 +156,9 @@ typedef struct ss_rule ss_rule;
 typedef struct ss_rest {
     const ss_rule *rule;
     const ss_patch *patch;
-    const double *paint;   /* [edge_count] of the set-up's controls */
-    const double (*uv)[2]; /* [vertex_count] U0, the patch laid out in the plane; NULL: the rule knows none */
+    const double *paint;     /* [edge_count] of the set-up's controls */
+    const double (*uv)[2];   /* [vertex_count] U0, the patch laid out in the plane; NULL: the rule knows none */
+    const ss_ground *ground; /* it slides over instead */
 } ss_rest;
 
 /* One frame of a patch, before it slides. */
@@ -157,9 +176,9 @@ typedef struct ss_frame {
 /* Where vertices of one patch slide to: memory of one thread. Each rule's own begins with this. */
 typedef struct ss_slide {
     const ss_rest *rest;
-    const double (*uv)[2]; /* [vertex_count] the plane that places are in, in the last frame; NULL: the rule knows none */
-    double (*asked)[2];    /* [free_count] where in it each was looked up */
-    ss_place *places;      /* [free_count] where it was found, settled */
+    ss_flat flat;       /* what places are in: the plane of the last frame; where the rule knows none, faces at rest */
+    double (*asked)[2]; /* [free_count] where in the plane each was looked up */
+    ss_place *places;   /* [free_count] where it was found, settled */
 } ss_slide;
 
 /* Makes asked where each vertex was found: elsewhere than asked where it was held back. */

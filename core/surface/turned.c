@@ -1,5 +1,5 @@
 /* Walks over a surface in a direction that depends on the place alone, so that where a walk ends does not jump as the way there
- * comes to pass on the other side of a vertex. The direction is a vector tangent at the vertex that the walk sets out from, at
+ * comes to pass on the other side of a vertex. The direction is a vector tangent where the walk sets out, a vertex most often, at
  * each place turned by the least rotation that takes the normal there to the blended normal here, then carried along that
  * normal into the plane of the triangle and given the length that is left of the walk. A walk ends at the border. */
 #include "surface.h"
@@ -11,7 +11,7 @@
 
 typedef struct walker {
     const ss_ground *ground;
-    const double *up;      /* normal at the vertex it set out from */
+    const double *up;      /* normal where it set out */
     double heading[3];     /* unit, tangent there */
     double left;           /* of its length */
     double rates[3];       /* of the weights of its place, to its end */
@@ -115,6 +115,20 @@ static bool go_over(walker *w, ss_place *place, int corner) {
     return w->rates[w->came] >= 0 || go_along_side(w, there);
 }
 
+/* To the end. */
+static void walk(walker *w, ss_meter *meter, ss_place *place) {
+    for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
+        int corner;
+        double whole = ss_reach(place, w->rates, w->came, &corner);
+        double part = meter ? ss_measure(meter, place->triangle, w->rates, whole) : whole;
+        ss_advance(place, w->rates, part, part < whole ? -1 : corner);
+        place->weight[0] = fmax(0, place->weight[0]); /* which is what rounding leaves of 1 */
+        w->left *= 1 - part;
+        if (corner < 0 || part < whole || !go_over(w, place, corner))
+            break;
+    }
+}
+
 double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[3], ss_meter *meter, ss_place *place) {
     double length = ss_length(way);
     walker w = {.ground = ground, .up = ground->normal[vertex], .left = length, .came = -1};
@@ -125,15 +139,17 @@ double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[
         w.heading[k] = way[k] / length;
     if (!set_out(&w, vertex, place))
         return 0;
-    for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
-        int corner;
-        double whole = ss_reach(place, w.rates, w.came, &corner);
-        double part = meter ? ss_measure(meter, place->triangle, w.rates, whole) : whole;
-        ss_advance(place, w.rates, part, part < whole ? -1 : corner);
-        place->weight[0] = fmax(0, place->weight[0]); /* which is what rounding leaves of 1 */
-        w.left *= 1 - part;
-        if (corner < 0 || part < whole || !go_over(&w, place, corner))
-            break;
-    }
+    walk(&w, meter, place);
     return 1 - w.left / length;
+}
+
+void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place *place) {
+    double up[3];
+    walker w = {.ground = ground, .up = up, .heading = {way[0], way[1], way[2]}, .came = -1};
+    ss_ground_normal(ground, place, up);
+    ss_add(-ss_dot(way, up), up, w.heading);
+    w.left = ss_length(w.heading);
+    ss_normalise(w.heading);
+    if (w.left > 0 && aim(&w, &ground->pose.facet[place->triangle], up, w.heading))
+        walk(&w, NULL, place);
 }

@@ -118,7 +118,7 @@ static void print_lookups(int32_t side) {
     double seconds[2] = {1e9, 1e9};
     for (int i = 0; i < 2 * FRAMES; i++) {
         double start = now();
-        ss_locate(locator, slide->uv, i % 2 == 0, (const double(*)[2])slide->asked, NULL, slide->places);
+        ss_locate(locator, slide->flat.uv, i % 2 == 0, (const double(*)[2])slide->asked, NULL, slide->places);
         double taken = now() - start;
         seconds[i % 2] = taken < seconds[i % 2] ? taken : seconds[i % 2];
     }

@@ -172,8 +172,7 @@ typedef enum skinslide_rule {
                               corners and boundary count for nothing */
     SKINSLIDE_RULE_EVEN /* to where the logarithms of edge lengths over rest lengths are in balance, less their median, which
                            is the character's scale, and those of compressed edges bounded: smooth in the pose, and so in
-                           time. Needs interpolation LINEAR, to which AUTO then comes; corners and boundary count for nothing.
-                           There is no embedding */
+                           time. Corners and boundary count for nothing. There is no embedding */
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.

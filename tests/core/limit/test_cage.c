@@ -32,6 +32,16 @@ static skinslide_patch_setup chosen(skinslide_interpolation interpolation) {
     return setup;
 }
 
+/* One with a plane, one without. */
+enum { RULE_COUNT = 2 };
+static const skinslide_rule rules[RULE_COUNT] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_EVEN};
+
+static skinslide_patch_setup by_rule(skinslide_rule rule, skinslide_interpolation interpolation) {
+    skinslide_patch_setup setup = chosen(interpolation);
+    setup.rule = rule;
+    return setup;
+}
+
 static const skinslide_subdivision *scheme_for(const test_mesh *mesh) {
     for (int32_t f = 0; f < mesh->face_count; f++)
         if (mesh->face_counts[f] != 3)
@@ -47,7 +57,7 @@ static void rest_slides_nothing(void **state) {
         for (int holes = 0; holes < 2; holes++)
             for (int scheme = 0; scheme < 2; scheme++) {
                 fixture f = make_fixture(i);
-                skinslide_patch_setup setup = chosen(SKINSLIDE_INTERPOLATION_AUTO);
+                skinslide_patch_setup setup = by_rule(rules[(i + holes) % RULE_COUNT], SKINSLIDE_INTERPOLATION_AUTO);
                 setup.holes = (skinslide_holes)holes;
                 rig r = subdivided_rig(&f.mesh, scheme ? scheme_for(&f.mesh) : &catmull_clark, setup);
                 skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
@@ -156,10 +166,10 @@ typedef struct closeness {
 
 /* How far the limit surface of the result is from that of the pose, one way. */
 static closeness measure(const test_mesh *mesh, const skinslide_subdivision *own, const float *points,
-                         skinslide_interpolation interpolation) {
+                         skinslide_patch_setup setup) {
     skinslide_mesh view = view_of(mesh);
     view.subdivision = own;
-    rig r = subdivided_rig(mesh, own, chosen(interpolation));
+    rig r = subdivided_rig(mesh, own, setup);
     skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, mesh, points, NULL, &result);
     test_mesh before = sampled(&view, points), after = sampled(&view, slid);
@@ -178,26 +188,27 @@ static closeness measure(const test_mesh *mesh, const skinslide_subdivision *own
 
 /* The limit surface so many times nearer than with linear, at its farthest and on average, at no more than so much stretch. */
 static void expect_closer_than_linear(const test_mesh *mesh, const skinslide_subdivision *own, const float *points,
-                                      double times, double stretch) {
-    closeness linear = measure(mesh, own, points, SKINSLIDE_INTERPOLATION_LINEAR);
-    closeness limit = measure(mesh, own, points, SKINSLIDE_INTERPOLATION_LIMIT);
+                                      skinslide_rule rule, double times, double stretch) {
+    closeness linear = measure(mesh, own, points, by_rule(rule, SKINSLIDE_INTERPOLATION_LINEAR));
+    closeness limit = measure(mesh, own, points, by_rule(rule, SKINSLIDE_INTERPOLATION_LIMIT));
     assert_true(limit.most * times < linear.most);
     assert_true(limit.mean * times < linear.mean);
     assert_true(limit.stretch < stretch * linear.stretch);
 }
 
 /* A bump, which drags what is under it aside. */
-static void expect_closer(const skinslide_subdivision *own, double times, double stretch) {
+static void expect_closer(const skinslide_subdivision *own, skinslide_rule rule, double times, double stretch) {
     test_mesh mesh = quad_grid(14, 14);
     float *points = bumped(&mesh, 7.3, 6.6, 3.2, 2.4);
-    expect_closer_than_linear(&mesh, own, points, times, stretch);
+    expect_closer_than_linear(&mesh, own, points, rule, times, stretch);
     free(points);
     free_mesh(&mesh);
 }
 
 static void the_limit_surface_stays_where_it_was(void **state) {
     (void)state;
-    expect_closer(&catmull_clark, 5, 1.05);
+    expect_closer(&catmull_clark, SKINSLIDE_RULE_UNIT, 5, 1.05);
+    expect_closer(&catmull_clark, SKINSLIDE_RULE_EVEN, 5, 1.06); /* which leaves less of it to begin with */
 }
 
 /* Rest: 12 x 8 faces over most of a tube of radius 1.6. The pose: linear blend skinning by 110 degrees about its middle, open to
@@ -221,7 +232,8 @@ static void a_coarse_tube_keeps_its_bend(void **state) {
     (void)state;
     float *points;
     test_mesh mesh = coarse_tube(&points);
-    expect_closer_than_linear(&mesh, &catmull_clark, points, 5, 1.05);
+    expect_closer_than_linear(&mesh, &catmull_clark, points, SKINSLIDE_RULE_UNIT, 5, 1.05);
+    expect_closer_than_linear(&mesh, &catmull_clark, points, SKINSLIDE_RULE_EVEN, 4, 1.05); /* linear is nearer, too */
     free(points);
     free_mesh(&mesh);
 }
@@ -236,10 +248,11 @@ static void creases_and_boundary_rules_are_the_mesh_s_own(void **state) {
         indices[k] = 15 * k + 9;
     skinslide_subdivision own = catmull_clark;
     own.boundary_rule = SKINSLIDE_BOUNDARY_RULE_EDGE_ONLY;
-    expect_closer(&own, 5, 1.05);
+    expect_closer(&own, SKINSLIDE_RULE_UNIT, 5, 1.05);
     own.crease_count = own.crease_sharpness_count = 1, own.crease_index_count = 15;
     own.crease_lengths = lengths, own.crease_indices = indices, own.crease_sharpnesses = sharpness;
-    expect_closer(&own, 5, 1.07); /* what is slid over the crease has it somewhere else, which costs stretch */
+    expect_closer(&own, SKINSLIDE_RULE_UNIT, 5,
+                  1.07); /* what is slid over the crease has it somewhere else, which costs stretch */
 }
 
 /* Every scheme on every fixture: finite, and nowhere farther from its linear place than the bound. */
@@ -251,8 +264,9 @@ static void every_fixture_stays_within_the_bound(void **state) {
             skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = (skinslide_scheme)scheme};
             if (scheme == SKINSLIDE_SCHEME_LOOP && scheme_for(&f.mesh) != &loop)
                 own.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK, own.triangle_rule = SKINSLIDE_TRIANGLE_RULE_SMOOTH;
-            rig limit = subdivided_rig(&f.mesh, &own, chosen(SKINSLIDE_INTERPOLATION_LIMIT));
-            rig linear = subdivided_rig(&f.mesh, &own, chosen(SKINSLIDE_INTERPOLATION_LINEAR));
+            skinslide_rule rule = rules[(i + scheme) % RULE_COUNT];
+            rig limit = subdivided_rig(&f.mesh, &own, by_rule(rule, SKINSLIDE_INTERPOLATION_LIMIT));
+            rig linear = subdivided_rig(&f.mesh, &own, by_rule(rule, SKINSLIDE_INTERPOLATION_LINEAR));
             float *points = random_pose(&f.mesh, (uint64_t)i + 9);
             float *slid = slide_with(&limit, &f.mesh, points, NULL, NULL),
                   *flat = slide_with(&linear, &f.mesh, points, NULL, NULL);

@@ -215,7 +215,7 @@ static void free_surfaces(surfaces_of_patch *s) {
 
 static void point_at(const surfaces_of_patch *s, const ss_place *place, double out[3]) {
     const double origin[3] = {0, 0, 0};
-    ss_parameter at = ss_parametrise(s->patch, s->loop, (const double(*)[2])s->uv, place);
+    ss_parameter at = ss_parametrise(s->patch, s->loop, &(ss_flat){(const double(*)[2])s->uv, NULL}, place);
     int32_t face = s->patch->triangles.face[place->triangle];
     ss_limit_prepare(s->surfaces, face, s->points, origin, s->scratch);
     ss_limit_point(s->surfaces, face, &at, s->scratch, out);
@@ -288,7 +288,7 @@ static void a_quad_by_hand(void **state) {
     ss_patch *patch = patch_of(&mesh, setup_of(NULL, 0));
     const double uv[4][2] = {{0, 0}, {4, 0}, {0, 2}, {2, 2}}; /* vertices of the grid: 0 1 over 2 3, the face 0 1 3 2 */
     ss_place place = place_at(patch, uv, 0, (double[2]){1.5, 1});
-    ss_parameter at = ss_parametrise(patch, false, uv, &place);
+    ss_parameter at = ss_parametrise(patch, false, &(ss_flat){uv, NULL}, &place);
     assert_int_equal(at.corner, -1);
     assert_near(at.st[0], 0.5, 1e-15);
     assert_near(at.st[1], 0.5, 1e-15);
@@ -310,7 +310,7 @@ static void awkward_faces_give_parameters(void **state) {
         for (int i = 0; i < 100; i++) {
             const double p[2] = {roll_share(&d), shape == 3 ? 0 : roll_share(&d)};
             ss_place place = place_at(patch, shapes[shape], i % 2, p);
-            ss_parameter at = ss_parametrise(patch, false, shapes[shape], &place);
+            ss_parameter at = ss_parametrise(patch, false, &(ss_flat){shapes[shape], NULL}, &place);
             assert_true(at.st[0] >= 0 && at.st[0] <= 1 && at.st[1] >= 0 && at.st[1] <= 1);
         }
     ss_patch_destroy(patch);

@@ -17,7 +17,8 @@ static void check_mean_value(const ss_patch *patch, const double (*uv)[2], const
         side = fmax(side, longest_side(a, b, c));
         area = fmin(area, fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])));
     }
-    if (!ss_mean_value_weights(uv, corners, n, place->uv, weights))
+    const ss_flat flat = {uv, NULL};
+    if (!ss_mean_value_weights(patch, &flat, face, place->uv, weights))
         return; /* linear takes over: only where rounding put the point outside */
     for (int32_t k = 0; k < n; k++)
         assert_true(weights[k] >= -1e-12 && weights[k] <= 1 + 1e-12);
@@ -56,33 +57,41 @@ static void weights_give_the_point_back(void **state) {
 static void corners_and_sides_are_exact(void **state) {
     (void)state;
     const double uv[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    const int32_t corners[4] = {0, 1, 2, 3};
+    const ss_flat square = {NULL, uv};
+    test_mesh mesh = polygon(4);
+    ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
     for (int k = 0; k < 4; k++) {
         double weights[4];
         int32_t next = (k + 1) % 4;
-        assert_true(ss_mean_value_weights(uv, corners, 4, uv[k], weights));
+        assert_true(ss_mean_value_weights(patch, &square, 0, uv[k], weights));
         for (int j = 0; j < 4; j++)
             assert_near(weights[j], j == k, 0);
         const double side[2] = {0.75 * uv[k][0] + 0.25 * uv[next][0], 0.75 * uv[k][1] + 0.25 * uv[next][1]};
-        assert_true(ss_mean_value_weights(uv, corners, 4, side, weights));
+        assert_true(ss_mean_value_weights(patch, &square, 0, side, weights));
         for (int j = 0; j < 4; j++)
             assert_near(weights[j], j == k ? 0.75 : j == next ? 0.25 : 0, 0);
     }
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
 }
 
 /* In the middle of a square all four weigh the same by symmetry; at (1/2, y) left and right do. */
 static void mean_value_by_symmetry(void **state) {
     (void)state;
     const double uv[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, middle[2] = {0.5, 0.5}, lower[2] = {0.5, 0.25};
-    const int32_t corners[4] = {0, 1, 2, 3};
+    const ss_flat square = {NULL, uv};
+    test_mesh mesh = polygon(4);
+    ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
     double weights[4];
-    assert_true(ss_mean_value_weights(uv, corners, 4, middle, weights));
+    assert_true(ss_mean_value_weights(patch, &square, 0, middle, weights));
     for (int k = 0; k < 4; k++)
         assert_near(weights[k], 0.25, DBL_EPSILON);
-    assert_true(ss_mean_value_weights(uv, corners, 4, lower, weights));
+    assert_true(ss_mean_value_weights(patch, &square, 0, lower, weights));
     assert_near(weights[0], weights[1], DBL_EPSILON);
     assert_near(weights[2], weights[3], DBL_EPSILON);
     assert_near(weights[0] + weights[1], 0.75, 4 * DBL_EPSILON); /* linear precision in y */
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
 }
 
 /* In faces that turned over or cross themselves, as free holes can leave them, a slid vertex still stays near its face: no
@@ -97,8 +106,7 @@ static void tangled_faces_do_not_throw_points_away(void **state) {
         for (int k = 0; k < 4; k++)
             uv[k][0] = roll_share(&d), uv[k][1] = roll_share(&d);
         const double(*view)[2] = (const double(*)[2])uv;
-        if (ss_triangle_holding(patch, 0, view, p) < 0 ||
-            !ss_mean_value_weights(view, patch->faces.corner_vertex, 4, p, weights))
+        if (ss_triangle_holding(patch, 0, view, p) < 0 || !ss_mean_value_weights(patch, &(ss_flat){view, NULL}, 0, p, weights))
             continue;
         for (int k = 0; k < 4; k++)
             assert_true(weights[k] > -100 && weights[k] < 100);
@@ -122,7 +130,7 @@ static void displacements_lead_to_the_vertex(void **state) {
         int32_t from = patch->free_vertex[0], to = patch->free_vertex[3];
         places[0] = search_all(patch, (const double(*)[2])uv, uv[to], &inside);
         assert_true(inside);
-        ss_interpolate(patch, (const double(*)[2])uv, places, points, weights, displacement);
+        ss_interpolate(patch, &(ss_flat){(const double(*)[2])uv, NULL}, places, points, weights, displacement);
         for (int k = 0; k < 3; k++) {
             double expected = (double)points[3 * patch->mesh_vertex[to] + k] - points[3 * patch->mesh_vertex[from] + k];
             assert_near(displacement[0][k], expected, 1e-15); /* weights are 1 and 0 up to rounding, of points under 4 apart */

@@ -46,6 +46,26 @@ static void straight_in_a_plane(void **state) {
     free_scene(&s);
 }
 
+/* The same from anywhere in a face, by what of the vector is in the plane. */
+static void straight_from_a_place(void **state) {
+    (void)state;
+    walk_scene s = scene_of(triangle_grid(9, 9));
+    dice d = {4};
+    for (int i = 0; i < 200; i++) {
+        double way[3] = {roll_between(&d, -2, 2), roll_between(&d, -2, 2), 5}, begin[3], end[3], first = roll_share(&d);
+        int32_t v = 10 * (3 + roll_below(&d, 3)) + 3 + roll_below(&d, 3);
+        ss_place place = ss_place_of_vertex(s.patch, NULL, v);
+        double second = i % 2 ? 0 : (1 - first) * roll_share(&d); /* 0: on a side */
+        ss_place_put(&place, place.triangle, (double[3]){1 - first - second, first, second});
+        ss_place_point(&s.ground.pose, &place, begin);
+        ss_walk_turned_from(&s.ground, way, &place);
+        ss_place_point(&s.ground.pose, &place, end);
+        for (int k = 0; k < 2; k++)
+            assert_near(end[k], begin[k] + way[k], 1e-13);
+    }
+    free_scene(&s);
+}
+
 /* No way at all leaves the vertex itself, exactly; a meter ends the walk where it says. */
 static void nothing_and_a_meter(void **state) {
     (void)state;
@@ -100,10 +120,8 @@ static void walks_go_round(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(straight_in_a_plane),
-        cmocka_unit_test(nothing_and_a_meter),
-        cmocka_unit_test(places_stay_places),
-        cmocka_unit_test(walks_go_round),
+        cmocka_unit_test(straight_in_a_plane), cmocka_unit_test(straight_from_a_place), cmocka_unit_test(nothing_and_a_meter),
+        cmocka_unit_test(places_stay_places),  cmocka_unit_test(walks_go_round),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
