@@ -17,15 +17,16 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_ev
     evener->sheet = sheet, evener->temper = temper;
     evener->paint = SS_NEW(memory, double, sheet->patch->faces.edge_count);
     evener->weight = SS_NEW(memory, double, vertices), evener->next_weight = SS_NEW(memory, double, vertices);
-    evener->hold = SS_NEW(memory, double, vertices);
+    evener->hold = SS_NEW(memory, double, vertices), evener->next_hold = SS_NEW(memory, double, vertices);
+    evener->crush = SS_NEW(memory, double, vertices);
     evener->place = SS_NEW(memory, ss_place, vertices);
     evener->at = ss_new(memory, vertices, sizeof *evener->at);
     evener->up = ss_new(memory, vertices, sizeof *evener->up);
     evener->slide = ss_new(memory, vertices, sizeof *evener->slide);
     evener->step = ss_new(memory, vertices, sizeof *evener->step);
     evener->part = SS_NEW(memory, double, vertices);
-    evener->region = SS_NEW(memory, int32_t, vertices);
-    evener->area = SS_NEW(memory, double, vertices), evener->anchor = SS_NEW(memory, double, vertices);
+    evener->whole = ss_new(memory, vertices, sizeof *evener->whole);
+    evener->anchor = SS_NEW(memory, double, vertices);
     evener->stretch = SS_NEW(memory, double, sheet->spring_count);
     evener->sorted = SS_NEW(memory, ss_weighted, sheet->spring_count);
     ss_posed_allocate(memory, sheet->patch, &evener->pose);
@@ -49,14 +50,24 @@ void ss_evener_destroy(ss_evener *evener) {
 
 /* ---- Where the vertices are ---- */
 
-static void start(ss_evener *evener, const float *points) {
+void ss_measure_stretch(ss_evener *evener) {
+    for (int32_t i = 0; i < evener->sheet->spring_count; i++) {
+        const ss_spring *spring = &evener->sheet->springs[i];
+        double way[3];
+        ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
+        evener->stretch[i] = spring->square > 0 ? 0.5 * ss_log(fmax(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
+    }
+}
+
+/* Every vertex at its own place, and the stretch there. */
+static void go_home(ss_evener *evener) {
     const ss_patch *patch = evener->sheet->patch;
-    ss_posed_set(&evener->pose, points);
     memcpy(evener->at, evener->pose.point, (size_t)patch->vertex_count * sizeof *evener->at);
     memset(evener->slide, 0, (size_t)patch->vertex_count * sizeof *evener->slide);
     memset(evener->step, 0, (size_t)patch->vertex_count * sizeof *evener->step);
     for (int32_t v = 0; v < patch->vertex_count; v++)
         evener->place[v] = ss_place_of_vertex(patch, NULL, v);
+    ss_measure_stretch(evener);
 }
 
 /* Walks anew from the vertex's own place; what is beyond the border is no slide. */
@@ -79,15 +90,6 @@ static void slide_vertex(ss_evener *evener, int32_t v) {
 }
 
 /* ---- The balance ---- */
-
-void ss_measure_stretch(ss_evener *evener) {
-    for (int32_t i = 0; i < evener->sheet->spring_count; i++) {
-        const ss_spring *spring = &evener->sheet->springs[i];
-        double way[3];
-        ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
-        evener->stretch[i] = spring->square > 0 ? 0.5 * ss_log(fmax(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
-    }
-}
 
 static double find_scale(const ss_evener *evener, const double *paint) {
     int32_t count = 0;
@@ -128,6 +130,7 @@ static void solve(ss_evener *evener, const ss_frame *frame) {
         add_force(evener, spring,
                   evener->paint[spring->edge] * (linear - ss_drive(frame, evener->stretch[i] - evener->scale, &slope)));
     }
+    ss_pull_to_shares(evener, (const double(*)[2])evener->whole, evener->K->right);
     ss_blocks_solve(evener->K);
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
         for (int j = 0; j < 2 && evener->weight[v] > 0; j++)
@@ -135,15 +138,6 @@ static void solve(ss_evener *evener, const ss_frame *frame) {
 }
 
 /* ---- The slide ---- */
-
-/* By vertex: those that do not slide have no weight. */
-static void spread_weights(ss_evener *evener, const ss_frame *frame) {
-    const ss_patch *patch = evener->sheet->patch;
-    memset(evener->next_weight, 0, (size_t)patch->vertex_count * sizeof *evener->next_weight);
-    for (int32_t i = 0; i < patch->free_count; i++)
-        if (!evener->sheet->held[patch->free_vertex[i]])
-            evener->next_weight[patch->free_vertex[i]] = frame->weights[i];
-}
 
 static bool stays(const ss_evener *evener, int32_t vertex) {
     const ss_place *place = &evener->place[vertex];
@@ -160,25 +154,53 @@ void ss_write_places(const ss_evener *evener, ss_place *places) {
     }
 }
 
-bool ss_take_step(ss_evener *evener) {
-    bool cut = ss_shorten_step(evener);
+static void slide_all(ss_evener *evener) {
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         if (evener->weight[v] > 0)
             slide_vertex(evener, v);
+}
+
+bool ss_take_step(ss_evener *evener) {
+    bool cut = ss_shorten_step(evener);
+    slide_all(evener);
     return cut;
 }
 
-skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error) {
-    start(evener, frame->points);
-    ss_measure_stretch(evener);
-    evener->scale = find_scale(evener, frame->paint);
-    spread_weights(evener, frame);
-    skinslide_status status = ss_need_stiffness(evener, frame->paint, evener->next_weight, frame->holds, error);
+/* All steps from home, by weights [vertex_count]. */
+static skinslide_status slide_by(ss_evener *evener, const ss_frame *frame, const double *weight, int32_t *cut,
+                                 skinslide_error *error) {
+    skinslide_status status = ss_need_stiffness(evener, frame->paint, weight, evener->next_hold, error);
     for (int step = 0; step < STEPS && !status && !ss_is_set(frame->stop); step++) {
         if (step > 0)
             ss_measure_stretch(evener);
         solve(evener, frame);
         *cut += ss_take_step(evener);
     }
+    return status;
+}
+
+/* What the largest of the weights leaves of the slide. */
+static void scale_slide(ss_evener *evener) {
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        for (int j = 0; j < 2; j++)
+            evener->slide[v][j] *= evener->most_weight, evener->step[v][j] = 0;
+    slide_all(evener);
+}
+
+skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    ss_posed_set(&evener->pose, frame->points);
+    go_home(evener);
+    evener->scale = find_scale(evener, frame->paint);
+    ss_stiffen_holds(evener, frame->holds);
+    if (ss_share_weights(evener, frame)) {
+        status = slide_by(evener, frame, evener->sheet->slides, cut, error);
+        memcpy(evener->whole, evener->slide, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
+        go_home(evener);
+    }
+    if (!status)
+        status = slide_by(evener, frame, evener->next_weight, cut, error);
+    if (!status && evener->most_weight < 1)
+        scale_slide(evener);
     return status;
 }

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-static const ss_temper temper = {.hold = 0.2, .most_lost = 0.5, .least_area = 0.1};
+static const ss_temper temper = {.hold = 0.05, .most_stiffened = 7, .most_lost = 0.5, .least_area = 0.1};
 
 typedef struct even_rest {
     ss_rest head;

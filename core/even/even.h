@@ -1,11 +1,11 @@
 /* The rule `even`: stretch evened out over the rest surface itself, on any patch, open or closed, with no plane. With d the slides
  * of the vertices along tangents of rest,
  *
- *     J' k s(z(d)) + eta B d + A d = 0
+ *     J' k s(z(d)) + eta B d = 0
  *
  * z of an edge is the logarithm of how much longer it is, where its ends have slid to on the pose, than at rest, and s what of
- * that drives; k is its painted force density. J is how z changes with d at rest; B holds neighbours together, and A, where
- * weights are below 1, each vertex at its own place. K = J' k J + eta B + A does not depend on the pose, and
+ * that drives; k is its painted force density. J is how z changes with d at rest; B holds neighbours together, more where the cache
+ * crushes skin. K = J' k J + eta B depends on the pose by that alone, and
  *
  *     d <- K^-1 J' k (J d - s(z(d)))
  *
@@ -32,7 +32,9 @@ typedef struct ss_sheet {
     const ss_patch *patch;
     ss_ground ground;        /* rest */
     uint8_t *held;           /* [vertex_count] fixed, or without a normal or a way along its loop */
+    double *slides;          /* [vertex_count] 1, and 0 of held ones: weights of a whole slide */
     double (*tangent)[2][3]; /* [vertex_count] unit; along a free loop the first alone, and the second is 0 */
+    int32_t *degree;         /* [vertex_count] springs at the vertex */
     int32_t spring_count;
     ss_spring *springs;
     double (*flat)[2];     /* [corner_count] faces at rest, each in its own plane */
@@ -55,9 +57,10 @@ typedef struct ss_weighted {
 
 /* What rules that even out differ in. */
 typedef struct ss_temper {
-    double hold;       /* eta */
-    double most_lost;  /* by one step, of what a face has over the least area */
-    double least_area; /* of that at rest */
+    double hold;           /* eta */
+    double most_stiffened; /* what is added to a hold of 1 where the cache crushes skin wholly: see crush.c */
+    double most_lost;      /* by one step, of what a face has over the least area */
+    double least_area;     /* of that at rest */
 } ss_temper;
 
 /* Memory of one thread for one patch, and where its slide has got to. */
@@ -67,21 +70,23 @@ typedef struct ss_evener {
     ss_temper temper;
     ss_blocks *K; /* factored for the paint, weights and holds below */
     bool factored;
-    double *paint;         /* [edge_count] */
-    double *weight, *hold; /* [vertex_count]; the weight of held vertices is 0 */
-    double *next_weight;   /* of the frame that begins */
+    double *paint;                   /* [edge_count] */
+    double *weight, *hold;           /* [vertex_count]; the weight is a share of the largest, and 0 of held vertices */
+    double *next_weight, *next_hold; /* of the frame that begins */
+    double most_weight;              /* the largest of the frame */
+    double *crush;                   /* [vertex_count] how much the cache crushes skin */
     ss_posed pose;
-    ss_place *place;       /* [vertex_count] where each vertex is */
-    double (*at)[3];       /* [vertex_count] of it in the pose */
-    double (*up)[3];       /* [vertex_count] scratch for normals */
-    double (*slide)[2];    /* [vertex_count] d */
-    double (*step)[2];     /* [vertex_count] to be added to it */
-    double *stretch;       /* [spring_count] z */
-    double scale;          /* of the frame, to be taken off z */
-    int32_t *region;       /* [vertex_count] scratch for anchors */
-    double *area, *anchor; /* [vertex_count] */
-    double *part;          /* [vertex_count] of a step that is taken */
-    ss_weighted *sorted;   /* [spring_count] */
+    ss_place *place;     /* [vertex_count] where each vertex is */
+    double (*at)[3];     /* [vertex_count] of it in the pose */
+    double (*up)[3];     /* [vertex_count] scratch for normals */
+    double (*slide)[2];  /* [vertex_count] d */
+    double (*step)[2];   /* [vertex_count] to be added to it */
+    double *stretch;     /* [spring_count] z */
+    double scale;        /* of the frame, to be taken off z */
+    double (*whole)[2];  /* [vertex_count] the slide as if all shares were 1, where some are less */
+    double *anchor;      /* [vertex_count] */
+    double *part;        /* [vertex_count] of a step that is taken */
+    ss_weighted *sorted; /* [spring_count] */
 } ss_evener;
 
 skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error);
@@ -102,16 +107,29 @@ void ss_write_places(const ss_evener *evener, ss_place *places);
 /* Cuts ways of the last slide short that are longer in the pose than the frame lets them be. */
 void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places);
 
-/* ---- stiffness.c, anchor.c ---- */
+/* ---- stiffness.c ---- */
 
 /* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR. */
 skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const double *weight, const double *hold,
                                    skinslide_error *error);
 /* Of an edge, over eta: k / l^2 times what is painted. */
 double ss_hold_of(const ss_evener *evener, const ss_spring *spring);
-/* Stiffnesses [vertex_count] that hold each vertex at its own place so that it slides about its weight as far as it would.
- * region and area are scratch [vertex_count]. */
-void ss_find_anchors(const ss_evener *evener, int32_t *region, double *area, double *anchor);
+
+/* ---- weights.c ---- */
+
+/* Makes next_weight of the frame's: shares of the largest. Returns whether any is between 0 and 1. */
+bool ss_share_weights(ss_evener *evener, const ss_frame *frame);
+/* Stiffnesses of the springs that hold vertices at shares of their slide, by weight and paint. */
+void ss_find_anchors(ss_evener *evener);
+/* Right sides of the unknowns, once they have the forces: with the pull of those springs. whole [vertex_count] is the slide. */
+void ss_pull_to_shares(ss_evener *evener, const double (*whole)[2], double (*right)[2]);
+
+/* ---- crush.c ---- */
+
+/* How much the cache, whose stretch and scale the evener has, crushes skin. */
+void ss_measure_crush(ss_evener *evener);
+/* Measures it, and makes next_hold of holds [vertex_count]: stiffer there. */
+void ss_stiffen_holds(ss_evener *evener, const double *holds);
 
 /* ---- scale.c ---- */
 

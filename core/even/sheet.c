@@ -33,6 +33,7 @@ static void set_vertex(ss_sheet *sheet, int32_t v) {
     }
     bool has_way = ss_dot(normal, normal) > 0.5 && ss_dot(sheet->tangent[v][0], sheet->tangent[v][0]) > 0.5;
     sheet->held[v] = sheet->patch->fixed[v] || !has_way;
+    sheet->slides[v] = !sheet->held[v];
 }
 
 /* ---- Edges ---- */
@@ -50,6 +51,7 @@ static void add_spring(ss_sheet *sheet, int32_t edge) {
         for (int j = 0; j < 2 && own.square > 0; j++)
             own.slope[end][j] = (end ? 1 : -1) * ss_dot(way, sheet->tangent[v[end]][j]) / square;
     sheet->springs[sheet->spring_count++] = own;
+    sheet->degree[v[0]]++, sheet->degree[v[1]]++;
 }
 
 /* ---- Faces ---- */
@@ -95,7 +97,9 @@ static bool allocate(ss_sheet *sheet) {
     const ss_patch *patch = sheet->patch;
     ss_memory *memory = &sheet->memory;
     sheet->held = SS_NEW(memory, uint8_t, patch->vertex_count);
+    sheet->slides = SS_NEW(memory, double, patch->vertex_count);
     sheet->tangent = ss_new(memory, patch->vertex_count, sizeof *sheet->tangent);
+    sheet->degree = SS_NEW(memory, int32_t, patch->vertex_count);
     sheet->springs = SS_NEW(memory, ss_spring, patch->faces.edge_count);
     sheet->flat = ss_new(memory, patch->faces.corner_count, sizeof *sheet->flat);
     sheet->along = ss_new(memory, patch->faces.corner_count, sizeof *sheet->along);

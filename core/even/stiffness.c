@@ -1,8 +1,9 @@
-/* K, in blocks of two by two, factored: J' k J + eta B + A, with
+/* K, in blocks of two by two, factored: J' k J + eta B, with
  *
  *     d' B d = sum of k |D_b - D_a|^2 / l^2     over edges of length l at rest, D the slides in space
  *
- * and eta times the mean of what is painted on the ends. A vertex of no weight keeps its unknowns, which come to 0. */
+ * and eta times the mean of what is painted on the ends; and the springs of weights, see weights.c. A vertex of no weight keeps its
+ * unknowns, which come to 0. */
 #include "even.h"
 
 #include <string.h>
@@ -69,7 +70,7 @@ static void add_stiffness(ss_evener *evener) {
         add_own(evener, spring, 1, k, hold);
         add_between(evener, spring, k, hold);
     }
-    ss_find_anchors(evener, evener->region, evener->area, evener->anchor);
+    ss_find_anchors(evener);
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
         add_diagonal(evener, v, evener->anchor[v]);
 }

@@ -273,37 +273,81 @@ static float *filled(int32_t count, float value) {
     return values;
 }
 
-static double mean_slide(const rig *r, const test_mesh *mesh, const float *points, const skinslide_controls *controls) {
-    float *slid = slide_with(r, mesh, points, controls, NULL);
-    double sum = 0;
-    for (int32_t v = 0; v < mesh->vertex_count; v++) {
-        double square = 0;
-        for (int k = 0; k < 3; k++)
-            square += ((double)slid[3 * v + k] - points[3 * v + k]) * ((double)slid[3 * v + k] - points[3 * v + k]);
-        sum += sqrt(square) / mesh->vertex_count;
-    }
-    free(slid);
-    return sum;
+static double slide_of(const float *slid, const float *points, int32_t vertex) {
+    double square = 0;
+    for (int k = 3 * vertex; k < 3 * vertex + 3; k++)
+        square += ((double)slid[k] - points[k]) * ((double)slid[k] - points[k]);
+    return sqrt(square);
 }
 
-/* Half of weight is about half of the slide, on a mesh of any fineness, and none is none. */
+/* Over the vertices that are chosen, NULL for all. */
+static double mean_slide(const rig *r, const test_mesh *mesh, const float *points, const skinslide_controls *controls,
+                         const uint8_t *chosen) {
+    float *slid = slide_with(r, mesh, points, controls, NULL);
+    double sum = 0;
+    int32_t count = 0;
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        if (!chosen || chosen[v])
+            sum += slide_of(slid, points, v), count++;
+    free(slid);
+    return sum / count;
+}
+
+/* A weight leaves its share of the slide, measured through the air: on a mesh of any fineness, painted all over or on a few faces,
+ * whose edge alone takes a little of both sides. */
 static void weights_are_shares_of_the_slide(void **state) {
     (void)state;
-    for (int32_t n = 12; n <= 24; n *= 2) {
-        test_mesh mesh = quad_grid(n, n);
-        rig r = rig_of(&mesh, even());
-        float *points = bumped(&mesh, 0.4 * n, 0.5 * n, 0.25 * n, 0.25 * n), *weight = filled(mesh.vertex_count, 0.5f);
-        skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
-        double whole = mean_slide(&r, &mesh, points, &controls);
-        controls.weight = weight;
-        double half = mean_slide(&r, &mesh, points, &controls);
-        assert_true(half > 0.35 * whole && half < 0.65 * whole);
-        memset(weight, 0, (size_t)mesh.vertex_count * sizeof *weight);
-        assert_true(mean_slide(&r, &mesh, points, &controls) == 0);
-        free(points), free(weight);
-        free_rig(&r);
-        free_mesh(&mesh);
+    for (int32_t n = 12; n <= 24; n *= 2)
+        for (int spot = 0; spot < 3; spot++) {
+            test_mesh mesh = quad_grid(n, n);
+            rig r = rig_of(&mesh, even());
+            float *points = bumped(&mesh, 0.4 * n, 0.5 * n, 0.25 * n, 0.25 * n), *weight = filled(mesh.vertex_count, 1);
+            uint8_t *chosen = calloc((size_t)mesh.vertex_count, 1);
+            for (int32_t v = 0; v < mesh.vertex_count; v++)
+                chosen[v] = spot == 0 || (v % (n + 1) < n / 3) == (spot == 1);
+            skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+            controls.weight = weight;
+            double whole = mean_slide(&r, &mesh, points, &controls, chosen);
+            for (double share = 0.75; share > 0.2; share -= 0.25) {
+                for (int32_t v = 0; v < mesh.vertex_count; v++)
+                    weight[v] = chosen[v] ? (float)share : 1;
+                assert_near(mean_slide(&r, &mesh, points, &controls, chosen) / whole, share, spot ? 0.05 : 0.01);
+            }
+            memset(weight, 0, (size_t)mesh.vertex_count * sizeof *weight);
+            assert_true(mean_slide(&r, &mesh, points, &controls, NULL) == 0);
+            free(points), free(weight), free(chosen);
+            free_rig(&r);
+            free_mesh(&mesh);
+        }
+}
+
+static float *slid_by_weights(const rig *r, const test_mesh *mesh, const float *points, float chosen, float others) {
+    float *weight = filled(mesh->vertex_count, others);
+    for (int32_t v = 0; v < mesh->vertex_count; v += 3)
+        weight[v] = chosen;
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.weight = weight;
+    float *slid = slide_with(r, mesh, points, &controls, NULL);
+    free(weight);
+    return slid;
+}
+
+/* Where paint comes to 0 or 1 in the course of a shot, nothing jumps. */
+static void weights_go_smoothly_to_none_and_all(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(12, 12);
+    rig r = rig_of(&mesh, even());
+    float *points = bumped(&mesh, 5, 6, 3, 3);
+    for (float end = 0; end <= 1; end++) {
+        float *at = slid_by_weights(&r, &mesh, points, end, 1);
+        float *near = slid_by_weights(&r, &mesh, points, end == 0 ? 1e-4f : 1 - 1e-4f, 1);
+        assert_near(largest_difference(at, near, 3 * (int64_t)mesh.vertex_count), 0, 1e-3);
+        assert_true(memcmp(at, near, POINT_BYTES(&mesh)) != 0);
+        free(at), free(near);
     }
+    free(points);
+    free_rig(&r);
+    free_mesh(&mesh);
 }
 
 static void a_vertex_of_no_weight_stays(void **state) {
@@ -322,22 +366,68 @@ static void a_vertex_of_no_weight_stays(void **state) {
     free_mesh(&mesh);
 }
 
+static double mean_slide_held(const rig *r, const test_mesh *mesh, const float *points, float held, float response) {
+    float *hold = filled(mesh->vertex_count, held);
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.hold = hold;
+    controls.stretch_response = controls.compression_response = response;
+    double slide = mean_slide(r, mesh, points, &controls, NULL);
+    free(hold);
+    return slide;
+}
+
 /* Held skin slides less, skin of little hold more; without any response nothing does. */
 static void holds_and_responses(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(16, 16);
     rig r = rig_of(&mesh, even());
-    float *points = bumped(&mesh, 7, 8, 4, 4), *hold = filled(mesh.vertex_count, 5);
-    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
-    double plain = mean_slide(&r, &mesh, points, &controls);
-    controls.hold = hold;
-    assert_true(mean_slide(&r, &mesh, points, &controls) < 0.9 * plain);
-    for (int32_t v = 0; v < mesh.vertex_count; v++)
-        hold[v] = 0.2f;
-    assert_true(mean_slide(&r, &mesh, points, &controls) > 1.1 * plain);
-    controls.stretch_response = controls.compression_response = 0;
-    assert_true(mean_slide(&r, &mesh, points, &controls) == 0);
-    free(points), free(hold);
+    float *points = bumped(&mesh, 7, 8, 4, 4);
+    double some = mean_slide_held(&r, &mesh, points, 4, 1);
+    assert_true(mean_slide_held(&r, &mesh, points, 20, 1) < 0.9 * some);
+    assert_true(mean_slide_held(&r, &mesh, points, 0.8f, 1) > 1.2 * some);
+    assert_true(mean_slide_held(&r, &mesh, points, 4, 0.5f) < 0.8 * some);
+    assert_true(mean_slide_held(&r, &mesh, points, 4, 0) == 0);
+    free(points);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
+/* The root mean square of what is longer, or shorter, than at rest. */
+static double one_sided_stretch(const test_mesh *mesh, const float *points, bool longer) {
+    double sum = 0;
+    for (int32_t c = 0; c < mesh->index_count; c++) {
+        int32_t a = mesh->face_indices[c], b = mesh->face_indices[c % 4 == 3 ? c - 3 : c + 1];
+        double square[2] = {0, 0};
+        for (int k = 0; k < 3; k++) {
+            double now = (double)points[3 * a + k] - points[3 * b + k];
+            double rest = (double)mesh->points[3 * a + k] - mesh->points[3 * b + k];
+            square[0] += now * now, square[1] += rest * rest;
+        }
+        double z = 0.5 * log(square[0] / square[1]);
+        sum += (z > 0) == longer ? z * z : 0;
+    }
+    return sqrt(sum / mesh->index_count);
+}
+
+/* Skin that answers to stretch alone leaves less of it than skin that answers to compression alone, and the reverse; both leave
+ * less than there was. */
+static void each_response_is_to_its_own(void **state) {
+    (void)state;
+    test_mesh mesh = sphere(8);
+    rig r = rig_of(&mesh, even());
+    float *points = swollen(&mesh, 0.6), *slid[2];
+    for (int32_t v = 0; v < mesh.vertex_count; v++) /* drawn in on the other side */
+        for (int k = 0; k < 3 && mesh.points[3 * v] < 0; k++)
+            points[3 * v + k] *= 1 + 0.4f * mesh.points[3 * v];
+    for (int longer = 0; longer < 2; longer++) {
+        skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+        controls.stretch_response = (float)longer, controls.compression_response = (float)!longer;
+        slid[longer] = slide_with(&r, &mesh, points, &controls, NULL);
+        assert_true(one_sided_stretch(&mesh, slid[longer], longer) < 0.95 * one_sided_stretch(&mesh, points, longer));
+    }
+    assert_true(one_sided_stretch(&mesh, slid[1], true) < 0.95 * one_sided_stretch(&mesh, slid[0], true));
+    assert_true(one_sided_stretch(&mesh, slid[0], false) < 0.95 * one_sided_stretch(&mesh, slid[1], false));
+    free(points), free(slid[0]), free(slid[1]);
     free_rig(&r);
     free_mesh(&mesh);
 }
@@ -488,10 +578,7 @@ static void largest_distances_are_kept(void **state) {
     float *whole = slide_with(&r, &mesh, points, NULL, NULL), *slid = slide_with(&r, &mesh, points, &controls, NULL);
     int32_t cut = 0;
     for (int32_t v = 0; v < mesh.vertex_count; v++) {
-        double square = 0;
-        for (int k = 0; k < 3; k++)
-            square += ((double)slid[3 * v + k] - points[3 * v + k]) * ((double)slid[3 * v + k] - points[3 * v + k]);
-        assert_true(sqrt(square) <= 0.02 + 1e-6);
+        assert_true(slide_of(slid, points, v) <= 0.02 + 1e-6);
         cut += memcmp(slid + 3 * v, whole + 3 * v, sizeof(float[3])) != 0;
     }
     assert_true(cut > 5);
@@ -511,8 +598,10 @@ int main(void) {
         cmocka_unit_test(frames_come_in_any_order),
         cmocka_unit_test(slides_are_smooth_in_time),
         cmocka_unit_test(weights_are_shares_of_the_slide),
+        cmocka_unit_test(weights_go_smoothly_to_none_and_all),
         cmocka_unit_test(a_vertex_of_no_weight_stays),
         cmocka_unit_test(holds_and_responses),
+        cmocka_unit_test(each_response_is_to_its_own),
         cmocka_unit_test(controls_are_checked),
         cmocka_unit_test(mean_values_are_of_faces_at_rest),
         cmocka_unit_test(degenerate_rest_stays_finite),

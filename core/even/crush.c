@@ -1,0 +1,55 @@
+/* Skin that a pose crushes holds together more. Where more than half of it would have to leave a crook, two ways out of it are as
+ * good, and a slide that hardly holds passes from one to the other in a frame or two. The crush of a vertex is the mean over its
+ * edges of
+ *
+ *     max(0, mu - z - onset)^2
+ *
+ * z and the scale mu of the cache, spread twice over the neighbours; its hold is then 1 + most x / (1 + x) as stiff, with
+ * x = steepness crush. */
+#include "even.h"
+
+#include <string.h>
+
+#define ONSET     0.1
+#define STEEPNESS 10.0
+#define SPREADS   2
+
+static void measure(ss_evener *evener) {
+    const ss_sheet *sheet = evener->sheet;
+    memset(evener->crush, 0, (size_t)sheet->patch->vertex_count * sizeof *evener->crush);
+    for (int32_t i = 0; i < sheet->spring_count; i++) {
+        const ss_spring *spring = &sheet->springs[i];
+        double over = evener->scale - evener->stretch[i] - ONSET;
+        for (int end = 0; end < 2 && over > 0 && spring->square > 0; end++)
+            evener->crush[spring->end[end]] += over * over / sheet->degree[spring->end[end]];
+    }
+}
+
+/* Each vertex takes half of its neighbours' mean for half of its own. */
+static void spread(ss_evener *evener) {
+    const ss_sheet *sheet = evener->sheet;
+    int32_t vertices = sheet->patch->vertex_count;
+    double *crush = evener->crush, *sum = evener->part;
+    memcpy(sum, crush, (size_t)vertices * sizeof *sum);
+    for (int32_t i = 0; i < sheet->spring_count; i++) {
+        const int32_t *v = sheet->springs[i].end;
+        sum[v[0]] += crush[v[1]] / sheet->degree[v[0]];
+        sum[v[1]] += crush[v[0]] / sheet->degree[v[1]];
+    }
+    for (int32_t v = 0; v < vertices; v++)
+        crush[v] = 0.5 * sum[v];
+}
+
+void ss_measure_crush(ss_evener *evener) {
+    measure(evener);
+    for (int i = 0; i < SPREADS; i++)
+        spread(evener);
+}
+
+void ss_stiffen_holds(ss_evener *evener, const double *holds) {
+    ss_measure_crush(evener);
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++) {
+        double x = STEEPNESS * evener->crush[v];
+        evener->next_hold[v] = holds[v] * (1 + evener->temper.most_stiffened * x / (1 + x));
+    }
+}
