@@ -85,6 +85,15 @@ static inline float ss_half_to_float(uint16_t half) {
 
 /* ---- Vectors of three doubles ---- */
 
+/* As fmin and fmax are, but without a call. Where a is not a number, b. */
+static inline double ss_least(double a, double b) {
+    return a < b ? a : b;
+}
+
+static inline double ss_most(double a, double b) {
+    return a > b ? a : b;
+}
+
 static inline double ss_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

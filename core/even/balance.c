@@ -55,18 +55,16 @@ void ss_measure_stretch(ss_evener *evener) {
         const ss_spring *spring = &evener->sheet->springs[i];
         double way[3];
         ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
-        evener->stretch[i] = spring->square > 0 ? 0.5 * ss_log(fmax(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
+        evener->stretch[i] = spring->square > 0 ? 0.5 * ss_log(ss_most(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
     }
 }
 
-/* Every vertex at its own place, and the stretch there. */
+/* Every vertex is where it was, and so is the stretch. Places are those of vertices that have slid. */
 static void go_home(ss_evener *evener) {
     const ss_patch *patch = evener->sheet->patch;
     memcpy(evener->at, evener->pose.point, (size_t)patch->vertex_count * sizeof *evener->at);
     memset(evener->slide, 0, (size_t)patch->vertex_count * sizeof *evener->slide);
     memset(evener->step, 0, (size_t)patch->vertex_count * sizeof *evener->step);
-    for (int32_t v = 0; v < patch->vertex_count; v++)
-        evener->place[v] = ss_place_of_vertex(patch, NULL, v);
     ss_measure_stretch(evener);
 }
 
@@ -149,7 +147,7 @@ void ss_write_places(const ss_evener *evener, ss_place *places) {
     const ss_patch *patch = evener->sheet->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
         places[i] = evener->place[patch->free_vertex[i]];
-        if (stays(evener, patch->free_vertex[i]))
+        if (evener->weight[patch->free_vertex[i]] == 0 || stays(evener, patch->free_vertex[i]))
             places[i].triangle = SS_STAYS;
     }
 }

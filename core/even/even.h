@@ -133,7 +133,7 @@ void ss_stiffen_holds(ss_evener *evener, const double *holds);
 
 /* ---- scale.c ---- */
 
-/* The smoothed median of z by k, 0 of none; sorts them. */
+/* The smoothed median of z by k, 0 of none; changes their order. */
 double ss_find_scale(ss_weighted *values, int32_t count);
 
 /* ---- shorten.c ---- */

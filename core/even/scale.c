@@ -13,61 +13,102 @@ static bool is_less(ss_weighted a, ss_weighted b) {
     return a.z != b.z ? a.z < b.z : a.k < b.k;
 }
 
-/* Makes a heap, whose largest comes first, of [count] in which only the one at root may be less than those under it. */
-static void sift(ss_weighted *values, int32_t root, int32_t count) {
-    ss_weighted moving = values[root];
-    for (int32_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
-        child += child + 1 < count && is_less(values[child], values[child + 1]);
-        if (!is_less(moving, values[child]))
-            break;
-        values[root] = values[child];
-        root = child;
-    }
-    values[root] = moving;
+/* ---- The median ---- */
+
+static void swap(ss_weighted *a, ss_weighted *b) {
+    ss_weighted kept = *a;
+    *a = *b, *b = kept;
 }
 
-/* Ascending in z, then in k. By a heap: qsort may ask for memory. */
-static void sort(ss_weighted *values, int32_t count) {
-    for (int32_t i = count / 2; i-- > 0;)
-        sift(values, i, count);
-    for (int32_t last = count; last-- > 1;) {
-        ss_weighted largest = values[0];
-        values[0] = values[last];
-        values[last] = largest;
-        sift(values, 0, last);
+static ss_weighted middle_of(ss_weighted a, ss_weighted b, ss_weighted c) {
+    ss_weighted low = is_less(a, b) ? a : b, high = is_less(a, b) ? b : a;
+    return is_less(c, low) ? low : is_less(high, c) ? high : c;
+}
+
+/* Values less than the pivot first, then those that are it, up to *end, then the others. Returns how many the first are, and
+ * through *sum their k. */
+static int32_t part(ss_weighted *values, int32_t count, ss_weighted pivot, int32_t *end, double *sum) {
+    int32_t less = 0, more = count;
+    *sum = 0;
+    for (int32_t i = 0; i < more;)
+        if (is_less(values[i], pivot)) {
+            *sum += values[i].k;
+            swap(&values[less++], &values[i++]);
+        } else if (is_less(pivot, values[i])) {
+            swap(&values[i], &values[--more]);
+        } else {
+            i++;
+        }
+    *end = more;
+    return less;
+}
+
+/* The place of the value in whose share of the sum half of it falls, were they sorted: those before it are then less, and come to
+ * *before, those after it more. */
+static int32_t select_half(ss_weighted *values, int32_t count, double half, double *before) {
+    int32_t begin = 0, end = count, same, more;
+    double sum;
+    for (*before = 0;;) {
+        ss_weighted pivot = middle_of(values[begin], values[begin + (end - begin) / 2], values[end - 1]);
+        same = begin + part(values + begin, end - begin, pivot, &more, &sum);
+        more += begin;
+        if (same > begin && *before + sum >= half) {
+            end = same;
+            continue;
+        }
+        for (*before += sum; same < more; same++, *before += pivot.k)
+            if (*before + pivot.k >= half || (same + 1 == more && more == end))
+                return same;
+        begin = more;
     }
+}
+
+/* Of [count], at least one: the largest, or the least. */
+static ss_weighted utmost(const ss_weighted *values, int32_t count, bool largest) {
+    ss_weighted found = values[0];
+    for (int32_t i = 1; i < count; i++)
+        found = is_less(largest ? found : values[i], largest ? values[i] : found) ? values[i] : found;
+    return found;
 }
 
 /* Each value stands at the middle of its own share of the sum; the median is on the line between the two about half of it. */
-static double median(const ss_weighted *values, int32_t count) {
-    double half = 0, before = 0;
+static double median(ss_weighted *values, int32_t count) {
+    double half = 0, before;
     for (int32_t i = 0; i < count; i++)
         half += 0.5 * values[i].k;
-    for (int32_t i = 0; i < count; i++) {
-        double here = before + 0.5 * values[i].k;
-        before += values[i].k;
-        if (here < half)
-            continue;
-        if (i == 0)
-            return values[0].z;
-        double gap = 0.5 * (values[i - 1].k + values[i].k), share = fmin(1, fmax(0, (here - half) / gap));
-        return values[i].z + share * (values[i - 1].z - values[i].z);
-    }
-    return count > 0 ? values[count - 1].z : 0;
+    int32_t chosen = select_half(values, count, half, &before);
+    double off = before + 0.5 * values[chosen].k - half; /* how far past half it stands */
+    int32_t others = off > 0 ? chosen : count - chosen - 1;
+    if (others == 0)
+        return values[chosen].z;
+    ss_weighted other = utmost(off > 0 ? values : values + chosen + 1, others, off > 0);
+    double gap = 0.5 * (values[chosen].k + other.k);
+    return values[chosen].z + ss_least(fabs(off) / gap, 1) * (other.z - values[chosen].z);
+}
+
+/* ---- Its steps smoothed ---- */
+
+enum { LANES = 4 }; /* of sums, for the processor's sake: their order is the same everywhere */
+
+static inline void weigh(ss_weighted value, double middle, double *sum, double *weights) {
+    double off = value.z - middle, share = off / WIDTH, weight = value.k / sqrt(1 + share * share);
+    *sum += weight * off, *weights += weight;
 }
 
 static double smoothed(const ss_weighted *values, int32_t count, double middle) {
-    double sum = 0, weights = 0;
-    for (int32_t i = 0; i < count; i++) {
-        double off = values[i].z - middle, share = off / WIDTH, weight = values[i].k / sqrt(1 + share * share);
-        sum += weight * off, weights += weight;
-    }
-    return weights > 0 ? middle + sum / weights : middle;
+    double sum[LANES] = {0}, weights[LANES] = {0};
+    int32_t whole = count - count % LANES;
+    for (int32_t i = 0; i < whole; i += LANES)
+        for (int k = 0; k < LANES; k++)
+            weigh(values[i + k], middle, &sum[k], &weights[k]);
+    for (int32_t i = whole; i < count; i++)
+        weigh(values[i], middle, &sum[0], &weights[0]);
+    double all = (weights[0] + weights[1]) + (weights[2] + weights[3]);
+    return all > 0 ? middle + ((sum[0] + sum[1]) + (sum[2] + sum[3])) / all : middle;
 }
 
 double ss_find_scale(ss_weighted *values, int32_t count) {
-    sort(values, count);
-    double middle = median(values, count);
+    double middle = count > 0 ? median(values, count) : 0;
     for (int round = 0; round < ROUNDS; round++)
         middle = smoothed(values, count, middle);
     return middle;

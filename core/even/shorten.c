@@ -16,7 +16,7 @@ typedef struct moving_point {
     double at[2], by[2];
 } moving_point;
 
-static moving_point corner_of(const ss_evener *evener, int32_t corner) {
+static inline moving_point corner_of(const ss_evener *evener, int32_t corner) {
     const double *at = evener->sheet->flat[corner], (*along)[2] = (const double(*)[2])evener->sheet->along[corner];
     int32_t v = evener->sheet->patch->faces.corner_vertex[corner];
     const double *slide = evener->slide[v], *step = evener->step[v];
@@ -28,30 +28,31 @@ static moving_point corner_of(const ss_evener *evener, int32_t corner) {
     return p;
 }
 
-static moving_point from(moving_point origin, moving_point p) {
+static inline moving_point from(moving_point origin, moving_point p) {
     for (int i = 0; i < 2; i++)
         p.at[i] -= origin.at[i], p.by[i] -= origin.by[i];
     return p;
 }
 
-static double cross(const double a[2], const double b[2]) {
+static inline double cross(const double a[2], const double b[2]) {
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* The part of the step at which a face has lost what it may, or more: what makes it larger is left out. */
+/* The part of the step at which a face has lost what it may, or more: what makes it larger is left out. Two triangles of the fan
+ * have the area between the diagonals of their quad. */
 static double face_reach(const ss_evener *evener, int32_t face) {
-    const int32_t *start = evener->sheet->patch->faces.face_start;
+    int32_t begin = evener->sheet->patch->faces.face_start[face], end = evener->sheet->patch->faces.face_start[face + 1];
     double now = 0, slope = 0, bend = 0, rest = evener->sheet->area[face];
-    moving_point origin = corner_of(evener, start[face]);
-    moving_point p = from(origin, corner_of(evener, start[face] + 1));
-    for (int32_t c = start[face] + 2; c < start[face + 1]; c++) {
-        moving_point q = from(origin, corner_of(evener, c));
+    moving_point origin = corner_of(evener, begin), before = corner_of(evener, begin + 1);
+    for (int32_t c = begin + 2; c < end; c += 2) {
+        moving_point after = c + 1 < end ? corner_of(evener, c + 1) : origin;
+        moving_point p = from(origin, corner_of(evener, c)), q = from(before, after);
         now += cross(p.at, q.at), bend += cross(p.by, q.by);
         slope += cross(p.at, q.by) + cross(p.by, q.at);
-        p = q;
+        before = after;
     }
-    double spare = evener->temper.most_lost * fmax(0, now - evener->temper.least_area * rest);
-    slope = fmax(0, -slope), bend = fmax(0, -bend);
+    double spare = evener->temper.most_lost * ss_most(now - evener->temper.least_area * rest, 0);
+    slope = ss_most(-slope, 0), bend = ss_most(-bend, 0);
     double loss = slope + sqrt(slope * slope + 4 * bend * spare);
     return loss > 0 && rest > 0 ? 2 * spare / loss : INFINITY;
 }
@@ -77,7 +78,7 @@ static void share_reaches(ss_evener *evener) {
         double reach = face_reach(evener, f);
         if (reach > FAR)
             continue;
-        double square = 1 / (fmax(reach, NEAR) * fmax(reach, NEAR));
+        double square = 1 / (ss_most(reach, NEAR) * ss_most(reach, NEAR));
         for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1]; c++)
             part[faces->corner_vertex[c]] += square * square;
     }
@@ -92,9 +93,9 @@ static double lower_parts(ss_evener *evener) {
     double least = 1;
     for (int32_t f = 0; f < faces->face_count; f++) {
         double reach = face_reach(evener, f);
-        least = fmin(least, reach);
+        least = ss_least(reach, least);
         for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1] && reach < 1; c++)
-            evener->part[faces->corner_vertex[c]] = fmin(evener->part[faces->corner_vertex[c]], reach);
+            evener->part[faces->corner_vertex[c]] = ss_least(evener->part[faces->corner_vertex[c]], reach);
     }
     return least;
 }
@@ -104,7 +105,7 @@ static void ease_off(ss_evener *evener) {
     for (int pass = 0; pass < PASSES; pass++)
         for (int32_t i = 0; i < sheet->spring_count; i++) {
             double *a = &evener->part[sheet->springs[i].end[0]], *b = &evener->part[sheet->springs[i].end[1]];
-            *a = fmin(*a, *b + EASE), *b = fmin(*b, *a + EASE);
+            *a = ss_least(*a, *b + EASE), *b = ss_least(*b, *a + EASE);
         }
 }
 

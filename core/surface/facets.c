@@ -46,8 +46,9 @@ void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]) 
         out[k] = from[k];
     if (corner >= 0)
         return;
-    ss_add(place->weight[1], pose->facet[place->triangle].first, out);
-    ss_add(place->weight[2], pose->facet[place->triangle].second, out);
+    for (int k = 0; k < 3; k++)
+        out[k] =
+            from[k] + place->weight[1] * (pose->point[v[1]][k] - from[k]) + place->weight[2] * (pose->point[v[2]][k] - from[k]);
 }
 
 double ss_half_angle(const ss_posed *pose, int32_t triangle, int corner) {

@@ -1,12 +1,47 @@
 /* Normals of a surface: at a vertex the mean of its triangles' by the sine of half the angle that each has there, which plain
- * arithmetic gives, and between vertices blended by the weights of a place. */
+ * arithmetic gives, and between vertices blended by the weights of a place. And how directions lie in what is seen along them. */
 #include "surface.h"
 
 #include <string.h>
 
 bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground) {
     ground->normal = ss_new(memory, patch->vertex_count, sizeof *ground->normal);
+    ground->wedges = SS_NEW(memory, ss_wedge, 3 * (int64_t)patch->triangles.count);
+    ground->wedge_start = SS_NEW(memory, int32_t, (int64_t)patch->vertex_count + 1);
     return ss_posed_allocate(memory, patch, &ground->pose);
+}
+
+/* False where the wedge is not seen, or has no area. */
+static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_wedge *out) {
+    const ss_posed *pose = &ground->pose;
+    const int32_t *v = pose->patch->triangles.vertex[triangle];
+    const double *here = pose->point[v[corner]], *up = ground->normal[v[corner]];
+    double p[3], q[3], product[3];
+    ss_subtract(pose->point[v[(corner + 1) % 3]], here, p);
+    ss_subtract(pose->point[v[(corner + 2) % 3]], here, q);
+    ss_cross(p, q, product);
+    double share = 1 / ss_dot(product, up);
+    *out = (ss_wedge){.triangle = triangle, .corner = corner};
+    ss_cross(q, up, product);
+    ss_add(share, product, out->first);
+    ss_cross(up, p, product);
+    ss_add(share, product, out->second);
+    return pose->facet[triangle].has_area && share > 0 && isfinite(ss_dot(out->first, out->first)) &&
+           isfinite(ss_dot(out->second, out->second));
+}
+
+static void see_wedges(ss_ground *ground) {
+    const ss_triangles *triangles = &ground->pose.patch->triangles;
+    int32_t count = 0;
+    for (int32_t v = 0; v < ground->pose.patch->vertex_count; v++) {
+        int32_t first = triangles->vertex_triangle[v], t = first;
+        do {
+            int corner = ss_triangle_corner(ground->pose.patch, t, v);
+            count += see_wedge(ground, t, corner, &ground->wedges[count]);
+            t = triangles->neighbour[t][(corner + 2) % 3];
+        } while (t >= 0 && t != first);
+        ground->wedge_start[v + 1] = count;
+    }
 }
 
 void ss_ground_set(ss_ground *ground, const float *points) {
@@ -19,6 +54,7 @@ void ss_ground_set(ss_ground *ground, const float *points) {
             ss_add(ss_half_angle(pose, t, k), pose->facet[t].normal, ground->normal[triangles->vertex[t][k]]);
     for (int32_t v = 0; v < pose->patch->vertex_count; v++)
         ss_normalise(ground->normal[v]);
+    see_wedges(ground);
 }
 
 void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out[3]) {

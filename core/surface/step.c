@@ -31,8 +31,8 @@ double ss_reach(const ss_place *place, const double rates[3], int except, int *c
 }
 
 void ss_advance(ss_place *place, double rates[3], double part, int corner) {
-    double second = fmin(1, fmax(0, place->weight[1] + part * rates[1]));
-    double third = fmin(1, fmax(0, place->weight[2] + part * rates[2])), sum = second + third;
+    double second = ss_least(ss_most(place->weight[1] + part * rates[1], 0), 1);
+    double third = ss_least(ss_most(place->weight[2] + part * rates[2], 0), 1), sum = second + third;
     second = corner == 1 ? 0 : second, third = corner == 2 ? 0 : third;
     if (corner == 0 || second + third > 1)
         second /= sum, third = 1 - second;

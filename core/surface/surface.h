@@ -109,9 +109,19 @@ double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *
 
 /* ---- ground.c: a pose with normals, blended from vertex to vertex ---- */
 
+/* A corner of a triangle as it is seen along the normal of the vertex there. A direction d tangent there is first.d of the side to
+ * the next corner and second.d of that to the last: inside, where neither is less than 0. */
+typedef struct ss_wedge {
+    int32_t triangle;
+    int corner;
+    double first[3], second[3];
+} ss_wedge;
+
 typedef struct ss_ground {
     ss_posed pose;
-    double (*normal)[3]; /* [vertex_count] of unit length; 0 where no triangle at the vertex has an area */
+    double (*normal)[3];  /* [vertex_count] of unit length; 0 where no triangle at the vertex has an area */
+    ss_wedge *wedges;     /* those that are seen, vertex by vertex, each vertex's as its triangles follow each other */
+    int32_t *wedge_start; /* [vertex_count + 1] */
 } ss_ground;
 
 bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground);

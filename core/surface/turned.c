@@ -29,7 +29,7 @@ static bool turn(const walker *w, const double normal[3], double out[3]) {
 /* Sets the rates in a triangle for a direction tangent at a unit normal; false where it has none there. */
 static bool aim(walker *w, const ss_facet *facet, const double normal[3], const double direction[3]) {
     double along[3] = {direction[0], direction[1], direction[2]};
-    ss_add(-ss_dot(direction, facet->normal) / fmax(ss_dot(normal, facet->normal), LEAST_SLANT), normal, along);
+    ss_add(-ss_dot(direction, facet->normal) / ss_most(ss_dot(normal, facet->normal), LEAST_SLANT), normal, along);
     ss_add(-ss_dot(along, facet->normal), facet->normal, along);
     double length = ss_length(along);
     if (!(length > 0))
@@ -42,48 +42,33 @@ static bool aim(walker *w, const ss_facet *facet, const double normal[3], const 
 
 /* ---- From the vertex ---- */
 
-/* How far inside the wedge of a triangle at its corner k the heading points, seen along the normal: less than 0 outside; the
- * least of numbers where the wedge has no area. */
-static double inside_wedge(const walker *w, int32_t triangle, int k) {
-    const ss_posed *pose = &w->ground->pose;
-    const int32_t *v = pose->patch->triangles.vertex[triangle];
-    double p[3], q[3], product[3];
-    ss_subtract(pose->point[v[(k + 1) % 3]], pose->point[v[k]], p);
-    ss_subtract(pose->point[v[(k + 2) % 3]], pose->point[v[k]], q);
-    ss_cross(p, q, product);
-    double area = ss_dot(product, w->up);
-    ss_cross(w->heading, q, product);
-    double first = ss_dot(product, w->up) / area;
-    ss_cross(p, w->heading, product);
-    double second = ss_dot(product, w->up) / area;
-    bool sees = area > 0 && isfinite(first) && isfinite(second) && pose->facet[triangle].has_area;
-    return sees ? fmin(first, second) : -INFINITY;
-}
-
-/* Puts the place at the vertex into the first triangle whose wedge the heading is in; else into the one it is nearest to. */
-static bool choose_triangle(const walker *w, int32_t vertex, ss_place *place) {
-    const ss_triangles *triangles = &w->ground->pose.patch->triangles;
-    int32_t first = triangles->vertex_triangle[vertex], t = first;
+/* The first wedge that the heading is in; else the one that it is nearest to, or NULL. */
+static const ss_wedge *choose_wedge(const walker *w, int32_t vertex, double rates[2]) {
+    const ss_ground *ground = w->ground;
+    const ss_wedge *chosen = NULL;
     double best = -INFINITY;
-    do {
-        int k = ss_triangle_corner(w->ground->pose.patch, t, vertex);
-        double inside = inside_wedge(w, t, k);
-        if (inside > best) {
-            best = inside;
-            ss_place_put(place, t, (double[3]){k == 0, k == 1, k == 2});
-        }
-        t = triangles->neighbour[t][(k + 2) % 3];
-    } while (best < 0 && t >= 0 && t != first);
-    return best > -INFINITY;
+    for (int32_t i = ground->wedge_start[vertex]; i < ground->wedge_start[vertex + 1] && best < 0; i++) {
+        const ss_wedge *wedge = &ground->wedges[i];
+        double first = ss_dot(wedge->first, w->heading), second = ss_dot(wedge->second, w->heading);
+        if (ss_least(first, second) > best)
+            best = ss_least(first, second), chosen = wedge, rates[0] = first, rates[1] = second;
+    }
+    return chosen;
 }
 
 static bool set_out(walker *w, int32_t vertex, ss_place *place) {
-    if (!choose_triangle(w, vertex, place) || !aim(w, &w->ground->pose.facet[place->triangle], w->up, w->heading))
+    double rates[2], along[3];
+    const ss_wedge *wedge = choose_wedge(w, vertex, rates);
+    if (!wedge)
         return false;
-    int k = ss_place_corner(place), next = (k + 1) % 3, last = (k + 2) % 3;
-    w->rates[next] = fmax(w->rates[next], 0), w->rates[last] = fmax(w->rates[last], 0);
+    int k = wedge->corner, next = (k + 1) % 3, last = (k + 2) % 3;
+    w->rates[next] = rates[0], w->rates[last] = rates[1], w->rates[k] = -rates[0] - rates[1];
+    ss_vector_along(&w->ground->pose.facet[wedge->triangle], w->rates, along);
+    double scale = w->left / ss_length(along);
+    w->rates[next] = ss_most(scale * rates[0], 0), w->rates[last] = ss_most(scale * rates[1], 0);
     w->rates[k] = -w->rates[next] - w->rates[last];
-    return true;
+    ss_place_put(place, wedge->triangle, (double[3]){k == 0, k == 1, k == 2});
+    return isfinite(scale);
 }
 
 /* ---- Over sides ---- */
@@ -122,7 +107,7 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
         double whole = ss_reach(place, w->rates, w->came, &corner);
         double part = meter ? ss_measure(meter, place->triangle, w->rates, whole) : whole;
         ss_advance(place, w->rates, part, part < whole ? -1 : corner);
-        place->weight[0] = fmax(0, place->weight[0]); /* which is what rounding leaves of 1 */
+        place->weight[0] = ss_most(place->weight[0], 0); /* which is what rounding leaves of 1 */
         w->left *= 1 - part;
         if (corner < 0 || part < whole || !go_over(w, place, corner))
             break;
@@ -132,13 +117,12 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
 double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[3], ss_meter *meter, ss_place *place) {
     double length = ss_length(way);
     walker w = {.ground = ground, .up = ground->normal[vertex], .left = length, .came = -1};
-    *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
-    if (!(length > 0))
-        return 1;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3 && length > 0; k++)
         w.heading[k] = way[k] / length;
-    if (!set_out(&w, vertex, place))
-        return 0;
+    if (!(length > 0) || !set_out(&w, vertex, place)) {
+        *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
+        return !(length > 0);
+    }
     walk(&w, meter, place);
     return 1 - w.left / length;
 }
