@@ -16,7 +16,9 @@ typedef struct control {
     const float *product; /* of paint by vertex and its map; NULL: not made yet */
     float *own_product;
     const ss_texture *texture;
+    const ss_texture *base_texture; /* that of the base, until another is taken */
     ss_texture *own_texture;
+    bool unplaced; /* own_texture has to find its tiles: its asset or the coordinates are new */
     bool refused;
 } control;
 
@@ -26,6 +28,8 @@ struct skinslide_stage_controls {
     control controls[SS_CONTROL_ROWS];
     const float *st; /* [index_count][2] of this or of the base; NULL: none was taken */
     float *own_st;
+    skinslide_status st_status; /* why there is no st, should a map need it */
+    skinslide_error st_error;
     skinslide_controls given; /* what it gave last */
 };
 
@@ -44,9 +48,10 @@ static void start(skinslide_stage_controls *controls, const skinslide_stage_cont
             continue;
         *own = base->controls[row];
         own->own = own->own_product = NULL;
-        own->own_texture = NULL;
+        own->base_texture = own->texture, own->own_texture = NULL;
     }
-    controls->st = base ? base->st : NULL;
+    if (base)
+        controls->st = base->st, controls->st_status = base->st_status, controls->st_error = base->st_error;
 }
 
 skinslide_status skinslide_stage_controls_create(const skinslide_stage_patch *patch, const skinslide_stage_controls *base,
@@ -201,13 +206,22 @@ static skinslide_status take_factors(skinslide_stage_controls *controls, int32_t
 
 /* ---- Any input ---- */
 
-static skinslide_status take_texture(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
-                                     skinslide_error *error) {
+/* Makes a texture its own. */
+static skinslide_status own_texture(skinslide_stage_controls *controls, int32_t row, skinslide_error *error) {
     control *own = &controls->controls[row];
     if (!own->own_texture)
         own->own_texture = ss_texture_create(&inputs()[row], controls->patch);
     own->texture = own->own_texture;
-    return own->own_texture ? ss_texture_take(own->own_texture, record, error) : ss_out_of_memory(error);
+    own->unplaced = true;
+    return own->own_texture ? SKINSLIDE_OK : ss_out_of_memory(error);
+}
+
+static skinslide_status take_texture(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
+                                     skinslide_error *error) {
+    control *own = &controls->controls[row];
+    own->base_texture = NULL;
+    skinslide_status status = own_texture(controls, row, error);
+    return status ? status : ss_texture_take(own->own_texture, record, error);
 }
 
 static skinslide_status take(skinslide_stage_controls *controls, int32_t row, const ss_record *record, skinslide_error *error) {
@@ -225,29 +239,16 @@ static skinslide_status take(skinslide_stage_controls *controls, int32_t row, co
     }
 }
 
-skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls, const skinslide_stage_input *input,
-                                               const skinslide_value *value, skinslide_error *error) {
-    int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
-    if (!controls || row < 0)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no input of them");
-    ss_record record;
-    skinslide_status status = ss_open(value, &record, error);
-    if (!status)
-        status = take(controls, row, &record, error);
-    controls->controls[row].refused = status != SKINSLIDE_OK;
-    return status;
-}
-
 /* ---- Maps ---- */
 
-const char *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls) {
+const skinslide_stage_input *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls) {
     for (int32_t row = 0; row < SS_CONTROL_ROWS; row++)
-        if (ss_texture_wanted(controls->controls[row].texture))
-            return controls->patch->st;
+        if (ss_texture_authored(controls->controls[row].texture))
+            return &controls->patch->coordinates;
     return NULL;
 }
 
-static skinslide_status take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
+static skinslide_status copy_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
                                          skinslide_error *error) {
     const skinslide_stage_mesh *mesh = controls->patch->mesh;
     ss_record record;
@@ -262,11 +263,7 @@ static skinslide_status take_coordinates(skinslide_stage_controls *controls, con
         controls->own_st = SS_NEW(&controls->memory, float, 2 * (int64_t)ss_faces_of(mesh).index_count);
     if (!status && !controls->own_st)
         return ss_out_of_memory(error);
-    if (!status)
-        status = skinslide_stage_coordinates(mesh, value, controls->own_st, error);
-    if (!status)
-        controls->st = controls->own_st;
-    return status;
+    return status ? status : skinslide_stage_coordinates(mesh, value, controls->own_st, error);
 }
 
 /* Gives a map up. */
@@ -275,23 +272,45 @@ static void refuse(control *own) {
     own->refused = true;
 }
 
-skinslide_status skinslide_stage_controls_take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
-                                                           skinslide_error *error) {
-    if (!controls)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls");
-    skinslide_status first = take_coordinates(controls, value, error);
-    bool good = !first;
-    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
-        control *own = &controls->controls[row];
-        if (!ss_texture_wanted(own->own_texture))
-            continue;
-        controls->controls[inputs()[row].multiplies].product = NULL;
-        skinslide_status status = good ? ss_texture_find_tiles(own->own_texture, controls->st, first ? NULL : error) : first;
-        if (status)
-            refuse(own);
-        first = first ? first : status;
-    }
-    return first;
+/* A map at other coordinates: one of the base becomes the controls' own. */
+static skinslide_status move_map(skinslide_stage_controls *controls, int32_t row, skinslide_error *error) {
+    control *own = &controls->controls[row];
+    controls->controls[inputs()[row].multiplies].product = NULL;
+    own->unplaced = true;
+    if (!ss_texture_wanted(own->base_texture))
+        return SKINSLIDE_OK;
+    skinslide_status status = own_texture(controls, row, error);
+    if (!status)
+        status = ss_texture_repeat(own->own_texture, own->base_texture, error);
+    own->refused = status != SKINSLIDE_OK;
+    return status;
+}
+
+/* What is wrong with them matters where there is a map, which a later time may bring. */
+static skinslide_status take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
+                                         skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    controls->st_status = copy_coordinates(controls, value, &controls->st_error);
+    controls->st = controls->st_status ? NULL : controls->own_st;
+    for (int32_t row = 0; !status && row < SS_CONTROL_ROWS; row++)
+        if (controls->controls[row].texture)
+            status = move_map(controls, row, error);
+    return status;
+}
+
+skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls, const skinslide_stage_input *input,
+                                               const skinslide_value *value, skinslide_error *error) {
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
+    if (!controls || (row < 0 && input != &controls->patch->coordinates))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no input of them");
+    if (row < 0)
+        return take_coordinates(controls, value, error);
+    ss_record record;
+    skinslide_status status = ss_open(value, &record, error);
+    if (!status)
+        status = take(controls, row, &record, error);
+    controls->controls[row].refused = status != SKINSLIDE_OK;
+    return status;
 }
 
 static control *needing(const skinslide_stage_controls *controls) {
@@ -301,9 +320,41 @@ static control *needing(const skinslide_stage_controls *controls) {
     return NULL;
 }
 
-const skinslide_stage_need *skinslide_stage_controls_need(const skinslide_stage_controls *controls) {
+static skinslide_status place_map(const skinslide_stage_controls *controls, control *own, skinslide_error *error) {
+    own->unplaced = false;
+    if (controls->st)
+        return ss_texture_find_tiles(own->own_texture, controls->st, error);
+    if (error)
+        *error = controls->st_error;
+    return controls->st_status;
+}
+
+/* Finds the tiles of the maps that have a new asset, or new coordinates. */
+static skinslide_status place_maps(skinslide_stage_controls *controls, skinslide_error *error) {
+    skinslide_status first = SKINSLIDE_OK;
+    bool are_taken = controls->st || controls->st_status;
+    for (int32_t row = 0; are_taken && row < SS_CONTROL_ROWS; row++) {
+        control *own = &controls->controls[row];
+        if (!own->unplaced || !ss_texture_wanted(own->own_texture))
+            continue;
+        skinslide_status status = place_map(controls, own, first ? NULL : error);
+        if (status)
+            refuse(own);
+        first = first ? first : status;
+    }
+    return first;
+}
+
+skinslide_status skinslide_stage_controls_need(skinslide_stage_controls *controls, const skinslide_stage_need **need,
+                                               skinslide_error *error) {
+    if (!controls || !need)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no place for what they need");
+    skinslide_status status = place_maps(controls, error);
+    if (status)
+        return status;
     const control *own = needing(controls);
-    return own ? ss_texture_need(own->own_texture) : NULL;
+    *need = own ? ss_texture_need(own->own_texture) : NULL;
+    return SKINSLIDE_OK;
 }
 
 skinslide_bool skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path) {

@@ -144,20 +144,12 @@ skinslide_status skinslide_stage_painted(const skinslide_stage_mesh *mesh, const
 
 /* ---- Of a GeomSubset ---- */
 
-static skinslide_status check_subset(const skinslide_stage_subset *subset, skinslide_error *error) {
-    const char *type = subset->type_name && *subset->type_name ? subset->type_name : "prim without a type";
-    if (!subset->is_subset)
-        return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is a " SS_NAMED ", not a GeomSubset",
-                       SS_NAME(subset->path), SS_NAME(type));
-    ss_record element;
-    skinslide_status status = ss_open(subset->element_type, &element, error);
-    if (status || !ss_has_value(&element))
-        return status;
-    bool is_text = element.value.type == SKINSLIDE_VALUE_TEXT && !element.value.is_array;
-    const char *said = is_text ? element.value.data : element.value.type_name;
-    if (!is_text || strcmp(said, "face") != 0)
+static skinslide_status check_element(const char *path, const ss_record *element, skinslide_error *error) {
+    bool is_text = element->value.type == SKINSLIDE_VALUE_TEXT && !element->value.is_array;
+    const char *said = is_text ? element->value.data : element->value.type_name;
+    if (ss_has_value(element) && (!is_text || strcmp(said, "face") != 0))
         return ss_fail(error, SKINSLIDE_BAD_PATCH, "the GeomSubset " SS_NAMED " has elementType " SS_NAMED "; it must be face",
-                       SS_NAME(subset->path), SS_NAME(said));
+                       SS_NAME(path), SS_NAME(said));
     return SKINSLIDE_OK;
 }
 
@@ -194,18 +186,19 @@ static skinslide_status check_faces(const ss_array *faces, int32_t face_count, c
     return SKINSLIDE_OK;
 }
 
-static skinslide_status take_indices(skinslide_stage_patch *patch, const char *path, const ss_record *indices,
-                                     skinslide_error *error) {
+static skinslide_status take_indices(skinslide_stage_patch *patch, const ss_record *given, skinslide_error *error) {
     ss_array authored = {0}, faces = {0};
-    skinslide_status status = copy_indices(indices, &patch->memory, &authored, error);
+    ss_record record = *given;
+    record.value.name = patch->indices_name;
+    skinslide_status status = copy_indices(&record, &patch->memory, &authored, error);
     if (!status)
-        status = copy_indices(indices, &patch->memory, &faces, error);
+        status = copy_indices(&record, &patch->memory, &faces, error);
     if (status)
         return status;
     sort_faces(&faces);
-    status = check_faces(&faces, face_count_of(patch), path, error);
+    status = check_faces(&faces, face_count_of(patch), patch->subset, error);
     if (!status) {
-        patch->subset = authored;
+        patch->indices = authored;
         patch->faces = faces;
         ss_mark_inside(patch);
     }
@@ -219,6 +212,19 @@ static skinslide_status none_there(const skinslide_stage_patch *patch, skinslide
                    primvar, SS_NAME(patch->name));
 }
 
+/* A mesh may have many, so its indices are named after the prim. */
+static skinslide_status name_subset(skinslide_stage_patch *patch, const char *path, skinslide_error *error) {
+    static const char suffix[] = ".indices";
+    char *name = SS_NEW(&patch->memory, char, (int64_t)(strlen(path) + sizeof suffix));
+    patch->subset = ss_copy_text(&patch->memory, path);
+    if (!name || !patch->subset)
+        return ss_out_of_memory(error);
+    strcpy(name, path);
+    strcat(name, suffix);
+    patch->indices_name = name;
+    return SKINSLIDE_OK;
+}
+
 static skinslide_status take_subset(skinslide_stage_patch *patch, const skinslide_stage_subset *subset,
                                     skinslide_error *error) {
     if (!subset)
@@ -229,11 +235,10 @@ static skinslide_status take_subset(skinslide_stage_patch *patch, const skinslid
         return status;
     if (!own.path)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a subset has no path");
-    ss_record indices;
-    status = check_subset(&own, error);
-    if (!status)
-        status = ss_open(own.indices, &indices, error);
-    return status ? status : take_indices(patch, own.path, &indices, error);
+    if (!own.is_subset)
+        return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is a " SS_NAMED ", not a GeomSubset",
+                       SS_NAME(own.path), SS_NAME(ss_type_of(own.type_name)));
+    return name_subset(patch, own.path, error);
 }
 
 skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch, const skinslide_stage_subset *subset,
@@ -247,17 +252,28 @@ skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
     return status;
 }
 
-skinslide_status skinslide_stage_patch_check_subset(const skinslide_stage_patch *patch, const skinslide_value *indices,
-                                                    double frame, skinslide_error *error) {
+/* Where the primvar chose faces, or the subset was refused, nothing is looked at. */
+skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row, const ss_record *record,
+                                      skinslide_error *error) {
+    if (patch->faces_by_primvar || patch->taken[SS_ROW_FACES].refused)
+        return SKINSLIDE_OK;
+    if (!patch->subset)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the subset of the patch comes first");
+    skinslide_status status =
+        row == SS_ROW_ELEMENT_TYPE ? check_element(patch->subset, record, error) : take_indices(patch, record, error);
+    patch->taken[SS_ROW_FACES].refused = status != SKINSLIDE_OK;
+    return status;
+}
+
+skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
+                                       skinslide_error *error) {
     static const ss_input integers = {.kind = SS_KIND_INTEGERS};
-    if (!patch)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch");
-    ss_record record;
-    skinslide_status status = ss_open(indices, &record, error);
-    const ss_taken taken = {.array = patch->subset};
-    if (status || patch->faces_by_primvar || patch->taken[SS_ROW_FACES].refused)
-        return status;
-    return ss_check_plain(&integers, &record, &taken, frame, SKINSLIDE_BAD_PATCH, error);
+    const ss_taken taken = {.array = patch->indices};
+    ss_record named = *record;
+    if (patch->faces_by_primvar || patch->taken[SS_ROW_FACES].refused || !patch->subset)
+        return SKINSLIDE_OK;
+    named.value.name = patch->indices_name;
+    return ss_check_plain(&integers, &named, &taken, frame, SKINSLIDE_BAD_PATCH, error);
 }
 
 /* ---- What is inside ---- */
@@ -279,6 +295,7 @@ void ss_mark_inside(skinslide_stage_patch *patch) {
 }
 
 const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count) {
-    *face_count = patch->faces.count;
+    if (face_count)
+        *face_count = patch->faces.count;
     return patch->faces.count ? patch->faces.values : NULL;
 }

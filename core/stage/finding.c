@@ -178,7 +178,7 @@ static void say_unknown(search *own, const char *patch, int32_t space) {
 /* Returns whether there is no reason. */
 static bool say_why_not(search *own) {
     const skinslide_stage_prim *prim = &own->prim;
-    const char *type = prim->type_name && *prim->type_name ? prim->type_name : "prim without a type";
+    const char *type = ss_type_of(prim->type_name);
     int32_t before = own->finding.problem_count;
     if (prim->instance)
         say(own, SKINSLIDE_SEVERITY_ERROR, NULL,

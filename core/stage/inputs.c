@@ -77,6 +77,13 @@ static const ss_input patch_inputs[SS_PATCH_ROWS] = {
     [SS_ROW_ST] = {SETTING(SS_PATCH_MAP_ST), .kind = SS_KIND_WORD},
 };
 
+static const ss_input subset_inputs[SS_SUBSET_ROWS] = {
+    [SS_ROW_ELEMENT_TYPE] = {USD("elementType", "token", NULL, SKINSLIDE_STAGE_SUBSET, SKINSLIDE_STAGE_DEFAULT_TIME),
+                             .kind = SS_KIND_WORD},
+    [SS_ROW_SUBSET_INDICES] = {USD("indices", "int[]", NULL, SKINSLIDE_STAGE_SUBSET, SKINSLIDE_STAGE_STILL),
+                               .kind = SS_KIND_INTEGERS},
+};
+
 static const ss_input control_inputs[SS_CONTROL_ROWS] = {
     [SS_ROW_ENVELOPE] = {CONTROL(SS_PATCH_ENVELOPE), .kind = SS_KIND_NUMBER, .fallback = SS_PATCH_ENVELOPE_NUMBER,
                          .place = offsetof(skinslide_controls, envelope)},
@@ -127,6 +134,7 @@ const ss_input *ss_inputs(skinslide_stage_group group, int32_t *count) {
         [SKINSLIDE_STAGE_CONTROLS] = {control_inputs, SS_CONTROL_ROWS},
         [SKINSLIDE_STAGE_DERIVED] = {derived_inputs, SS_DERIVED_ROWS},
         [SKINSLIDE_STAGE_LIVE] = {live_inputs, SS_LIVE_ROWS},
+        [SKINSLIDE_STAGE_SUBSET] = {subset_inputs, SS_SUBSET_ROWS},
     };
     bool known = (unsigned)group < sizeof tables / sizeof *tables;
     *count = known ? tables[group].count : 0;
@@ -146,6 +154,11 @@ const skinslide_stage_input *skinslide_stage_next_input(skinslide_stage_group gr
     int32_t count, next = before ? ss_row_of(group, before) + 1 : 0;
     const ss_input *inputs = ss_inputs(group, &count);
     return next < count && (!before || next > 0) ? &inputs[next].shown : NULL;
+}
+
+skinslide_bool skinslide_stage_is_texture(const skinslide_stage_input *input) {
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
+    return row >= 0 && control_inputs[row].kind == SS_KIND_TEXTURE;
 }
 
 const char *skinslide_stage_schema(void) {

@@ -155,6 +155,19 @@ static skinslide_status take_live(const skinslide_stage_live *given, skinslide_s
     return ss_take(given, "skinslide_stage_live", live, sizeof *live, error);
 }
 
+static const char primvars[] = "primvars:";
+
+/* st is a primvar's full name. */
+static void set_coordinates(skinslide_stage_patch *patch, const char *st) {
+    patch->st = st;
+    patch->coordinates = (skinslide_stage_input){.name = st + strlen(primvars),
+                                                 .type_name = "texCoord2f[]",
+                                                 .group = SKINSLIDE_STAGE_COORDINATES,
+                                                 .prefix = primvars,
+                                                 .when = SKINSLIDE_STAGE_ANIMATED,
+                                                 .is_primvar = 1};
+}
+
 static skinslide_status fill_patch(skinslide_stage_patch *patch, const char *name, const skinslide_stage_live *live,
                                    skinslide_error *error) {
     skinslide_status status = take_live(live, &patch->live, error);
@@ -165,7 +178,7 @@ static skinslide_status fill_patch(skinslide_stage_patch *patch, const char *nam
     patch->vertex_inside = SS_NEW(&patch->memory, uint8_t, patch->mesh->vertex_count);
     if (patch->memory.failed)
         return ss_out_of_memory(error);
-    patch->st = "primvars:st";
+    set_coordinates(patch, "primvars:st");
     ss_mark_inside(patch);
     return ss_take_fallbacks(patch_inputs(), SS_PATCH_ROWS, &patch->memory, patch->taken, error);
 }
@@ -238,25 +251,26 @@ static skinslide_status take_setting(skinslide_stage_patch *patch, int32_t row, 
 
 /* "primvars:st" of "st", and of itself. */
 static skinslide_status name_coordinates(skinslide_stage_patch *patch, skinslide_error *error) {
-    static const char prefix[] = "primvars:";
     const char *word = patch->taken[SS_ROW_ST].word;
-    bool named = strncmp(word, prefix, sizeof prefix - 1) == 0;
-    char *name = SS_NEW(&patch->memory, char, (int64_t)(strlen(word) + sizeof prefix));
+    bool named = strncmp(word, primvars, strlen(primvars)) == 0;
+    char *name = SS_NEW(&patch->memory, char, (int64_t)(strlen(word) + sizeof primvars));
     if (!name)
         return ss_out_of_memory(error);
-    memcpy(name, prefix, sizeof prefix);
-    strcpy(name + (named ? 0 : sizeof prefix - 1), word);
-    patch->st = name;
+    strcpy(name, primvars);
+    strcpy(name + (named ? 0 : strlen(primvars)), word);
+    set_coordinates(patch, name);
     return SKINSLIDE_OK;
 }
 
 skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                             const skinslide_value *value, skinslide_error *error) {
-    int32_t row = ss_row_of(SKINSLIDE_STAGE_PATCH, input);
-    if (!patch || row < 0)
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_PATCH, input), of_subset = ss_row_of(SKINSLIDE_STAGE_SUBSET, input);
+    if (!patch || (row < 0 && of_subset < 0))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch, or no input of one");
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
+    if (row < 0)
+        return status ? status : ss_take_subset_faces(patch, of_subset, &record, error);
     if (!status)
         status = take_setting(patch, row, &record, error);
     if (!status && row == SS_ROW_ST)
@@ -267,11 +281,13 @@ skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const 
 
 skinslide_status skinslide_stage_patch_check(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                              const skinslide_value *value, double frame, skinslide_error *error) {
-    int32_t row = ss_row_of(SKINSLIDE_STAGE_PATCH, input);
-    if (!patch || row < 0)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch, or no input of one");
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_PATCH, input), of_subset = ss_row_of(SKINSLIDE_STAGE_SUBSET, input);
+    if (!patch || (row < 0 && of_subset != SS_ROW_SUBSET_INDICES))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch, or no input of one that must stay the same");
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
+    if (row < 0)
+        return status ? status : ss_check_subset_faces(patch, &record, frame, error);
     if (status || patch->taken[row].refused)
         return status;
     if (row == SS_ROW_FACES)

@@ -60,6 +60,9 @@ const char *ss_name_more(const char *name);
 const char *ss_file_less(const char *path);
 const char *ss_file_tail(const char *path);
 
+/* The type of a prim in a sentence, which it may lack. */
+const char *ss_type_of(const char *type_name);
+
 /* A copy of text in memory; NULL where that failed. */
 char *ss_copy_text(ss_memory *memory, const char *text);
 
@@ -154,6 +157,7 @@ enum {
     SS_CONTROL_ROWS
 };
 enum { SS_ROW_NORMALS_PRIMVAR, SS_ROW_NORMALS, SS_ROW_VELOCITIES, SS_ROW_ACCELERATIONS, SS_DERIVED_ROWS };
+enum { SS_ROW_ELEMENT_TYPE, SS_ROW_SUBSET_INDICES, SS_SUBSET_ROWS };
 enum { SS_ROW_LIVE_ENVELOPE, SS_ROW_LIVE_INTERPOLATION, SS_ROW_LIVE_LOOKUP, SS_LIVE_ROWS };
 
 /* The table of a group and its length. */
@@ -228,10 +232,13 @@ struct skinslide_stage_patch {
     const char *name;
     skinslide_stage_live live;
     ss_taken taken[SS_PATCH_ROWS];
-    const char *st; /* "primvars:st" */
+    const char *st;                    /* "primvars:st" */
+    skinslide_stage_input coordinates; /* the same, to be fetched */
     bool faces_by_primvar;
-    ss_array faces;         /* ascending; none: every face counts */
-    ss_array subset;        /* as authored */
+    ss_array faces;     /* ascending; none: every face counts */
+    const char *subset; /* the path of the child that has the faces; NULL: none */
+    const char *indices_name;
+    ss_array indices;       /* of that, as authored */
     uint8_t *face_inside;   /* [face_count] */
     uint8_t *vertex_inside; /* [vertex_count] */
 };
@@ -240,6 +247,11 @@ struct skinslide_stage_patch {
 skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_record *record, skinslide_error *error);
 skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
                                         skinslide_error *error);
+/* The same of an input of the subset. */
+skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row, const ss_record *record,
+                                      skinslide_error *error);
+skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
+                                       skinslide_error *error);
 /* Marks the faces and vertices of the patch as inside. */
 void ss_mark_inside(skinslide_stage_patch *patch);
 
@@ -255,6 +267,10 @@ ss_texture *ss_texture_create(const ss_input *input, const skinslide_stage_patch
 void ss_texture_destroy(ss_texture *texture);
 /* Takes the asset of a time. Nothing is known of its files then, but images of the time before are still held. */
 skinslide_status ss_texture_take(ss_texture *texture, const ss_record *record, skinslide_error *error);
+/* Takes the asset of another texture, likewise. */
+skinslide_status ss_texture_repeat(ss_texture *texture, const ss_texture *of, skinslide_error *error);
+/* Whether a file is named at some time, for all that is known. */
+bool ss_texture_authored(const ss_texture *texture);
 /* Whether there is a map. */
 bool ss_texture_wanted(const ss_texture *texture);
 /* Finds the tiles that the patch needs. st is that of the mesh's corners. What fails here and below drops the map. */

@@ -35,6 +35,7 @@ struct ss_texture {
     skinslide_stage_need need;
     held_images held, before;
     int32_t times_taken;
+    bool authored;
     float *values; /* [vertex_count], of memory of its own */
     bool sampled;
     skinslide_stage_texture map;
@@ -86,27 +87,45 @@ void ss_texture_drop(ss_texture *texture) {
     destroy_images(&texture->held);
 }
 
-skinslide_status ss_texture_take(ss_texture *texture, const ss_record *record, skinslide_error *error) {
-    char shown[256];
-    const skinslide_value *value = &record->value;
+/* Nothing is known of another time's files, but images of the time before are still held. */
+static void pass_on(ss_texture *texture) {
     forget(texture);
     destroy_images(&texture->before);
     texture->before = texture->held, texture->held = (held_images){0};
     texture->times_taken++;
+}
+
+static skinslide_status copy_names(ss_texture *texture, const char *name, const char *asset, skinslide_error *error) {
+    texture->name = ss_copy_text(&texture->memory, name);
+    texture->asset = ss_copy_text(&texture->memory, asset);
+    if (!texture->memory.failed)
+        return SKINSLIDE_OK;
+    forget(texture);
+    return ss_out_of_memory(error);
+}
+
+skinslide_status ss_texture_take(ss_texture *texture, const ss_record *record, skinslide_error *error) {
+    char shown[256];
+    const skinslide_value *value = &record->value;
+    pass_on(texture);
+    texture->authored = value->type != SKINSLIDE_VALUE_NONE;
     if (!ss_has_value(record))
         return SKINSLIDE_OK;
     if (value->type != SKINSLIDE_VALUE_ASSET || value->is_array)
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " is %s; it must be an asset", SS_NAME(value->name),
                        ss_shown(record, shown));
     const char *path = value->data;
-    if (!*path)
-        return SKINSLIDE_OK;
-    texture->name = ss_copy_text(&texture->memory, value->name);
-    texture->asset = ss_copy_text(&texture->memory, path);
-    if (!texture->memory.failed)
-        return SKINSLIDE_OK;
-    forget(texture);
-    return ss_out_of_memory(error);
+    return *path ? copy_names(texture, value->name, path, error) : SKINSLIDE_OK;
+}
+
+skinslide_status ss_texture_repeat(ss_texture *texture, const ss_texture *of, skinslide_error *error) {
+    pass_on(texture);
+    texture->authored = true;
+    return copy_names(texture, of->name, of->asset, error);
+}
+
+bool ss_texture_authored(const ss_texture *texture) {
+    return texture && texture->authored;
 }
 
 bool ss_texture_wanted(const ss_texture *texture) {
@@ -265,15 +284,15 @@ static skinslide_status hold(ss_texture *texture, const skinslide_stage_file *fi
 /* No file at all, or a tile that is missing among others. */
 static skinslide_status is_missing(ss_texture *texture, skinslide_error *error) {
     int32_t tile = texture->tiles[texture->missing];
+    const char *said = skinslide_stage_say(SKINSLIDE_SAYING_NO_FILE);
     if (!tile || !texture->found)
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": there is no such file", SS_NAME(texture->name),
-                       SS_FILE(texture->asset));
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": %s", SS_NAME(texture->name),
+                       SS_FILE(texture->asset), said);
     const char *path = path_of_tile(texture, tile);
     if (!path)
         return ss_out_of_memory(error);
-    return ss_fail(error, SKINSLIDE_BAD_CONTROL,
-                   SS_NAMED ": " SS_FILED ": there is no such file, and the patch has texture coordinates in it",
-                   SS_NAME(texture->name), SS_FILE(path));
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": %s, and the patch has texture coordinates in it",
+                   SS_NAME(texture->name), SS_FILE(path), said);
 }
 
 /* ---- Values ---- */

@@ -21,6 +21,7 @@
 #include "pxr/usd/pcp/mapExpression.h"
 #include "pxr/usd/pcp/node.h"
 #include "pxr/usd/pcp/primIndex.h"
+#include "pxr/usd/sdf/assetPath.h"
 #include "pxr/usd/sdf/layerUtils.h"
 #include "pxr/usd/sdf/listOp.h"
 #include "pxr/usd/sdf/schema.h"
@@ -142,6 +143,14 @@ std::vector<double> Attribute::times() const {
 }
 
 VtValue Attribute::at(double time) const {
+    VtValue value = authoredAt(time);
+    if (!value.IsHolding<SdfAssetPath>())
+        return value;
+    std::string path = evaluate(value.UncheckedGet<SdfAssetPath>().GetAssetPath(), _root->GetExpressionVariables());
+    return VtValue(SdfAssetPath(path.empty() ? path : SdfComputeAssetPathRelativeToLayer(_layer, path)));
+}
+
+VtValue Attribute::authoredAt(double time) const {
     if (std::isnan(time))
         return _defaultResolved ? unblocked(_defaultLayer->GetField(_defaultPath, SdfFieldKeys->Default)) : VtValue();
     if (_source == Source::Default)
@@ -174,11 +183,6 @@ VtValue Attribute::metadata(const TfToken &field) const {
 TfToken Attribute::token(const TfToken &field, const TfToken &fallback) const {
     VtValue value = metadata(field);
     return value.IsHolding<TfToken>() ? value.UncheckedGet<TfToken>() : fallback;
-}
-
-std::string Anchor::path(const Attribute &attribute, const SdfAssetPath &asset) const {
-    std::string path = evaluate(asset.GetAssetPath(), root->GetExpressionVariables());
-    return path.empty() ? path : SdfComputeAssetPathRelativeToLayer(attribute.layer(), path);
 }
 
 // ---- Clips ----
@@ -302,6 +306,7 @@ TfTokenVector Prim::propertyNames() const {
 Attribute Prim::attribute(const TfToken &name) const {
     Attribute found;
     found._name = name.GetString();
+    found._root = _index->GetRootNode().GetLayerStack()->GetIdentifier().rootLayer;
     PcpNodeRange range = _index->GetNodeRange();
     for (PcpNodeIterator it = range.first; it != range.second; ++it) {
         PcpNodeRef node = *it;

@@ -11,7 +11,6 @@
 #include "pxr/base/vt/value.h"
 #include "pxr/usd/pcp/cache.h"
 #include "pxr/usd/pcp/errors.h"
-#include "pxr/usd/sdf/assetPath.h"
 #include "pxr/usd/sdf/layer.h"
 #include "pxr/usd/sdf/layerOffset.h"
 #include "pxr/usd/sdf/path.h"
@@ -24,16 +23,6 @@
 
 namespace skinslide {
 using namespace PXR_NS;
-
-class Attribute;
-
-// What asset paths are evaluated with, where they are expressions.
-struct Anchor {
-    SdfLayerRefPtr root;
-
-    // Relative to the layer that authors it. Empty where the path is, or is an expression that gives none.
-    std::string path(const Attribute &attribute, const SdfAssetPath &asset) const;
-};
 
 // A composed attribute: where its value comes from. Keeps the layers it needs, but nothing of the composition.
 class Attribute {
@@ -61,7 +50,8 @@ class Attribute {
     }
     bool varies() const; // may have different values at different times
     std::vector<double> times() const;
-    // The value at a time, interpolated linearly between samples as Usd does; empty where there is none.
+    // The value at a time, interpolated linearly between samples as Usd does; empty where there is none. The path of an asset is
+    // evaluated, and anchored to the layer that authors it.
     VtValue at(double time) const;
     // The strongest opinion's layer: null where there is none.
     const SdfLayerRefPtr &layer() const {
@@ -74,13 +64,14 @@ class Attribute {
 
   private:
     friend class Prim;
+    VtValue authoredAt(double time) const;
     void takeOpinion(const SdfLayerRefPtr &layer, const SdfPath &path, const SdfLayerOffset &toRoot);
 
     std::string _name;
     TfToken _typeName;
     Source _source = Source::None;
     bool _resolved = false, _defaultResolved = false, _clipped = false;
-    SdfLayerRefPtr _layer, _defaultLayer;
+    SdfLayerRefPtr _root, _layer, _defaultLayer; // root: of the composition
     SdfPath _path, _defaultPath;
     SdfLayerOffset _toRoot;
     std::vector<std::pair<SdfLayerRefPtr, SdfPath>> _specs; // strong to weak
@@ -140,9 +131,6 @@ class Composition {
     SdfPathVector targets(const SdfPath &relationship);
     const SdfLayerRefPtr &root() const {
         return _root;
-    }
-    Anchor anchor() const {
-        return {_root};
     }
     // What could not be composed, each once, with the prim.
     std::vector<std::pair<SdfPath, std::string>> errors() const;

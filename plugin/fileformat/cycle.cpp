@@ -21,8 +21,7 @@ std::string fileAt(const std::string &resolvedPath) {
 } // namespace
 
 Reading::Reading(const std::string &resolvedPath) {
-    if (isRead(resolvedPath))
-        throw Fault("leads back to itself");
+    refuse(resolvedPath);
     if (files.size() >= mostAtOnce)
         throw fault("is led to by %zu .skinslide files, each through the next; more are not read", mostAtOnce);
     files.push_back(fileAt(resolvedPath));
@@ -30,6 +29,11 @@ Reading::Reading(const std::string &resolvedPath) {
 
 Reading::~Reading() {
     files.pop_back();
+}
+
+void Reading::refuse(const std::string &resolvedPath) {
+    if (isRead(resolvedPath))
+        throw Fault("leads back to itself");
 }
 
 bool Reading::isRead(const std::string &resolvedPath) {

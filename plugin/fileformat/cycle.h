@@ -18,6 +18,8 @@ class Reading {
     Reading(const Reading &) = delete;
     Reading &operator=(const Reading &) = delete;
 
+    // Throws Fault where the thread is reading the file.
+    static void refuse(const std::string &resolvedPath);
     // Whether the thread is reading a file, by whatever path: a folder that links to itself gives each file any number of them.
     static bool isRead(const std::string &resolvedPath);
 };

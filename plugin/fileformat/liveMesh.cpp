@@ -32,6 +32,14 @@ class Counted {
     }
 };
 
+// As sentences write it; "default" where it is the default time.
+std::string frameText(double time) {
+    char text[32] = "default";
+    if (!std::isnan(time))
+        skinslide_stage_frame_text(time, text);
+    return text;
+}
+
 // float triples where it can be, so that the type is the one the layer declares.
 VtValue asDeclared(const VtValue &value) {
     if (value.IsEmpty())

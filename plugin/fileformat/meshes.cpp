@@ -13,74 +13,57 @@ bool PatchedMesh::controlsVary() const {
 
 namespace {
 
-using Finding = std::unique_ptr<skinslide_stage_finding, Destroyer<skinslide_stage_finding, skinslide_stage_finding_destroy>>;
+using Finding = Handle<skinslide_stage_finding, skinslide_stage_finding_destroy>;
 
 // ---- Finding meshes ----
 
-// A prim that mentions the schema, and what is known of it while the layer is walked.
-struct Candidate {
-    Prim prim;
-    std::vector<std::string> schemas;
-    bool defined;
-    SdfPath instance;
+// What mentions the schema, and the roots of prototypes, each with its point instancer.
+struct Found {
+    std::vector<Prim> prims;
+    std::map<SdfPath, SdfPath> prototypes;
 };
 
 bool mentionsSchema(const std::string &name) {
     return TfStringStartsWith(name, skinslide_stage_schema());
 }
 
-// Walks the composed layer once.
-class Search {
-  public:
-    explicit Search(Composition &composition) : _composition(composition) {
-        _defined[SdfPath::AbsoluteRootPath()] = true;
-        composition.traverse([this](const Prim &prim) { return visit(prim); });
-    }
-
-    const std::vector<Candidate> &found() const {
-        return _found;
-    }
-
-    // The point instancer that a prim is, or is below, a prototype of; empty where there is none.
-    SdfPath instancerOf(const SdfPath &path) const {
-        for (const SdfPath &prefix : path.GetPrefixes()) {
-            auto found = _prototypes.find(prefix);
-            if (found != _prototypes.end())
-                return found->second;
-        }
-        return SdfPath();
-    }
-
-  private:
-    bool visit(const Prim &prim) {
-        SdfSpecifier specifier = prim.specifier();
-        if (!prim.active() || specifier == SdfSpecifierClass)
+// Names of properties are not looked at: those that count for nothing keep no mesh from being slid, and check says them.
+Found search(Composition &composition) {
+    Found found;
+    composition.traverse([&](const Prim &prim) {
+        if (!prim.active() || prim.specifier() == SdfSpecifierClass)
             return false;
-        SdfPath parent = prim.path().GetParentPath();
-        _defined[prim.path()] = _defined[parent] && specifier == SdfSpecifierDef;
-        _instance[prim.path()] = !_instance[parent].IsEmpty() ? _instance[parent]
-                                 : prim.instanceable()        ? prim.path()
-                                                              : SdfPath();
         if (prim.typeName() == names().pointInstancer) {
-            for (const SdfPath &target : _composition.targets(prim.path().AppendProperty(names().prototypes)))
-                _prototypes[target] = prim.path();
+            for (const SdfPath &target : composition.targets(prim.path().AppendProperty(names().prototypes)))
+                found.prototypes[target] = prim.path();
         }
-        consider(prim);
-        return true;
-    }
-
-    // Names of properties are not looked at: those that count for nothing keep no mesh from being slid, and check says them.
-    void consider(const Prim &prim) {
         std::vector<std::string> schemas = prim.apiSchemas();
         if (std::any_of(schemas.begin(), schemas.end(), mentionsSchema))
-            _found.push_back({prim, schemas, _defined[prim.path()], _instance[prim.path().GetParentPath()]});
-    }
+            found.prims.push_back(prim);
+        return true;
+    });
+    return found;
+}
 
-    Composition &_composition;
-    std::vector<Candidate> _found;
-    std::map<SdfPath, bool> _defined;
-    std::map<SdfPath, SdfPath> _instance, _prototypes;
+// What a prim is below: undefined prims, the outermost instance, a prototype of a point instancer.
+struct Place {
+    bool defined = true;
+    std::string instance, instancer;
 };
+
+Place placeOf(Composition &composition, const Found &found, const SdfPath &path) {
+    Place place;
+    for (const SdfPath &prefix : path.GetPrefixes()) {
+        Prim prim = composition.prim(prefix);
+        auto prototype = found.prototypes.find(prefix);
+        place.defined = place.defined && prim.specifier() == SdfSpecifierDef;
+        if (place.instance.empty() && prefix != path && prim.instanceable())
+            place.instance = prefix.GetString();
+        if (place.instancer.empty() && prototype != found.prototypes.end())
+            place.instancer = prototype->second.GetString();
+    }
+    return place;
+}
 
 // The layer whose computed points these are, where another .skinslide file slides the mesh already.
 std::string slidBy(const Attribute &points) {
@@ -104,27 +87,25 @@ int32_t blendShapes(Composition &composition, const Prim &prim) {
     return static_cast<int32_t>(composition.targets(prim.path().AppendProperty(names().blendShapes)).size());
 }
 
-Finding find(Composition &composition, const Search &search, const Candidate &candidate, const std::string &other) {
-    const Prim &prim = candidate.prim;
+Finding find(Composition &composition, const Found &found, const Prim &prim, const std::string &other) {
     Attribute points = prim.attribute(names().points);
     TfToken type = prim.typeName();
-    std::string instance = candidate.instance.GetString(), instancer = search.instancerOf(prim.path()).GetString();
+    Place place = placeOf(composition, found, prim.path());
     std::string bake = bakedBy(composition, points);
+    std::vector<std::string> applied = prim.apiSchemas();
     std::vector<const char *> schemas;
-    for (const std::string &schema : candidate.schemas)
+    for (const std::string &schema : applied)
         schemas.push_back(schema.c_str());
     auto orNull = [](const std::string &text) { return text.empty() ? nullptr : text.c_str(); };
     skinslide_stage_prim facts = SKINSLIDE_STAGE_PRIM_DEFAULT;
-    facts.type_name = type.GetText(), facts.is_mesh = type == names().mesh, facts.is_defined = candidate.defined;
-    facts.instance = orNull(instance), facts.instancer = orNull(instancer);
+    facts.type_name = type.GetText(), facts.is_mesh = type == names().mesh, facts.is_defined = place.defined;
+    facts.instance = orNull(place.instance), facts.instancer = orNull(place.instancer);
     facts.slid_by = orNull(other), facts.baked_by = orNull(bake);
     facts.point_samples = points.source() == Attribute::Source::Samples || points.clipped();
     facts.has_joint_indices = ownerOf(composition, prim, names().jointIndices).attribute(names().jointIndices).authored();
     facts.blend_shape_count = blendShapes(composition, prim);
     facts.schema_count = static_cast<int32_t>(schemas.size()), facts.schemas = schemas.data();
-    skinslide_stage_finding *finding = nullptr;
-    call(skinslide_stage_find, &facts, &finding);
-    return Finding(finding);
+    return make<Finding>(skinslide_stage_find, &facts);
 }
 
 void say(const SdfPath &prim, const skinslide_stage_finding &finding, std::vector<std::string> *problems) {
@@ -142,9 +123,7 @@ void sayUncomposed(const Composition &composition, std::vector<std::string> *pro
         std::string line = TfStringJoin(TfStringTokenize(message), " ");
         skinslide_stage_prim facts = SKINSLIDE_STAGE_PRIM_DEFAULT;
         facts.uncomposed = line.c_str();
-        skinslide_stage_finding *finding = nullptr;
-        call(skinslide_stage_find, &facts, &finding);
-        say(prim, *Finding(finding), problems);
+        say(prim, *make<Finding>(skinslide_stage_find, &facts), problems);
     }
 }
 
@@ -168,22 +147,25 @@ std::vector<Patch> readPatches(Composition &composition, const Prim &prim, const
     return patches;
 }
 
-// The samples of points first: where times differ by noise, theirs gives a sample as it was authored.
+// As the core merges them, the samples of points first: where times differ by noise, theirs gives a sample as it was authored.
 std::vector<double> timesOf(const PatchedMesh &mesh) {
     std::vector<double> times = mesh.points.attribute().times();
     for (const Patch &patch : mesh.patches) {
         std::vector<double> more = patch.times();
         times.insert(times.end(), more.begin(), more.end());
     }
-    return mergedTimes(times);
+    int64_t count = static_cast<int64_t>(times.size());
+    call(skinslide_stage_merge_times, times.data(), &count);
+    times.resize(static_cast<size_t>(count));
+    return times;
 }
 
-void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh) {
+void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, std::vector<std::string> *problems) {
     std::vector<double> pointTimes = mesh->points.attribute().times();
-    skinslide_stage_derived *derived = nullptr;
-    call(skinslide_stage_derived_create, mesh->mesh.get(), pointTimes.data(), static_cast<int64_t>(pointTimes.size()),
-         composition.root()->GetTimeCodesPerSecond(), &derived);
-    mesh->derivation.reset(derived);
+    mesh->derivation =
+        make<DerivedHandle>(skinslide_stage_derived_create, mesh->mesh.get(), pointTimes.data(),
+                            static_cast<int64_t>(pointTimes.size()), composition.root()->GetTimeCodesPerSecond());
+    skinslide_stage_derived *derived = mesh->derivation.get();
     std::vector<Property> cached = properties(composition, prim, SKINSLIDE_STAGE_DERIVED);
     for (const Property &property : cached) {
         std::vector<double> times = property.attribute().times();
@@ -198,14 +180,9 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh) 
         auto own = std::find_if(cached.begin(), cached.end(),
                                 [&](const Property &property) { return property.attribute().name() == output->name; });
         mesh->derived.push_back({output, own == cached.end() ? Property() : *own});
-    }
-}
-
-void sayBlocked(const PatchedMesh &mesh, std::vector<std::string> *problems) {
-    for (const Derived &derived : mesh.derived) {
-        if (derived.output->reason)
-            problems->push_back(TfStringPrintf("%s: %s cannot be recomputed, so they are blocked: %s", mesh.path.GetText(),
-                                               derived.output->name, derived.output->reason));
+        if (output->reason)
+            problems->push_back(TfStringPrintf("%s: %s cannot be recomputed, so they are blocked: %s", mesh->path.GetText(),
+                                               output->name, output->reason));
     }
 }
 
@@ -215,18 +192,15 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim
     auto mesh = std::make_shared<PatchedMesh>();
     mesh->path = prim.path();
     mesh->points = Property(composition, prim, skinslide_stage_next_input(SKINSLIDE_STAGE_MESH, nullptr));
-    skinslide_stage_mesh *handle = nullptr;
-    call(skinslide_stage_mesh_create, &handle);
-    mesh->mesh.reset(handle);
-    readGroup(composition, prim, SKINSLIDE_STAGE_MESH, handle);
-    mesh->patches = readPatches(composition, prim, finding, handle, params, problems);
+    mesh->mesh = make<MeshHandle>(skinslide_stage_mesh_create);
+    readGroup(composition, prim, SKINSLIDE_STAGE_MESH, mesh->mesh.get());
+    mesh->patches = readPatches(composition, prim, finding, mesh->mesh.get(), params, problems);
     if (mesh->patches.size() != static_cast<size_t>(finding.patch_count))
         return nullptr;
     if (std::any_of(mesh->patches.begin(), mesh->patches.end(), [](const Patch &patch) { return patch.needsSubdivision(); }))
-        readGroup(composition, prim, SKINSLIDE_STAGE_SUBDIVISION, handle);
+        readGroup(composition, prim, SKINSLIDE_STAGE_SUBDIVISION, mesh->mesh.get());
     mesh->times = timesOf(*mesh);
-    readDerived(composition, prim, mesh.get());
-    sayBlocked(*mesh, problems);
+    readDerived(composition, prim, mesh.get(), problems);
     return mesh;
 }
 
@@ -235,12 +209,11 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim
 std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composition, const Params &params,
                                                            std::vector<std::string> *problems) {
     std::vector<std::shared_ptr<const PatchedMesh>> meshes;
-    Search search(composition);
+    Found found = search(composition);
     bool any = false;
-    for (const Candidate &candidate : search.found()) {
-        const Prim &prim = candidate.prim;
+    for (const Prim &prim : found.prims) {
         std::string other = slidBy(prim.attribute(names().points));
-        Finding finding = find(composition, search, candidate, other);
+        Finding finding = find(composition, found, prim, other);
         any = any || finding->patch_count || finding->problem_count;
         // Without opinions of its own on the mesh a file just passes on what another computes.
         if (!other.empty() && !composition.root()->GetPrimAtPath(prim.path()))

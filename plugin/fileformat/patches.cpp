@@ -1,84 +1,98 @@
 #include "patches.h"
 
 #include "names.h"
-#include "textures.h"
+#include "sources.h"
 
+#include "pxr/usd/ar/asset.h"
+#include "pxr/usd/ar/resolver.h"
 #include "pxr/usd/sdf/assetPath.h"
 
 #include <algorithm>
 
 namespace skinslide {
 
+// ---- Files of textures ----
+
+namespace {
+
+// The bytes of a resolved file; false where it cannot be read. Those of one that is too large are not read.
+bool readBytes(const ArResolvedPath &path, int64_t largest, std::vector<uint8_t> *bytes, int64_t *size) {
+    std::shared_ptr<ArAsset> asset = isIrregular(path) ? nullptr : ArGetResolver().OpenAsset(path);
+    if (!asset)
+        return false;
+    *size = static_cast<int64_t>(asset->GetSize());
+    if (*size > largest)
+        return false;
+    bytes->resize(asset->GetSize());
+    return bytes->empty() || asset->Read(bytes->data(), bytes->size(), 0) == bytes->size();
+}
+
+// Gives every file that is asked for, and adds its path, resolved, to `files`, which may be null. Throws Fault.
+void giveFiles(skinslide_stage_controls *controls, std::set<std::string> *files) {
+    const skinslide_stage_need *need = nullptr;
+    while (call(skinslide_stage_controls_need, controls, &need), need) {
+        ArResolvedPath resolved = ArGetResolver().Resolve(need->path);
+        if (files)
+            files->insert(pathFor(need->path));
+        std::vector<uint8_t> bytes;
+        static const uint8_t nothing = 0;
+        std::string path = resolved.GetPathString();
+        skinslide_stage_file file = SKINSLIDE_STAGE_FILE_DEFAULT;
+        file.path = resolved ? path.c_str() : nullptr;
+        if (resolved && !skinslide_stage_controls_holds(controls, path.c_str()) &&
+            readBytes(resolved, need->largest, &bytes, &file.byte_count))
+            file.bytes = bytes.empty() ? &nothing : bytes.data();
+        call(skinslide_stage_controls_give, controls, &file);
+    }
+}
+
+// Adds the files that a texture names over time, where it has no tiles, be they there or not.
+void addUntiled(const Property &texture, std::set<std::string> *files) {
+    for (double time : texture.times()) {
+        VtValue value = texture.attribute().at(time);
+        std::string path = value.IsHolding<SdfAssetPath>() ? value.UncheckedGet<SdfAssetPath>().GetAssetPath() : "";
+        if (!path.empty() && path.find("<UDIM>") == std::string::npos)
+            files->insert(pathFor(path));
+    }
+}
+
+} // namespace
+
+// ---- The patch ----
+
 Patch::Patch(Composition &composition, const Prim &prim, const skinslide_stage_mesh *mesh, const std::string &name,
              const skinslide_stage_live &live)
-    : _name(name) {
-    skinslide_stage_patch *patch = nullptr;
-    call(skinslide_stage_patch_create, mesh, name.c_str(), &live, &patch);
-    _patch.reset(patch);
+    : _name(name), _patch(make<PatchHandle>(skinslide_stage_patch_create, mesh, name.c_str(), &live)) {
     for (const Property &setting : properties(composition, prim, SKINSLIDE_STAGE_PATCH, name))
-        setting.give(patch, skinslide_stage_patch_take, skinslide_stage_patch_check);
+        setting.give(_patch.get(), skinslide_stage_patch_take, skinslide_stage_patch_check);
     giveSubset(composition, prim);
-    skinslide_stage_controls *first = nullptr;
-    call(skinslide_stage_controls_create, patch, nullptr, &first);
-    _first.reset(first);
+    _first = make<ControlsHandle>(skinslide_stage_controls_create, _patch.get(), nullptr);
     _controls = properties(composition, prim, SKINSLIDE_STAGE_CONTROLS, name);
-    for (const Property &control : _controls)
-        call(skinslide_stage_controls_take, first, control.input(), control.first());
-    findTextures(composition, prim);
-    giveTextures(Attribute::first, first, &_files);
+    for (const Property &control : _controls) {
+        call(skinslide_stage_controls_take, _first.get(), control.input(), control.first());
+        if (skinslide_stage_is_texture(control.input()))
+            addUntiled(control, &_files);
+    }
+    if (const skinslide_stage_input *coordinates = skinslide_stage_controls_coordinates(_first.get())) {
+        _controls.emplace_back(composition, prim, coordinates);
+        call(skinslide_stage_controls_take, _first.get(), coordinates, _controls.back().first());
+    }
+    giveFiles(_first.get(), &_files);
     setup();
 }
 
 // The child prim of the patch's name, where there is one that counts.
 void Patch::giveSubset(Composition &composition, const Prim &prim) {
     TfTokenVector children = prim.childNames();
-    TfToken name(_name);
-    bool isThere = std::find(children.begin(), children.end(), name) != children.end();
-    std::optional<Prim> child;
-    if (isThere)
-        child = composition.prim(prim.path().AppendChild(name), prim.clips());
-    if (!child || !child->active()) {
-        call(skinslide_stage_patch_take_subset, _patch.get(), nullptr);
-        return;
-    }
-    std::string path = child->path().GetString();
-    TfToken type = child->typeName();
-    Attribute indices = child->attribute(names().indices);
-    Record element(child->attribute(names().elementType), Attribute::defaultTime), first(indices, Attribute::first);
-    first.rename(path + ".indices");
+    bool isThere = std::find(children.begin(), children.end(), TfToken(_name)) != children.end();
+    Prim child = isThere ? composition.prim(prim.path().AppendChild(TfToken(_name)), prim.clips()) : prim;
+    isThere = isThere && child.active();
+    TfToken type = child.typeName();
     skinslide_stage_subset subset = SKINSLIDE_STAGE_SUBSET_DEFAULT;
-    subset.path = path.c_str(), subset.type_name = type.GetText(), subset.is_subset = type == names().geomSubset;
-    subset.element_type = element, subset.indices = first;
-    call(skinslide_stage_patch_take_subset, _patch.get(), &subset);
-    for (double time : indices.varies() ? indices.times() : std::vector<double>()) {
-        Record later(indices, time);
-        later.rename(path + ".indices");
-        call(skinslide_stage_patch_check_subset, _patch.get(), later, time);
-    }
-}
-
-void Patch::findTextures(Composition &composition, const Prim &prim) {
-    for (const Property &control : _controls) {
-        if (std::string(control.input()->type_name) != "asset" || !control.attribute().authored())
-            continue;
-        _textures.push_back(control);
-        for (double time : control.times())
-            addUntiled(control, time, &_files);
-    }
-    if (const char *name = skinslide_stage_controls_coordinates(_first.get()))
-        _coordinates.emplace(composition, prim, TfToken(name));
-}
-
-bool Patch::texturesVary() const {
-    auto varies = [](const Property &property) { return property.varies(); };
-    return std::any_of(_textures.begin(), _textures.end(), varies) || (_coordinates && _coordinates->varies());
-}
-
-void Patch::giveTextures(double time, skinslide_stage_controls *controls, std::set<std::string> *files) const {
-    if (!_coordinates || !skinslide_stage_controls_coordinates(controls))
-        return;
-    call(skinslide_stage_controls_take_coordinates, controls, _coordinates->at(time));
-    giveFiles(controls, files);
+    subset.path = child.path().GetText(), subset.type_name = type.GetText(), subset.is_subset = type == names().geomSubset;
+    call(skinslide_stage_patch_take_subset, _patch.get(), isThere ? &subset : nullptr);
+    for (const Property &property : isThere ? properties(composition, child, SKINSLIDE_STAGE_SUBSET) : std::vector<Property>())
+        property.give(_patch.get(), skinslide_stage_patch_take, skinslide_stage_patch_check);
 }
 
 skinslide_patch_setup Patch::setup() const {
@@ -90,35 +104,28 @@ skinslide_patch_setup Patch::setup() const {
 // ---- Controls over time ----
 
 bool Patch::varies() const {
-    return texturesVary() ||
-           std::any_of(_controls.begin(), _controls.end(), [](const Property &control) { return control.varies(); });
+    return std::any_of(_controls.begin(), _controls.end(), [](const Property &control) { return control.varies(); });
 }
 
 std::vector<double> Patch::times() const {
     std::vector<double> times;
-    auto append = [&](const std::vector<double> &more) { times.insert(times.end(), more.begin(), more.end()); };
-    for (const Property &control : _controls)
-        append(control.times());
-    if (_coordinates)
-        append(_coordinates->times());
+    for (const Property &control : _controls) {
+        std::vector<double> own = control.times();
+        times.insert(times.end(), own.begin(), own.end());
+    }
     return times;
 }
 
 ControlsHandle Patch::frames() const {
-    skinslide_stage_controls *frames = nullptr;
-    call(skinslide_stage_controls_create, _patch.get(), _first.get(), &frames);
-    return ControlsHandle(frames);
+    return make<ControlsHandle>(skinslide_stage_controls_create, _patch.get(), _first.get());
 }
 
 skinslide_controls Patch::controlsAt(double time, skinslide_stage_controls *frames) const {
-    bool textures = texturesVary();
     for (const Property &control : _controls) {
-        bool isTexture = std::string(control.input()->type_name) == "asset";
-        if (isTexture ? textures : control.varies())
+        if (control.varies())
             call(skinslide_stage_controls_take, frames, control.input(), control.at(time));
     }
-    if (textures)
-        giveTextures(time, frames, nullptr);
+    giveFiles(frames, nullptr);
     skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     call(skinslide_stage_controls_get, frames, &controls);
     return controls;

@@ -4,7 +4,6 @@
 
 #include "values.h"
 
-#include <optional>
 #include <set>
 
 namespace skinslide {
@@ -37,15 +36,11 @@ class Patch {
 
   private:
     void giveSubset(Composition &composition, const Prim &prim);
-    void findTextures(Composition &composition, const Prim &prim);
-    void giveTextures(double time, skinslide_stage_controls *controls, std::set<std::string> *files) const;
-    bool texturesVary() const;
 
     std::string _name;
     PatchHandle _patch;
     ControlsHandle _first;
-    std::vector<Property> _controls, _textures; // all, and those of them that are files
-    std::optional<Property> _coordinates;       // of textures, where there are any
+    std::vector<Property> _controls; // with the coordinates of textures, where there are any
     std::set<std::string> _files;
 };
 

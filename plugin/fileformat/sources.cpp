@@ -27,7 +27,7 @@ namespace {
 
 std::string readFile(const std::string &resolvedPath) {
     if (isIrregular(resolvedPath))
-        throw Fault("is not a regular file");
+        throw Fault(skinslide_stage_say(SKINSLIDE_SAYING_IRREGULAR));
     std::shared_ptr<ArAsset> asset = ArGetResolver().OpenAsset(ArResolvedPath(resolvedPath));
     if (!asset)
         throw Fault("cannot be opened");
@@ -64,6 +64,11 @@ std::string readText(const std::string &resolvedPath) {
 
 // ---- What it leads to ----
 
+std::string pathFor(const std::string &asset) {
+    ArResolvedPath resolved = ArGetResolver().Resolve(asset);
+    return (resolved ? resolved : ArGetResolver().ResolveForNewAsset(asset)).GetPathString();
+}
+
 bool isIrregular(const std::string &resolvedPath) {
     std::string file = ArSplitPackageRelativePathOuter(resolvedPath).first;
     return TfPathExists(file, true) && !TfIsFile(file, true) && !TfIsDir(file, true);
@@ -74,10 +79,9 @@ SdfLayerRefPtr openLayer(const std::string &identifier) {
     SdfLayer::FileFormatArguments arguments;
     SdfLayer::SplitIdentifier(identifier, &path, &arguments);
     path = ArGetResolver().Resolve(path).GetPathString();
-    if (Reading::isRead(path))
-        throw Fault("leads back to itself");
+    Reading::refuse(path);
     if (isIrregular(path))
-        throw fault("leads to %s, which is not a regular file", path.c_str());
+        throw fault("leads to %s, which %s", path.c_str(), skinslide_stage_say(SKINSLIDE_SAYING_IRREGULAR));
     TfErrorMark mark;
     SdfLayerRefPtr layer = SdfLayer::FindOrOpen(identifier);
     mark.Clear();
@@ -118,8 +122,7 @@ class Walk {
         if (resolved && Reading::isRead(resolved))
             throw fault("leads back to itself through %s, be it in a variant that is not selected",
                         from.layer->GetResolvedPath().GetPathString().c_str());
-        // A file that appears later is a change too.
-        std::string path = resolved ? resolved.GetPathString() : ArGetResolver().ResolveForNewAsset(bare).GetPathString();
+        std::string path = pathFor(bare);
         if (path.empty())
             return;
         found.paths.insert(path);

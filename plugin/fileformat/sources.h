@@ -28,6 +28,9 @@ std::string readText(const std::string &resolvedPath);
 // An asset path, evaluated where it is an expression; empty where that fails.
 std::string evaluate(const std::string &asset, const VtDictionary &variables);
 
+// The path of an asset, resolved: where it would be, where nothing is there, for a file that appears later is a change too.
+std::string pathFor(const std::string &asset);
+
 // Whether a path is of a pipe, a socket or a device: opened, it may be waited for without end.
 bool isIrregular(const std::string &resolvedPath);
 

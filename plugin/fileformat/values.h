@@ -25,12 +25,11 @@ template <class T, void (*destroy)(T *)> struct Destroyer {
         destroy(handle);
     }
 };
-using MeshHandle = std::unique_ptr<skinslide_stage_mesh, Destroyer<skinslide_stage_mesh, skinslide_stage_mesh_destroy>>;
-using PatchHandle = std::unique_ptr<skinslide_stage_patch, Destroyer<skinslide_stage_patch, skinslide_stage_patch_destroy>>;
-using ControlsHandle =
-    std::unique_ptr<skinslide_stage_controls, Destroyer<skinslide_stage_controls, skinslide_stage_controls_destroy>>;
-using DerivedHandle =
-    std::unique_ptr<skinslide_stage_derived, Destroyer<skinslide_stage_derived, skinslide_stage_derived_destroy>>;
+template <class T, void (*destroy)(T *)> using Handle = std::unique_ptr<T, Destroyer<T, destroy>>;
+using MeshHandle = Handle<skinslide_stage_mesh, skinslide_stage_mesh_destroy>;
+using PatchHandle = Handle<skinslide_stage_patch, skinslide_stage_patch_destroy>;
+using ControlsHandle = Handle<skinslide_stage_controls, skinslide_stage_controls_destroy>;
+using DerivedHandle = Handle<skinslide_stage_derived, skinslide_stage_derived_destroy>;
 
 // Calls a function of the core; throws Fault with its sentence where it fails.
 template <class Function, class... Arguments> void call(Function function, Arguments &&...arguments) {
@@ -39,12 +38,18 @@ template <class Function, class... Arguments> void call(Function function, Argum
         throw Fault(error.message);
 }
 
+// What a function of the core makes.
+template <class Handle, class Function, class... Arguments> Handle make(Function function, Arguments &&...arguments) {
+    typename Handle::pointer made = nullptr;
+    call(function, std::forward<Arguments>(arguments)..., &made);
+    return Handle(made);
+}
+
 // What an attribute has at a time, as a record that points into this.
 class Record {
   public:
-    // anchor   what paths of files are relative to; null: they are as they should be
     // indices  of an indexed primvar
-    Record(const Attribute &attribute, double time, const Anchor *anchor = nullptr, const Attribute *indices = nullptr);
+    Record(const Attribute &attribute, double time, const Attribute *indices = nullptr);
     // Of something that is no attribute.
     Record(const std::string &name, const VtValue &value);
     Record(const Record &) = delete;
@@ -56,7 +61,6 @@ class Record {
     const VtValue &value() const {
         return _value;
     }
-    void rename(const std::string &name);
 
   private:
     void take();
@@ -75,8 +79,6 @@ class Property {
     // patch  whose input it is; empty: the mesh's own
     // Throws Fault where it is authored as something that this reader cannot read.
     Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch = "");
-    // A primvar that is no input, by its full name.
-    Property(Composition &composition, const Prim &prim, const TfToken &primvar);
 
     const skinslide_stage_input *input() const {
         return _input;
@@ -84,34 +86,26 @@ class Property {
     const Attribute &attribute() const {
         return _values;
     }
-    const Anchor &anchor() const {
-        return _anchor;
-    }
     bool varies() const {
         return _values.authored() && (_values.varies() || _indices.varies());
     }
     std::vector<double> times() const; // of values and of indices, where they vary
     Record at(double time) const {
-        return Record(_values, time, &_anchor, _indices.authored() ? &_indices : nullptr);
+        return Record(_values, time, _indices.authored() ? &_indices : nullptr);
     }
     Record first() const {
-        return at(_input && _input->when == SKINSLIDE_STAGE_DEFAULT_TIME ? Attribute::defaultTime : Attribute::first);
+        return at(_input->when == SKINSLIDE_STAGE_DEFAULT_TIME ? Attribute::defaultTime : Attribute::first);
     }
     // Hands the value over, and later samples of what must stay the same. Throws Fault.
     template <class Handle, class Take, class Check> void give(Handle *handle, Take take, Check check) const {
         call(take, handle, _input, first());
-        if (_input->when == SKINSLIDE_STAGE_STILL) {
-            for (double time : times())
-                call(check, handle, _input, at(time), time);
-        }
+        for (double time : _input->when == SKINSLIDE_STAGE_STILL ? times() : std::vector<double>())
+            call(check, handle, _input, at(time), time);
     }
 
   private:
-    void refuseWhatCannotBeRead() const;
-
     const skinslide_stage_input *_input = nullptr;
     Attribute _values, _indices;
-    Anchor _anchor;
 };
 
 // Every property of a group, in the order in which the core wants them. Throws Fault.
@@ -121,12 +115,6 @@ std::vector<Property> properties(Composition &composition, const Prim &prim, ski
 // The prim that an inherited primvar comes from: the nearest ancestor that has any, where that is constant; else the prim
 // itself.
 Prim ownerOf(Composition &composition, const Prim &prim, const TfToken &primvar);
-
-// Times in order, each once, as the core merges them.
-std::vector<double> mergedTimes(std::vector<double> times);
-
-// 1012 for 1012.0 and 1012.25 for 1012.25; "default" where it is the default time.
-std::string frameText(double time);
 
 inline const float *floatsOf(const VtVec3fArray &points) {
     return reinterpret_cast<const float *>(points.cdata());

@@ -303,12 +303,15 @@ static skinslide_status run_stage_patch(const skinslide_stage_mesh *mesh, skinsl
                                         skinslide_error *error) {
     const skinslide_value faces = INTS("elbow.indices", 0, 1, 2, 3);
     skinslide_stage_subset subset = SKINSLIDE_STAGE_SUBSET_DEFAULT;
-    subset.path = "/elbow", subset.is_subset = 1, subset.indices = &faces;
+    const skinslide_stage_input *indices = input_of(SKINSLIDE_STAGE_SUBSET, NULL, "indices");
+    subset.path = "/elbow", subset.is_subset = 1;
     skinslide_status status = skinslide_stage_patch_create(mesh, "elbow", NULL, patch, error);
     if (!status)
         status = skinslide_stage_patch_take_subset(*patch, &subset, error);
     if (!status)
-        status = skinslide_stage_patch_check_subset(*patch, &faces, 1, error);
+        status = skinslide_stage_patch_take(*patch, indices, &faces, error);
+    if (!status)
+        status = skinslide_stage_patch_check(*patch, indices, &faces, 1, error);
     if (!status)
         status = patch_takes(*patch, "edges", INTS("edges", 0, 1), error);
     return status ? status : patch_takes(*patch, "mapSt", text_of("mapSt", "uv"), error);
@@ -326,8 +329,9 @@ static skinslide_status run_stage_controls(const stage_scene *s, skinslide_stage
     if (!status)
         status = controls_take(controls, "weightMap", asset_of("weightMap", "w.<UDIM>.exr"), error);
     if (!status)
-        status = skinslide_stage_controls_take_coordinates(controls, &st, error);
-    while (!status && skinslide_stage_controls_need(controls))
+        status = skinslide_stage_controls_take(controls, skinslide_stage_controls_coordinates(controls), &st, error);
+    const skinslide_stage_need *need = NULL;
+    while (!status && !(status = skinslide_stage_controls_need(controls, &need, error)) && need)
         status = skinslide_stage_controls_give(controls, &file, error);
     return status;
 }

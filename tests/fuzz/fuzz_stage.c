@@ -119,7 +119,10 @@ static void use_patch(stream *s, const skinslide_stage_mesh *mesh) {
     if (skinslide_stage_patch_create(mesh, "elbow", NULL, &patch, &error))
         return;
     take_all(s, SKINSLIDE_STAGE_PATCH, take_patch, patch);
-    expect_said(skinslide_stage_patch_take_subset(patch, NULL, &error), &error);
+    skinslide_stage_subset subset = SKINSLIDE_STAGE_SUBSET_DEFAULT;
+    subset.path = "/mesh/elbow", subset.is_subset = 1;
+    expect_said(skinslide_stage_patch_take_subset(patch, take_below(s, 2) ? &subset : NULL, &error), &error);
+    take_all(s, SKINSLIDE_STAGE_SUBSET, take_patch, patch);
     require(!skinslide_stage_controls_create(patch, NULL, &controls, &error));
     take_all(s, SKINSLIDE_STAGE_CONTROLS, take_controls, controls);
     skinslide_status status = skinslide_stage_patch_get(patch, controls, &setup, &error);

@@ -94,6 +94,25 @@ TEXTURES = [
         ),
     ),
     Good(
+        "texture: none at first",
+        all_of(
+            st(),
+            image("w.exr", noise(3, 0, 1)),
+            mapped("weight", "./w.exr", 1002),
+            blocked_at(f"{PLACE}:weightMap", 1001),
+        ),
+    ),
+    Good(
+        "texture: one over time beside one that is not",
+        all_of(
+            st(),
+            image("q.exr", noise(7, 0.2, 5)),
+            mapped("forceDensity", "./q.exr"),
+            *(image(f"w.{frame:.0f}.exr", noise(int(frame), 0, 1)) for frame in FRAMES),
+            *(mapped("weight", f"./w.{frame:.0f}.exr", frame) for frame in FRAMES),
+        ),
+    ),
+    Good(
         "texture: double coordinates",
         all_of(
             put("st", Types.TexCoord2dArray, "vertex", [Gf.Vec2d(k / 49, 0.3) for k in range(49)]),

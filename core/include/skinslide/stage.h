@@ -8,10 +8,12 @@
  *     1. A prim that mentions the schema: its facts to skinslide_stage_find, which gives the patches it carries, why they
  *        cannot be slid, and what to warn of.
  *     2. skinslide_stage_mesh_create, and each input of the group MESH to skinslide_stage_mesh_take.
- *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, and the
- *        child prim of the patch's name to skinslide_stage_patch_take_subset.
+ *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, the child
+ *        prim of the patch's name to skinslide_stage_patch_take_subset and, where there is one, each input of the group SUBSET
+ *        to skinslide_stage_patch_take.
  *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
- *        skinslide_stage_controls_take; then, for textures, the texture coordinates and the files that it asks for.
+ *        skinslide_stage_controls_take; then, for textures, the input that skinslide_stage_controls_coordinates gives, and the
+ *        files that skinslide_stage_controls_need asks for.
  *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the inputs of the group SUBDIVISION to
  *        skinslide_stage_mesh_take.
  *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes.
@@ -102,7 +104,9 @@ typedef enum skinslide_stage_group {
     SKINSLIDE_STAGE_PATCH,       /* to skinslide_stage_patch_take */
     SKINSLIDE_STAGE_CONTROLS,    /* to skinslide_stage_controls_take */
     SKINSLIDE_STAGE_DERIVED,     /* to skinslide_stage_derived_take */
-    SKINSLIDE_STAGE_LIVE         /* to skinslide_stage_live_take */
+    SKINSLIDE_STAGE_LIVE,        /* to skinslide_stage_live_take */
+    SKINSLIDE_STAGE_SUBSET,      /* of the child prim of a patch's name: to skinslide_stage_patch_take */
+    SKINSLIDE_STAGE_COORDINATES  /* no group to list, but what skinslide_stage_controls_coordinates gives */
 } skinslide_stage_group;
 
 /* When a value is fetched. The first time is that of the first sample; where there are none, the default. */
@@ -126,6 +130,9 @@ typedef struct skinslide_stage_input {
     skinslide_bool is_inherited; /* where the mesh has none, a constant one of the nearest ancestor that has any counts */
 } skinslide_stage_input;
 
+/* Whether the values of an input are paths of files. */
+SKINSLIDE_API skinslide_bool skinslide_stage_is_texture(const skinslide_stage_input *input);
+
 /* The first input of a group, for NULL; then the one after each; NULL after the last. They live as long as the library, and are
  * to be handed over in this order. */
 SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_input(skinslide_stage_group group,
@@ -138,6 +145,16 @@ SKINSLIDE_API const char *skinslide_stage_schema(void);
 
 /* Whether a name may be a patch's, as far as the schema goes: not "", nor names that it has other uses for. */
 SKINSLIDE_API skinslide_bool skinslide_stage_can_name_patch(const char *name);
+
+/* Words of sentences that readers say themselves. */
+typedef enum skinslide_saying {
+    SKINSLIDE_SAYING_NO_TYPE,  /* "prim without a type", where a type would stand */
+    SKINSLIDE_SAYING_NO_FILE,  /* "there is no such file" */
+    SKINSLIDE_SAYING_IRREGULAR /* "is not a regular file" */
+} skinslide_saying;
+
+/* A static string; NULL for another number. */
+SKINSLIDE_API const char *skinslide_stage_say(skinslide_saying saying);
 
 /* Facts of a prim. Start from SKINSLIDE_STAGE_PRIM_DEFAULT. */
 typedef struct skinslide_stage_prim {
@@ -293,7 +310,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_create(const skinslide_stag
 /* NULL does nothing. Its controls must be gone before it. */
 SKINSLIDE_API void skinslide_stage_patch_destroy(skinslide_stage_patch *patch);
 
-/* Takes the value of an input of the group PATCH. The primvar of faces may be any record of that kind, of any name.
+/* Takes the value of an input of the group PATCH or, after its subset was taken, of SUBSET. The primvar of faces may be any record
+ * of that kind, of any name; where it chose faces those of the subset are not looked at.
  * Fails with BAD_PATCH (faces), BAD_CONTROL (the others; each names what it cannot use), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                                           const skinslide_value *value, skinslide_error *error);
@@ -306,29 +324,23 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_check(const skinslide_stage
 
 /* The child prim of a patch's name. Start from SKINSLIDE_STAGE_SUBSET_DEFAULT. */
 typedef struct skinslide_stage_subset {
-    size_t size;                         /* sizeof(skinslide_stage_subset) */
-    const char *path;                    /* of the prim, for sentences */
-    const char *type_name;               /* of the prim; NULL: it has none */
-    skinslide_bool is_subset;            /* it is a GeomSubset */
-    const skinslide_value *element_type; /* its token, at the default time; NULL: none, which is face */
-    const skinslide_value *indices;      /* its int[], at the first time, named PATH.indices; NULL: none */
+    size_t size;              /* sizeof(skinslide_stage_subset) */
+    const char *path;         /* of the prim, for sentences */
+    const char *type_name;    /* of the prim; NULL: it has none */
+    skinslide_bool is_subset; /* it is a GeomSubset */
 } skinslide_stage_subset;
 
 #define SKINSLIDE_STAGE_SUBSET_DEFAULT                                                                                         \
-    { sizeof(skinslide_stage_subset), 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_stage_subset), 0, 0, 0 }
 
-/* Takes the faces of a child prim, or learns from NULL that there is none. Where the primvar chose faces nothing is looked at.
- * Fails with BAD_PATCH (no such child, no GeomSubset of faces, an empty one, a face out of range), BAD_ARGUMENT,
- * OUT_OF_MEMORY. */
+/* Takes the child prim whose inputs follow, or learns from NULL that there is none. Where the primvar chose faces nothing is looked
+ * at.
+ * Fails with BAD_PATCH (no such child, no GeomSubset), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
 
-/* Checks that a later sample of the child's indices is as that which was taken. Fails with BAD_PATCH, BAD_ARGUMENT. */
-SKINSLIDE_API skinslide_status skinslide_stage_patch_check_subset(const skinslide_stage_patch *patch,
-                                                                  const skinslide_value *indices, double frame,
-                                                                  skinslide_error *error);
-
-/* The faces chosen so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before. */
+/* The faces chosen so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before.
+ *   face_count  out or NULL */
 SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
 
 /* Whether its interpolation depends on how the mesh is subdivided. */
@@ -351,23 +363,18 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_create(const skinslide_s
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_controls_destroy(skinslide_stage_controls *controls);
 
-/* Takes the value of an input of the group CONTROLS. Paint is expanded into memory that the controls keep; off the patch,
- * where it is often 0, it does not count.
- * Fails with BAD_CONTROL (names what it cannot use), BAD_ARGUMENT, OUT_OF_MEMORY. */
+/* Takes the value of an input of the group CONTROLS, or of the one of texture coordinates. Paint is expanded into memory that the
+ * controls keep; off the patch, where it is often 0, it does not count.
+ * Fails with BAD_CONTROL (names what it cannot use; of texture coordinates skinslide_stage_controls_need says it),
+ * BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls,
                                                              const skinslide_stage_input *input, const skinslide_value *value,
                                                              skinslide_error *error);
 
-/* Textures are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, whose name
- * this gives, "primvars:st", or NULL where there is no texture; and each file that skinslide_stage_controls_need asks for.
- * Where the primvar or an asset varies, a frame brings every asset and the primvar again. The name lives as long as the
- * patch. */
-SKINSLIDE_API const char *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls);
-
-/* Takes the texture coordinates of all textures. Fails with BAD_CONTROL (none: says which setting names them; as
- * skinslide_stage_coordinates; coordinates that are in no tile), BAD_ARGUMENT, OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_stage_controls_take_coordinates(skinslide_stage_controls *controls,
-                                                                         const skinslide_value *value, skinslide_error *error);
+/* Textures are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, which this
+ * gives as one more input, primvars:st for one, or NULL where no asset is authored; and each file that
+ * skinslide_stage_controls_need asks for. A frame brings what varies of them. The input lives as long as the patch. */
+SKINSLIDE_API const skinslide_stage_input *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls);
 
 /* A file that a texture is made of. */
 typedef struct skinslide_stage_need {
@@ -377,9 +384,12 @@ typedef struct skinslide_stage_need {
     int64_t largest;                    /* bytes of a file; those of larger ones need not be read, which are refused */
 } skinslide_stage_need;
 
-/* The next file that is wanted, until it is given; NULL where there is none. It lives until the next call that changes the
- * controls. */
-SKINSLIDE_API const skinslide_stage_need *skinslide_stage_controls_need(const skinslide_stage_controls *controls);
+/* The next file that is wanted, until it is given. Ask once a frame's values are taken.
+ *   need  out  NULL where there is none; it lives until the next call that changes the controls
+ * Fails with BAD_CONTROL (no texture coordinates: says which setting names them; as skinslide_stage_coordinates; coordinates
+ * that are in no tile), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_controls_need(skinslide_stage_controls *controls,
+                                                             const skinslide_stage_need **need, skinslide_error *error);
 
 /* A file that was asked for. Start from SKINSLIDE_STAGE_FILE_DEFAULT: there is none. */
 typedef struct skinslide_stage_file {

@@ -119,25 +119,35 @@ static void faces_must_stay_the_same(void **state) {
 
 /* ---- Subsets ---- */
 
-static skinslide_stage_subset subset_of(const skinslide_value *indices) {
+static const skinslide_value unsaid = SKINSLIDE_VALUE_DEFAULT;
+
+static skinslide_stage_subset subset_of(void) {
     skinslide_stage_subset subset = SKINSLIDE_STAGE_SUBSET_DEFAULT;
-    subset.path = "/mesh/elbow", subset.type_name = "GeomSubset", subset.is_subset = 1, subset.indices = indices;
+    subset.path = "/mesh/elbow", subset.type_name = "GeomSubset", subset.is_subset = 1;
     return subset;
+}
+
+static skinslide_status subset_takes(const scene *s, const char *name, skinslide_value value) {
+    return skinslide_stage_patch_take(s->patch, input_of(SKINSLIDE_STAGE_SUBSET, NULL, name), &value, &error);
 }
 
 static void faces_of_a_subset(void **state) {
     (void)state;
     scene s = set_up();
-    const skinslide_value indices = INTS("/mesh/elbow.indices", 5, 0, 3, 0), face = text_of("elementType", "face");
-    skinslide_stage_subset subset = subset_of(&indices);
+    const skinslide_stage_input *input = input_of(SKINSLIDE_STAGE_SUBSET, NULL, "indices");
+    const skinslide_value indices = INTS("indices", 5, 0, 3, 0), other = INTS("indices", 5, 0, 3);
+    skinslide_stage_subset subset = subset_of();
     assert_ok(patch_takes(s.patch, "patch", nothing_of(PRIMVAR), &error), &error);
+    assert_int_equal(subset_takes(&s, "indices", indices), SKINSLIDE_BAD_ARGUMENT); /* of no subset */
     assert_ok(skinslide_stage_patch_take_subset(s.patch, &subset, &error), &error);
+    assert_ok(subset_takes(&s, "elementType", unsaid), &error);
+    assert_ok(subset_takes(&s, "indices", indices), &error);
     expect_faces(&s, 3, (int32_t[]){0, 3, 5});
-    subset.element_type = &face;
-    assert_ok(skinslide_stage_patch_take_subset(s.patch, &subset, &error), &error);
-    const skinslide_value other = INTS("/mesh/elbow.indices", 5, 0, 3);
-    assert_ok(skinslide_stage_patch_check_subset(s.patch, &indices, 1, &error), &error);
-    assert_fails(skinslide_stage_patch_check_subset(s.patch, &other, 1002, &error), &error, SKINSLIDE_BAD_PATCH,
+    assert_int_equal(skinslide_stage_patch_faces(s.patch, NULL)[1], 3);
+    assert_ok(subset_takes(&s, "elementType", text_of("elementType", "face")), &error);
+    assert_ok(subset_takes(&s, "indices", indices), &error);
+    assert_ok(skinslide_stage_patch_check(s.patch, input, &indices, 1, &error), &error);
+    assert_fails(skinslide_stage_patch_check(s.patch, input, &other, 1002, &error), &error, SKINSLIDE_BAD_PATCH,
                  "/mesh/elbow.indices changes at frame 1002; it must stay the same over time");
     tear_down(&s);
 }
@@ -145,42 +155,47 @@ static void faces_of_a_subset(void **state) {
 static void a_primvar_wins_over_a_subset(void **state) {
     (void)state;
     scene s = set_up();
-    const skinslide_value indices = INTS("/mesh/elbow.indices", 5);
-    skinslide_stage_subset subset = subset_of(&indices);
+    skinslide_stage_subset subset = subset_of();
     assert_ok(patch_takes(s.patch, "patch", painted_as(INTS(PRIMVAR, 0, 1, 0, 0, 0, 0), "uniform"), &error), &error);
     assert_ok(skinslide_stage_patch_take_subset(s.patch, &subset, &error), &error);
+    assert_ok(subset_takes(&s, "indices", INTS("indices", 5)), &error);
     assert_ok(skinslide_stage_patch_take_subset(s.patch, NULL, &error), &error);
     expect_faces(&s, 1, (int32_t[]){1});
     tear_down(&s);
 }
 
-static void expect_subset(scene *s, const skinslide_stage_subset *subset, const char *text) {
+/* What is wrong with a subset is said once, and then of each again. */
+static void expect_subset(const scene *s, skinslide_value element, skinslide_value indices, const char *text) {
+    const skinslide_stage_subset subset = subset_of();
+    assert_ok(skinslide_stage_patch_take_subset(s->patch, &subset, &error), &error);
+    bool is_element = element.type != SKINSLIDE_VALUE_NONE;
+    skinslide_status first = subset_takes(s, "elementType", element);
+    assert_fails(is_element ? first : subset_takes(s, "indices", indices), &error, SKINSLIDE_BAD_PATCH, text);
+    assert_ok(subset_takes(s, "indices", indices), &error);
+}
+
+static void expect_no_subset(const scene *s, const skinslide_stage_subset *subset, const char *text) {
     assert_fails(skinslide_stage_patch_take_subset(s->patch, subset, &error), &error, SKINSLIDE_BAD_PATCH, text);
+    assert_ok(subset_takes(s, "indices", INTS("indices", 0)), &error);
 }
 
 static void bad_subsets_are_named(void **state) {
     (void)state;
     scene s = set_up();
-    const skinslide_value outside = INTS("/mesh/elbow.indices", 0, 6, 7), below = INTS("/mesh/elbow.indices", 0, -1);
-    const skinslide_value floats = FLOATS("/mesh/elbow.indices", 1), point = text_of("elementType", "point");
-    const skinslide_value other = other_of("elementType", "int");
-    skinslide_stage_subset subset = subset_of(NULL);
-    expect_subset(&s, NULL, "has no faces: there is neither " PRIMVAR " nor a GeomSubset elbow under the mesh");
-    expect_subset(&s, &subset, "has no faces: the GeomSubset /mesh/elbow is empty");
-    subset.indices = &outside;
-    expect_subset(&s, &subset, "the GeomSubset /mesh/elbow has face 6, but the mesh has 6 faces");
-    subset.indices = &below;
-    expect_subset(&s, &subset, "the GeomSubset /mesh/elbow has face -1, but the mesh has 6 faces");
-    subset.indices = &floats;
-    expect_subset(&s, &subset, "/mesh/elbow.indices is not an array of int");
-    subset.element_type = &point;
-    expect_subset(&s, &subset, "the GeomSubset /mesh/elbow has elementType point; it must be face");
-    subset.element_type = &other;
-    expect_subset(&s, &subset, "the GeomSubset /mesh/elbow has elementType int; it must be face");
+    const skinslide_value good = INTS("indices", 0);
+    expect_subset(&s, unsaid, unsaid, "has no faces: the GeomSubset /mesh/elbow is empty");
+    expect_subset(&s, unsaid, INTS("indices", 0, 6, 7), "the GeomSubset /mesh/elbow has face 6, but the mesh has 6 faces");
+    expect_subset(&s, unsaid, INTS("indices", 0, -1), "the GeomSubset /mesh/elbow has face -1, but the mesh has 6 faces");
+    expect_subset(&s, unsaid, FLOATS("indices", 1), "/mesh/elbow.indices is not an array of int");
+    expect_subset(&s, text_of("elementType", "point"), good,
+                  "the GeomSubset /mesh/elbow has elementType point; it must be face");
+    expect_subset(&s, other_of("elementType", "int"), good, "the GeomSubset /mesh/elbow has elementType int; it must be face");
+    skinslide_stage_subset subset = subset_of();
+    expect_no_subset(&s, NULL, "has no faces: there is neither " PRIMVAR " nor a GeomSubset elbow under the mesh");
     subset.is_subset = 0, subset.type_name = "Xform";
-    expect_subset(&s, &subset, "has no faces: /mesh/elbow is a Xform, not a GeomSubset");
+    expect_no_subset(&s, &subset, "has no faces: /mesh/elbow is a Xform, not a GeomSubset");
     subset.type_name = NULL;
-    expect_subset(&s, &subset, "has no faces: /mesh/elbow is a prim without a type, not a GeomSubset");
+    expect_no_subset(&s, &subset, "has no faces: /mesh/elbow is a prim without a type, not a GeomSubset");
     subset.path = NULL;
     assert_int_equal(skinslide_stage_patch_take_subset(s.patch, &subset, &error), SKINSLIDE_BAD_ARGUMENT);
     subset.size = 0;

@@ -103,7 +103,7 @@ static skinslide_status take_mesh(void *handle, const skinslide_stage_input *inp
 
 static skinslide_status take_patch(void *handle, const skinslide_stage_input *input, const skinslide_value *value) {
     skinslide_status status = skinslide_stage_patch_take(handle, input, value, &error);
-    if (!status && value->type != SKINSLIDE_VALUE_NONE)
+    if (!status && value->type != SKINSLIDE_VALUE_NONE && input->when != SKINSLIDE_STAGE_DEFAULT_TIME)
         assert_ok(skinslide_stage_patch_check(handle, input, value, 1, &error), &error);
     return status;
 }
@@ -141,18 +141,21 @@ static void give_files(dice *d, const test_mesh *mesh, skinslide_stage_controls 
         st.value.type = SKINSLIDE_VALUE_FLOAT, st.value.width = 2, st.value.is_array = 1, st.value.indices = NULL,
         free(st.data), st.value.count = mesh->vertex_count, st.value.interpolation = "vertex",
         st.value.data = st.data = random_numbers(d, SKINSLIDE_VALUE_FLOAT, 2 * st.value.count);
-    expect_said(skinslide_stage_controls_take_coordinates(controls, &st.value, &error));
+    expect_said(skinslide_stage_controls_take(controls, skinslide_stage_controls_coordinates(controls), &st.value, &error));
     free_value(&st);
     const float texel = (float)roll_between(d, -0.5, 2);
     const skinslide_channel channel = {sizeof(skinslide_channel), "R", &texel};
     skinslide_bytes *bytes = NULL;
     assert_ok(skinslide_exr_encode(&channel, 1, 1, 1, SKINSLIDE_WRAP_CLAMP, &bytes, &error), &error);
-    for (int32_t i = 0; skinslide_stage_controls_need(controls) && i < MOST_NUMBERS; i++) {
+    const skinslide_stage_need *need = NULL;
+    expect_said(skinslide_stage_controls_need(controls, &need, &error));
+    for (int32_t i = 0; need && i < MOST_NUMBERS; i++) {
         skinslide_stage_file file = SKINSLIDE_STAGE_FILE_DEFAULT;
-        file.path = roll_below(d, 20) ? skinslide_stage_controls_need(controls)->path : NULL;
+        file.path = roll_below(d, 20) ? need->path : NULL;
         file.bytes = roll_below(d, 20) ? bytes->data : NULL;
         file.byte_count = roll_below(d, 20) ? bytes->size : roll_below(d, (int32_t)bytes->size);
         expect_said(skinslide_stage_controls_give(controls, &file, &error));
+        expect_said(skinslide_stage_controls_need(controls, &need, &error));
     }
     skinslide_bytes_destroy(bytes);
 }
@@ -186,7 +189,10 @@ static void use_patch(dice *d, const test_mesh *mesh, const skinslide_stage_mesh
         expect_said(patch_takes(
             patch, "patch",
             painted_as(array_of("patch", SKINSLIDE_VALUE_INT32, 1, mesh->face_count, mesh->face_counts), "uniform"), &error));
-    expect_said(skinslide_stage_patch_take_subset(patch, NULL, &error));
+    skinslide_stage_subset subset = SKINSLIDE_STAGE_SUBSET_DEFAULT;
+    subset.path = "/mesh/elbow", subset.is_subset = 1;
+    expect_said(skinslide_stage_patch_take_subset(patch, roll_below(d, 2) ? &subset : NULL, &error));
+    take_all(d, mesh, SKINSLIDE_STAGE_SUBSET, take_patch, patch, 0);
     assert_ok(skinslide_stage_controls_create(patch, NULL, &first, &error), &error);
     take_all(d, mesh, SKINSLIDE_STAGE_CONTROLS, take_controls, first, 6);
     give_files(d, mesh, first);

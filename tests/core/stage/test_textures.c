@@ -51,6 +51,16 @@ static skinslide_bytes *file_of(float value) {
     return bytes;
 }
 
+static skinslide_status take_coordinates(skinslide_stage_controls *controls, skinslide_value st) {
+    return skinslide_stage_controls_take(controls, skinslide_stage_controls_coordinates(controls), &st, &error);
+}
+
+static const skinslide_stage_need *needed(skinslide_stage_controls *controls) {
+    const skinslide_stage_need *need = NULL;
+    assert_ok(skinslide_stage_controls_need(controls, &need, &error), &error);
+    return need;
+}
+
 static skinslide_status give(skinslide_stage_controls *controls, const char *path, float value) {
     skinslide_bytes *bytes = file_of(value);
     skinslide_stage_file file = SKINSLIDE_STAGE_FILE_DEFAULT;
@@ -67,8 +77,9 @@ static skinslide_status give_none(skinslide_stage_controls *controls) {
 static void ask(skinslide_stage_controls *controls, const char *name, const char *asset, float scale) {
     skinslide_value st = st_of(scale);
     assert_ok(controls_take(controls, name, asset_of(name, asset), &error), &error);
-    assert_string_equal(skinslide_stage_controls_coordinates(controls), "primvars:st");
-    assert_ok(skinslide_stage_controls_take_coordinates(controls, &st, &error), &error);
+    assert_string_equal(skinslide_stage_controls_coordinates(controls)->name, "st");
+    assert_ok(take_coordinates(controls, st), &error);
+    assert_non_null(needed(controls));
 }
 
 static skinslide_controls got(skinslide_stage_controls *controls) {
@@ -77,8 +88,8 @@ static skinslide_controls got(skinslide_stage_controls *controls) {
     return out;
 }
 
-static void expect_need(const skinslide_stage_controls *controls, const char *name, const char *path, int32_t tile) {
-    const skinslide_stage_need *need = skinslide_stage_controls_need(controls);
+static void expect_need(skinslide_stage_controls *controls, const char *name, const char *path, int32_t tile) {
+    const skinslide_stage_need *need = needed(controls);
     assert_non_null(need);
     assert_string_equal(need->input->name, name);
     assert_string_equal(need->path, path);
@@ -91,9 +102,9 @@ static void no_texture_asks_for_nothing(void **state) {
     (void)state;
     scene s = set_up();
     assert_ok(controls_take(s.controls, "weightMap", nothing_of(MAP), &error), &error);
-    assert_ok(controls_take(s.controls, "forceDensityMap", asset_of(MAP, ""), &error), &error);
     assert_null(skinslide_stage_controls_coordinates(s.controls));
-    assert_null(skinslide_stage_controls_need(s.controls));
+    assert_ok(controls_take(s.controls, "forceDensityMap", asset_of(MAP, ""), &error), &error);
+    assert_null(needed(s.controls));
     assert_int_equal(give_none(s.controls), SKINSLIDE_BAD_ARGUMENT);
     assert_null(skinslide_stage_controls_texture(s.controls, input_of(SKINSLIDE_STAGE_CONTROLS, NULL, "weightMap")));
     assert_null(got(s.controls).weight);
@@ -109,7 +120,7 @@ static void a_texture_alone_is_the_weight(void **state) {
     assert_fails(skinslide_stage_controls_get(s.controls, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "the files of weightMap were not given");
     assert_ok(give(s.controls, "/maps/w.exr", 0.25f), &error);
-    assert_null(skinslide_stage_controls_need(s.controls));
+    assert_null(needed(s.controls));
     out = got(s.controls);
     for (int v = 0; v < 9; v++)
         assert_true(out.weight[v] == 0.25f);
@@ -178,7 +189,10 @@ static void coordinates_of_another_name(void **state) {
         scene s = set_up();
         assert_ok(patch_takes(s.patch, "mapSt", text_of("mapSt", words[i]), &error), &error);
         assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, "w.exr"), &error), &error);
-        assert_string_equal(skinslide_stage_controls_coordinates(s.controls), "primvars:uv2");
+        const skinslide_stage_input *st = skinslide_stage_controls_coordinates(s.controls);
+        assert_string_equal(st->prefix, "primvars:");
+        assert_string_equal(st->name, "uv2");
+        assert_true(st->is_primvar && st->when == SKINSLIDE_STAGE_ANIMATED);
         tear_down(&s);
     }
 }
@@ -241,14 +255,62 @@ static void other_coordinates_ask_for_files_again(void **state) {
         for (int32_t tile = 0; tile < 4; tile++)
             assert_ok(give(s.controls, "/w.exr", 1), &error);
         st = st_of(1);
-        assert_ok(skinslide_stage_controls_take_coordinates(s.controls, &st, &error), &error);
+        assert_ok(take_coordinates(s.controls, st), &error);
         expect_need(s.controls, "weightMap", "w.1001.exr", 1001);
         assert_ok(give(s.controls, "/other.exr", 0.5f), &error);
         assert_true(got(s.controls).weight[0] == 0.5f);
         st = st_of(2);
-        assert_ok(skinslide_stage_controls_take_coordinates(s.controls, &st, &error), &error);
+        assert_ok(take_coordinates(s.controls, st), &error);
         expect_need(s.controls, "weightMap", "w.1001.exr", 1001);
     }
+    tear_down(&s);
+}
+
+/* A frame takes what varies alone: of its base's maps, at other coordinates, nothing else is new. */
+static void a_frame_moves_the_texture_of_its_base(void **state) {
+    (void)state;
+    scene s = set_up();
+    skinslide_stage_controls *frame = NULL;
+    ask(s.controls, "weightMap", "w.<UDIM>.exr", 2);
+    for (int32_t tile = 0; tile < 4; tile++)
+        assert_ok(give(s.controls, "/w.exr", 0.5f), &error);
+    assert_ok(skinslide_stage_controls_create(s.patch, s.controls, &frame, &error), &error);
+    assert_null(needed(frame));
+    for (int32_t time = 0; time < 3; time++) {
+        const skinslide_stage_need *need;
+        assert_ok(take_coordinates(frame, st_of(1)), &error);
+        expect_need(frame, "weightMap", "w.1001.exr", 1001);
+        assert_int_equal(skinslide_stage_controls_holds(frame, "/other.exr"), time > 1);
+        assert_ok(give(frame, "/other.exr", 0.25f), &error);
+        assert_true(got(frame).weight[0] == 0.25f && got(s.controls).weight[0] == 0.5f);
+        if (time)
+            continue; /* a time that fails leaves the next one whole */
+        assert_ok(take_coordinates(frame, nothing_of("primvars:st")), &error);
+        assert_int_equal(skinslide_stage_controls_need(frame, &need, &error), SKINSLIDE_BAD_CONTROL);
+        assert_ok(take_coordinates(frame, st_of(-1)), &error);
+        assert_int_equal(skinslide_stage_controls_need(frame, &need, &error), SKINSLIDE_BAD_CONTROL);
+    }
+    skinslide_stage_controls_destroy(frame);
+    tear_down(&s);
+}
+
+static void a_frame_takes_one_texture_of_two(void **state) {
+    (void)state;
+    scene s = set_up();
+    skinslide_stage_controls *frame = NULL;
+    ask(s.controls, "weightMap", "w.exr", 1);
+    assert_ok(give(s.controls, "/w.exr", 0.5f), &error);
+    assert_ok(controls_take(s.controls, "forceDensityMap", asset_of(MAP, "d.exr"), &error), &error);
+    assert_non_null(needed(s.controls));
+    assert_ok(give(s.controls, "/d.exr", 3), &error);
+    assert_ok(skinslide_stage_controls_create(s.patch, s.controls, &frame, &error), &error);
+    assert_ok(controls_take(frame, "weightMap", asset_of(MAP, "later.exr"), &error), &error);
+    expect_need(frame, "weightMap", "later.exr", 0);
+    assert_ok(give(frame, "/later.exr", 1), &error);
+    assert_null(needed(frame));
+    assert_true(got(frame).weight[0] == 1 && got(s.controls).weight[0] == 0.5f);
+    assert_ptr_equal(got(frame).vertex_density, got(s.controls).vertex_density);
+    skinslide_stage_controls_destroy(frame);
     tear_down(&s);
 }
 
@@ -257,7 +319,7 @@ static void other_coordinates_ask_for_files_again(void **state) {
 static void expect_refused(scene *s, skinslide_status status, skinslide_status expected, const char *text) {
     skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_fails(status, &error, expected, text);
-    assert_null(skinslide_stage_controls_need(s->controls));
+    assert_null(needed(s->controls));
     assert_fails(skinslide_stage_controls_get(s->controls, &out, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "weightMap was refused");
 }
@@ -272,20 +334,39 @@ static void assets_of_another_type(void **state) {
     tear_down(&s);
 }
 
+static void expect_no_coordinates(skinslide_value st, const char *asset, const char *text) {
+    scene s = set_up();
+    const skinslide_stage_need *need;
+    assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, asset), &error), &error);
+    assert_ok(take_coordinates(s.controls, st), &error);
+    expect_refused(&s, skinslide_stage_controls_need(s.controls, &need, &error), SKINSLIDE_BAD_CONTROL, text);
+    tear_down(&s);
+}
+
 static void no_coordinates(void **state) {
     (void)state;
+    expect_no_coordinates(nothing_of("primvars:st"), "w.exr",
+                          "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt");
+    expect_no_coordinates(painted_as(st_of(1), "uniform"), "w.exr",
+                          "primvars:st has interpolation uniform; a map needs faceVarying, vertex or varying");
+    expect_no_coordinates(st_of(-1), "w.<UDIM>.exr", MAP ": w.<UDIM>.exr: face 0 has st (-0, -0), which is in no UDIM tile");
+}
+
+/* A map may come later. */
+static void coordinates_matter_where_there_is_a_map(void **state) {
+    (void)state;
     scene s = set_up();
-    const skinslide_value none = nothing_of("primvars:st"), uniform = painted_as(st_of(1), "uniform");
-    assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, "w.exr"), &error), &error);
-    expect_refused(&s, skinslide_stage_controls_take_coordinates(s.controls, &none, &error), SKINSLIDE_BAD_CONTROL,
-                   "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt");
-    assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, "w.exr"), &error), &error);
-    expect_refused(&s, skinslide_stage_controls_take_coordinates(s.controls, &uniform, &error), SKINSLIDE_BAD_CONTROL,
-                   "primvars:st has interpolation uniform; a map needs faceVarying, vertex or varying");
-    const skinslide_value outside = st_of(-1);
-    assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, "w.<UDIM>.exr"), &error), &error);
-    expect_refused(&s, skinslide_stage_controls_take_coordinates(s.controls, &outside, &error), SKINSLIDE_BAD_CONTROL,
-                   MAP ": w.<UDIM>.exr: face 0 has st (-0, -0), which is in no UDIM tile");
+    const skinslide_stage_need *need;
+    skinslide_stage_controls *frame = NULL;
+    assert_ok(controls_take(s.controls, "weightMap", blocked_of(MAP), &error), &error);
+    assert_ok(take_coordinates(s.controls, nothing_of("primvars:st")), &error);
+    assert_null(needed(s.controls));
+    assert_null(got(s.controls).weight);
+    assert_ok(skinslide_stage_controls_create(s.patch, s.controls, &frame, &error), &error);
+    assert_ok(controls_take(frame, "weightMap", asset_of(MAP, "w.exr"), &error), &error);
+    assert_fails(skinslide_stage_controls_need(frame, &need, &error), &error, SKINSLIDE_BAD_CONTROL,
+                 "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt");
+    skinslide_stage_controls_destroy(frame);
     tear_down(&s);
 }
 
@@ -320,7 +401,7 @@ static void files_that_cannot_be_read(void **state) {
     expect_refused(&s, skinslide_stage_controls_give(s.controls, &file, &error), SKINSLIDE_BAD_CONTROL,
                    "weightMap: /w.exr: cannot be read: the disk is on fire");
     ask(s.controls, "weightMap", "w.exr", 1);
-    file.byte_count = skinslide_stage_controls_need(s.controls)->largest + 1;
+    file.byte_count = needed(s.controls)->largest + 1;
     expect_refused(&s, skinslide_stage_controls_give(s.controls, &file, &error), SKINSLIDE_BAD_CONTROL,
                    "weightMap: /w.exr: has 4294967297 bytes; more than 4294967296 are refused");
     ask(s.controls, "weightMap", "w.exr", 1);
@@ -367,8 +448,11 @@ int main(void) {
         cmocka_unit_test(a_frame_multiplies_the_texture_of_its_base),
         cmocka_unit_test(images_are_held_between_frames),
         cmocka_unit_test(other_coordinates_ask_for_files_again),
+        cmocka_unit_test(a_frame_moves_the_texture_of_its_base),
+        cmocka_unit_test(a_frame_takes_one_texture_of_two),
         cmocka_unit_test(assets_of_another_type),
         cmocka_unit_test(no_coordinates),
+        cmocka_unit_test(coordinates_matter_where_there_is_a_map),
         cmocka_unit_test(no_such_file),
         cmocka_unit_test(files_that_cannot_be_read),
         cmocka_unit_test(values_that_cannot_be),

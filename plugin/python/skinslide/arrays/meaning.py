@@ -86,20 +86,32 @@ class Input(NamedTuple):
 @cache
 def inputs(group: str) -> tuple[Input, ...]:
     """What there is to fetch of a group, in order: mesh, subdivision, patch, controls, derived, live."""
-    number, found = getattr(lib, f"SKINSLIDE_STAGE_{group.upper()}"), []
-    each = lib.skinslide_stage_next_input(number, ffi.NULL)
-    while each:
-        is_primvar, is_inherited = bool(each.is_primvar), bool(each.is_inherited)
-        words = (text(each.name), text(each.prefix), text(each.type_name))
-        fallback = text(each.fallback) if each.fallback else None
-        found.append(Input(*words, each.when, is_primvar, is_inherited, fallback, each))
-        each = lib.skinslide_stage_next_input(number, each)
+    number, found = getattr(lib, f"SKINSLIDE_STAGE_{group.upper()}"), list[Input]()
+    while each := lib.skinslide_stage_next_input(number, found[-1].pointer if found else ffi.NULL):
+        found.append(_input(each))
     return tuple(found)
+
+
+def _input(each: Any) -> Input:
+    is_primvar, is_inherited = bool(each.is_primvar), bool(each.is_inherited)
+    words = (text(each.name), text(each.prefix), text(each.type_name))
+    fallback = text(each.fallback) if each.fallback else None
+    return Input(*words, each.when, is_primvar, is_inherited, fallback, each)
 
 
 def input_of(group: str, name: str) -> Input:
     """The first input of that name."""
     return next(each for each in inputs(group) if each.name == name)
+
+
+def is_texture(source: Input) -> bool:
+    """Whether the values of an input are paths of files."""
+    return bool(lib.skinslide_stage_is_texture(source.pointer))
+
+
+def say(saying: str) -> str:
+    """Words that the core says too: no_type, no_file, irregular."""
+    return text(lib.skinslide_stage_say(getattr(lib, f"SKINSLIDE_SAYING_{saying.upper()}")))
 
 
 def can_name_patch(name: str) -> bool:
@@ -198,24 +210,34 @@ def find(facts: PrimFacts) -> Finding:
     return Finding([text(found.patches[i]) for i in range(found.patch_count)], bool(found.slides), said)
 
 
+class Taker:
+    """What inputs are handed to."""
+
+    handle: Handle
+    _take: Any
+    _check: Any
+
+    def take(self, source: Input, value: Value | None) -> None:
+        """Takes an input of one of its groups. Raises Fault."""
+        _call(self._take, self.handle, source, value)
+
+    def check(self, source: Input, value: Value | None, frame: float) -> None:
+        """Raises Fault where a later sample of what must stay the same does not."""
+        _call(self._check, self.handle, source, value, frame)
+
+
 # ---- Meshes ----
 
 
-class MeshMeaning:
+class MeshMeaning(Taker):
     """One mesh of a scene: its faces, its rest points, how it is subdivided."""
+
+    _take, _check = lib.skinslide_stage_mesh_take, lib.skinslide_stage_mesh_check
 
     def __init__(self) -> None:
         out = ffi.new("skinslide_stage_mesh **")
         _call(lib.skinslide_stage_mesh_create, out)
         self.handle = Handle(out[0], lib.skinslide_stage_mesh_destroy)
-
-    def take(self, source: Input, value: Value | None) -> None:
-        """Takes an input of the groups mesh and subdivision. Raises Fault."""
-        _call(lib.skinslide_stage_mesh_take, self.handle, source, value)
-
-    def check(self, source: Input, value: Value | None, frame: float) -> None:
-        """Raises Fault where a later sample of what must stay the same does not."""
-        _call(lib.skinslide_stage_mesh_check, self.handle, source, value, frame)
 
     @property
     def has_faces(self) -> bool:
@@ -305,12 +327,12 @@ class Subset(NamedTuple):
     path: str
     type_name: str
     is_subset: bool
-    element_type: Value | None
-    indices: Value | None
 
 
-class PatchMeaning:
+class PatchMeaning(Taker):
     """One patch: its faces and its settings."""
+
+    _take, _check = lib.skinslide_stage_patch_take, lib.skinslide_stage_patch_check
 
     def __init__(self, mesh: MeshMeaning, name: str):
         out = ffi.new("skinslide_stage_patch **")
@@ -318,21 +340,9 @@ class PatchMeaning:
         self.mesh, self.name = mesh, name
         self.handle = Handle(out[0], lib.skinslide_stage_patch_destroy, mesh.handle)
 
-    def take(self, source: Input, value: Value | None) -> None:
-        """Takes an input of the group patch. Raises Fault."""
-        _call(lib.skinslide_stage_patch_take, self.handle, source, value)
-
-    def check(self, source: Input, value: Value | None, frame: float) -> None:
-        """Raises Fault where a later sample of what must stay the same does not."""
-        _call(lib.skinslide_stage_patch_check, self.handle, source, value, frame)
-
     def take_subset(self, subset: Subset | None) -> None:
-        """Takes the faces of a child prim, or learns that there is none. Raises Fault."""
+        """Takes the child prim whose faces follow, or learns that there is none. Raises Fault."""
         _call(lib.skinslide_stage_patch_take_subset, self.handle, subset)
-
-    def check_subset(self, indices: Value | None, frame: float) -> None:
-        """Raises Fault where a later sample of the child's indices differs."""
-        _call(lib.skinslide_stage_patch_check_subset, self.handle, indices, frame)
 
     @property
     def faces(self) -> np.ndarray:
@@ -364,9 +374,7 @@ class PatchMeaning:
 class Need(NamedTuple):
     """A file that a texture is made of, as in `skinslide_stage_need`."""
 
-    name: str  # of the input
     path: str
-    tile: int
     largest: int
 
 
@@ -389,37 +397,31 @@ class Texture(NamedTuple):
     sizes: dict[int, tuple[int, int]]  # width and height, by tile; 0 for the one of a texture without
 
 
-class ControlsMeaning:
+class ControlsMeaning(Taker):
     """What is painted and animated on a patch, at one time; for use by one thread at a time.
 
     It begins with the values of a base, controls of the patch which stay as they are.
     """
+
+    _take = lib.skinslide_stage_controls_take
 
     def __init__(self, patch: PatchMeaning, base: ControlsMeaning | None = None):
         out = ffi.new("skinslide_stage_controls **")
         bases = [base.handle] if base else []
         _call(lib.skinslide_stage_controls_create, patch.handle, bases[0] if bases else None, out)
         self._patch = patch
-        self.handle: Handle = Handle(out[0], lib.skinslide_stage_controls_destroy, patch.handle, *bases)
+        self.handle = Handle(out[0], lib.skinslide_stage_controls_destroy, patch.handle, *bases)
 
-    def take(self, source: Input, value: Value | None) -> None:
-        """Takes an input of the group controls. Raises Fault."""
-        _call(lib.skinslide_stage_controls_take, self.handle, source, value)
-
-    @property
-    def coordinates(self) -> str | None:
-        """The primvar with texture coordinates that is wanted, such as primvars:st."""
-        name = lib.skinslide_stage_controls_coordinates(self.handle.pointer)
-        return text(name) if name else None
-
-    def take_coordinates(self, value: Value | None) -> None:
-        """Raises Fault."""
-        _call(lib.skinslide_stage_controls_take_coordinates, self.handle, value)
+    def coordinates(self) -> list[Input]:
+        """The primvar with the coordinates of textures, where there is one to take."""
+        found = lib.skinslide_stage_controls_coordinates(self.handle.pointer)
+        return [_input(found)] if found else []
 
     def need(self) -> Need | None:
-        """The next file that is wanted."""
-        need = lib.skinslide_stage_controls_need(self.handle.pointer)
-        return Need(text(need.input.name), text(need.path), need.tile, need.largest) if need else None
+        """The next file that is wanted. Raises Fault."""
+        out = ffi.new("skinslide_stage_need **")
+        _call(lib.skinslide_stage_controls_need, self.handle, out)
+        return Need(text(out[0].path), out[0].largest) if out[0] else None
 
     def holds(self, path: str) -> bool:
         """Whether the content of a resolved file is not needed again."""

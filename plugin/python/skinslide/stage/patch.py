@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -22,8 +22,8 @@ from skinslide.arrays.meaning import (
 )
 from skinslide.arrays.native import Controls, PatchSetup
 from skinslide.problems import Fault
-from skinslide.stage.textures import give_textures, is_texture, texture_inputs
-from skinslide.stage.values import FIRST, Source, Span, noting, primvar_source, read_value, take
+from skinslide.stage.textures import give_files
+from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
 
 class Animation:
@@ -34,25 +34,17 @@ class Animation:
         textures: Those of the first time.
     """
 
-    def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Iterable[Input] = inputs("controls")):
-        self._prim, self._meaning, self._lock = prim, meaning, threading.Lock()
-        self._sources = [Source(prim, each, meaning.name) for each in wanted]
+    def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Sequence[Input] = inputs("controls")):
+        self._meaning, self._lock = meaning, threading.Lock()
         self._base, self._idle = ControlsMeaning(meaning), list[ControlsMeaning]()
-        self.faults = take(self._base, self._sources) + self._give(self._base, FIRST)
-        self.textures = [found for each in texture_inputs() if (found := self._base.texture(each))]
-        self._find_varying()
-
-    def _find_varying(self) -> None:
-        """Those that a frame reads anew: where one texture or its coordinates vary, all textures."""
-        st = self._base.coordinates
-        self._coordinates = None if st is None else primvar_source(self._prim, st)
-        textured = [source for source in self._sources if is_texture(source.wanted) and source.first()]
-        self._textured = {source.wanted.name for source in textured}
-        together = [*textured, *([self._coordinates] if self._coordinates else [])]
-        self._textures_vary = any(source.varies for source in together)
-        self._varying = [
-            source for source in self._sources if source.varies or self._textures_vary * (source in textured)
-        ]
+        self._controls = [Source(prim, each, meaning.name) for each in wanted]
+        self.faults = take(self._base, self._controls)
+        self._coordinates = [Source(prim, each) for each in self._base.coordinates()]
+        self.faults += take(self._base, self._coordinates)
+        with noting(self.faults):
+            give_files(self._base)
+        self.textures = [found for each in wanted if (found := self._base.texture(each))]
+        self._varying = [source for source in [*self._controls, *self._coordinates] if source.varies]
 
     @property
     def varies(self) -> bool:
@@ -64,9 +56,9 @@ class Animation:
 
     def times(self, span: Span | None = None, names: Collection[str] | None = None) -> list[float]:
         """When controls were authored that vary; names: of these inputs alone, with the coordinates of textures."""
-        chosen = [source for source in self._sources if names is None or source.wanted.name in names]
-        if self._coordinates and any(source.wanted.name in self._textured for source in chosen):
-            chosen.append(self._coordinates)
+        chosen = [source for source in self._controls if names is None or source.wanted.name in names]
+        sampled = {texture.name for texture in self.textures}.intersection(source.name for source in chosen)
+        chosen += self._coordinates if names is None or sampled else []
         return [time for source in chosen for time in source.times(span)]
 
     @cached_property
@@ -95,13 +87,8 @@ class Animation:
     def _read(self, own: ControlsMeaning, time: Usd.TimeCode) -> Controls:
         for source in self._varying:
             own.take(source.wanted, source.at(time))
-        faults = self._give(own, time) if self._textures_vary else []
-        if faults:
-            raise Fault(faults[0])
+        give_files(own)
         return own.get()
-
-    def _give(self, controls: ControlsMeaning, time: Usd.TimeCode) -> list[str]:
-        return give_textures(controls, self._prim, time)
 
 
 def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation | None, list[str]]:
@@ -154,32 +141,22 @@ def primvar_faces(primvar: UsdGeom.Primvar, mesh: MeshMeaning) -> np.ndarray:
 def subset_faces(child: Usd.Prim, mesh: MeshMeaning) -> np.ndarray:
     """The faces of a GeomSubset, int32, ascending. Raises Fault."""
     meaning = PatchMeaning(mesh, child.GetName())
-    take_subset(meaning, child)
+    for fault in take_subset(meaning, child):
+        raise Fault(fault)
     return meaning.faces
 
 
-def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Iterable[Input]) -> list[str]:
+def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Sequence[Input]) -> list[str]:
     """Hands over settings, with the faces of the child of the patch's name. Returns what is wrong."""
     faults = take(meaning, [Source(prim, each, meaning.name) for each in wanted])
     child = prim.GetChild(meaning.name) if Sdf.Path.IsValidIdentifier(meaning.name) else None
+    return faults + take_subset(meaning, child if child and child.IsActive() else None)
+
+
+def take_subset(meaning: PatchMeaning, child: Usd.Prim | None) -> list[str]:
+    """Hands over the faces of a child prim, or that there is none. Returns what is wrong."""
+    faults: list[str] = []
     with noting(faults):
-        take_subset(meaning, child if child and child.IsActive() else None)
-    return faults
-
-
-def take_subset(meaning: PatchMeaning, child: Usd.Prim | None) -> None:
-    """Hands over the faces of a child prim, or that there is none. Raises Fault."""
-    if not child:
-        meaning.take_subset(None)
-        return
-    is_subset, subset = child.IsA(UsdGeom.Subset), UsdGeom.Subset(child)
-    element = read_value(subset.GetElementTypeAttr(), Usd.TimeCode.Default()) if is_subset else None
-    indices = subset.GetIndicesAttr() if is_subset else None
-    name = f"{child.GetPath()}.indices"
-
-    def at(time: Usd.TimeCode) -> Value | None:
-        return read_value(indices, time, name=name)
-
-    meaning.take_subset(Subset(str(child.GetPath()), child.GetTypeName(), is_subset, element, at(FIRST)))
-    for time in indices.GetTimeSamples() if indices and indices.ValueMightBeTimeVarying() else []:
-        meaning.check_subset(at(Usd.TimeCode(time)), time)
+        there = child and Subset(str(child.GetPath()), child.GetTypeName(), child.IsA(UsdGeom.Subset))
+        meaning.take_subset(there or None)
+    return faults + take(meaning, [Source(child, each) for each in inputs("subset")] if child else [])

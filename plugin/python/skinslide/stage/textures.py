@@ -7,41 +7,22 @@ from collections.abc import Iterator
 
 from pxr import Ar, Sdf, Tf, Usd, UsdShade
 
-from skinslide.arrays.meaning import ControlsMeaning, File, Input, inputs
-from skinslide.stage.values import FIRST, Source, noting, primvar_source
+from skinslide.arrays.meaning import ControlsMeaning, File, inputs, is_texture
+from skinslide.stage.values import FIRST, Source
 
 _MAGIC = b"\x76\x2f\x31\x01"  # of OpenEXR
 _START = 8  # bytes that tell OpenEXR whether a file is one: the magic number and the version
 
 
-def give_textures(controls: ControlsMeaning, prim: Usd.Prim, time: Usd.TimeCode) -> list[str]:
-    """Gives texture coordinates, and every file that is asked for. Returns what is wrong."""
-    if controls.coordinates is None:
-        return []
-    faults: list[str] = []
-    with noting(faults):
-        controls.take_coordinates(primvar_source(prim, controls.coordinates).at(time))
-    while not faults and (need := controls.need()):
-        with noting(faults):
-            controls.give(_file(controls, Ar.GetResolver().Resolve(need.path).GetPathString(), need.largest))
-    return faults
-
-
-def is_texture(wanted: Input) -> bool:
-    """Whether an input names files."""
-    return wanted.type_name == "asset"
-
-
-def texture_inputs() -> list[Input]:
-    """Those of a patch."""
-    return list(filter(is_texture, inputs("controls")))
+def give_files(controls: ControlsMeaning) -> None:
+    """Gives every file that is asked for. Raises Fault."""
+    while need := controls.need():
+        controls.give(_file(controls, Ar.GetResolver().Resolve(need.path).GetPathString(), need.largest))
 
 
 def texture_files(prim: Usd.Prim, patch: str) -> Iterator[str]:
     """The resolved files of every texture of a patch, at whatever time; those that are not there are passed over."""
-    for wanted in texture_inputs():
-        source = Source(prim, wanted, patch)
-        attribute = source.attribute
+    for attribute in (Source(prim, wanted, patch).attribute for wanted in filter(is_texture, inputs("controls"))):
         for time in [FIRST, *map(Usd.TimeCode, attribute.GetTimeSamples())] if attribute else []:
             asset = attribute.Get(time)
             if isinstance(asset, Sdf.AssetPath) and asset.path:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom
 
-from skinslide.arrays.meaning import DEFAULT_TIME, NOTHING, STILL, Asset, Input, Other, Value
+from skinslide.arrays.meaning import DEFAULT_TIME, NOTHING, STILL, Asset, Input, Other, Taker, Value
 from skinslide.problems import MOST_FRAMES, Fault, UsageError, usd_message
 
 Span = tuple[float, float]  # first and last moment
@@ -42,16 +41,13 @@ class Source:
         self.attribute = attribute
         self.indices = UsdGeom.Primvar(attribute).GetIndicesAttr() if attribute and wanted.is_primvar else None
 
-    def first(self) -> Value | None:
-        """The value at the time at which it is taken first."""
-        return self.at(Usd.TimeCode.Default() if self.wanted.when == DEFAULT_TIME else FIRST)
+    def first(self) -> Value:
+        """The value at the time at which it is taken first; where it was not authored, its name alone."""
+        found = self.at(Usd.TimeCode.Default() if self.wanted.when == DEFAULT_TIME else FIRST)
+        return found or Value(self.name, NOTHING, self.wanted.type_name)
 
     def at(self, time: Usd.TimeCode) -> Value | None:
         return read_value(self.attribute, time, self.indices)
-
-    def nothing(self) -> Value:
-        """What stands for a value that was not authored: its name alone."""
-        return Value(self.name, NOTHING, self.wanted.type_name)
 
     @property
     def varies(self) -> bool:
@@ -60,12 +56,6 @@ class Source:
     def times(self, span: Span | None = None) -> list[float]:
         """When it varies: its samples, and those of its indices."""
         return [time for attribute in self._varying() for time in sample_times(attribute, span)]
-
-    def samples(self) -> Iterator[tuple[float, Value | None]]:
-        """Its samples, where it may vary."""
-        for attribute in self._varying():
-            for time in attribute.GetTimeSamples():
-                yield time, self.at(Usd.TimeCode(time))
 
     def _varying(self) -> list[Usd.Attribute]:
         there = [each for each in (self.attribute, self.indices) if each and self.attribute.HasAuthoredValue()]
@@ -142,28 +132,14 @@ def sample_times(attribute: Usd.Attribute, span: Span | None = None) -> list[flo
     return [*knots, *map(float, range(first, last + 1))]
 
 
-class Taker(Protocol):
-    """What inputs are handed to."""
-
-    def take(self, source: Input, value: Value | None) -> None: ...
-
-
-@runtime_checkable
-class Checker(Protocol):
-    """What later samples of inputs that must stay the same are handed to."""
-
-    def check(self, source: Input, value: Value | None, frame: float) -> None: ...
-
-
 def take(taker: Taker, sources: Iterable[Source]) -> list[str]:
     """Hands over values, and later samples of what must stay the same. Returns what is wrong."""
     faults: list[str] = []
     for source in sources:
         with noting(faults):
-            taker.take(source.wanted, source.first() or source.nothing())
-            if source.wanted.when == STILL and isinstance(taker, Checker):
-                for frame, value in source.samples():
-                    taker.check(source.wanted, value, frame)
+            taker.take(source.wanted, source.first())
+            for frame in source.times() if source.wanted.when == STILL else []:
+                taker.check(source.wanted, source.at(Usd.TimeCode(frame)), frame)
     return faults
 
 
