@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from pxr import Tf
 
 MOST_FRAMES = 10_000_000
+# Said of what several parts look for.
+NO_SUCH_PRIM = "there is no such prim"
+PATH_TOO_LONG = "its path from the root is too long"
 
 
 @dataclass(frozen=True)

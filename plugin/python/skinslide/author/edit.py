@@ -9,8 +9,8 @@ from functools import cached_property
 
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import MeshMeaning
-from skinslide.problems import Fault, Problem, StageProblems, errors
+from skinslide.arrays.meaning import MeshMeaning, say
+from skinslide.problems import NO_SUCH_PRIM, Fault, Problem, StageProblems, errors
 from skinslide.shot.check import CheckReport, check
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, given_path
@@ -71,7 +71,7 @@ def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = No
 
 def _mesh(prim: Usd.Prim) -> tuple[Usd.Prim, MeshMeaning]:
     if not prim:
-        raise Fault("there is no such prim")
+        raise Fault(NO_SUCH_PRIM)
     if not prim.IsA(UsdGeom.Mesh):
-        raise Fault(f"is a {prim.GetTypeName() or 'prim without a type'}, not a Mesh")
+        raise Fault(f"is a {prim.GetTypeName() or say('no_type')}, not a Mesh")
     return prim, read_faces_of_mesh(prim)

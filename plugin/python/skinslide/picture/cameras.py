@@ -11,7 +11,8 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.canvas import Camera, Shape, frame_faces
-from skinslide.problems import Fault, FrameProblem, SliderError
+from skinslide.arrays.meaning import say
+from skinslide.problems import NO_SUCH_PRIM, Fault, FrameProblem, SliderError
 from skinslide.stage.mesh import PatchedMesh
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
@@ -33,8 +34,8 @@ class StageCamera:
     def __init__(self, stage: Usd.Stage, path: str, aspect: float):
         prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
         if not prim or not prim.IsA(UsdGeom.Camera):
-            kind = prim.GetTypeName() or "prim without a type" if prim else ""
-            raise Fault(f"camera {path}: {f'is a {kind}, no Camera' if prim else 'there is no such prim'}")
+            kind = prim.GetTypeName() or say("no_type") if prim else ""
+            raise Fault(f"camera {path}: {f'is a {kind}, no Camera' if prim else NO_SUCH_PRIM}")
         self._camera, self._aspect = UsdGeom.Camera(prim), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pxr import Sdf, Usd, UsdGeom, UsdSkel
 
 from skinslide.arrays.meaning import SCHEMA, PrimFacts, find, nothing_to_slide
-from skinslide.problems import Problem
+from skinslide.problems import NO_SUCH_PRIM, Problem
 from skinslide.stage import schema
 from skinslide.stage.marks import baked_layer
 from skinslide.stage.opening import is_live
@@ -75,7 +75,7 @@ def _roots(stage: Usd.Stage, prim_paths: Sequence[str] | None, problems: list[Pr
         else:
             named = "this" if str(path) else "an empty name"
             message = f"{named} is not the path of a prim, such as /World/char/geo"
-            message = "there is no such prim" if valid else message
+            message = NO_SUCH_PRIM if valid else message
             problems.append(Problem("error", str(path), None, None, message))
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd, UsdUtils
 
-from skinslide.arrays.meaning import check_text
-from skinslide.problems import Fault, StageError, usd_message
+from skinslide.arrays.meaning import check_text, say
+from skinslide.problems import PATH_TOO_LONG, Fault, StageError, usd_message
 from skinslide.registration import registered
 
 EXTENSION = ".skinslide"
@@ -24,8 +24,8 @@ def open_stage(path: str | Path) -> Usd.Stage:
     """Opens a stage with its payloads. A `.skinslide` file opens as its text, with the points of the cache."""
     path = str(path)
     try:
-        if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-            raise StageError(f"cannot open {path}: it is not a regular file")
+        if is_irregular(path):
+            raise StageError(f"cannot open {path}: it {say('irregular')}")
         with Ar.ResolverContextBinder(Ar.GetResolver().CreateDefaultContextForAsset(path)):
             text = _text_of(Path(path)) if path.endswith(EXTENSION) else None
             held = _sublayers(text or Sdf.Layer.FindOrOpen(path), path)  # until the stage has them: each is read once
@@ -35,6 +35,11 @@ def open_stage(path: str | Path) -> Usd.Stage:
         return stage
     except (Tf.ErrorException, OSError, ValueError) as error:
         raise StageError(f"cannot open {path}: {why_not_opened(path, error)}") from error
+
+
+def is_irregular(path: str) -> bool:
+    """Whether a path is of a pipe, a socket or a device, which may be waited for without end once it is opened."""
+    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
 def _text_of(path: Path) -> Sdf.Layer:
@@ -50,7 +55,7 @@ def _text_in_stage(text: Sdf.Layer, path: str) -> Sdf.Layer:
 
 
 def _sublayers(root: Sdf.Layer | None, path: str) -> list[Sdf.Layer]:
-    """The root layer at a path, and those below it. Opening a pipe would wait for ever.
+    """The root layer at a path, and those below it.
 
     Raises StageError for what one of them names that is there and is no regular file.
     """
@@ -59,8 +64,8 @@ def _sublayers(root: Sdf.Layer | None, path: str) -> list[Sdf.Layer]:
         name = path if layer == root else layer.identifier
         for asset in layer.GetCompositionAssetDependencies():
             file = Ar.GetResolver().Resolve(Sdf.ComputeAssetPathRelativeToLayer(layer, asset)).GetPathString()
-            if os.path.exists(file) and not os.path.isfile(file) and not os.path.isdir(file):
-                raise StageError(f"cannot open {file}, which {name} names: it is not a regular file")
+            if is_irregular(file):
+                raise StageError(f"cannot open {file}, which {name} names: it {say('irregular')}")
         for asset in layer.subLayerPaths:
             with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
                 below = Sdf.Layer.FindOrOpenRelativeToLayer(layer, asset)
@@ -100,7 +105,7 @@ def why_not_opened(path: str, error: Exception) -> str:
             if fault.errno in (errno.EACCES, errno.ELOOP):  # of others, a resolver may know it under this name
                 return fault.strerror or str(fault)
         if not Ar.GetResolver().Resolve(path):
-            return "its path from the root is too long" if os.path.exists(path) else "there is no such file"
+            return PATH_TOO_LONG if os.path.exists(path) else say("no_file")
         return usd_message(error)
     return "it is not text"
 

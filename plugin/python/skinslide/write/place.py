@@ -19,7 +19,8 @@ from typing import Any, TypeAlias
 
 from pxr import Tf, Usd, UsdUtils
 
-from skinslide.problems import StageError, UsageError, usd_message
+from skinslide.arrays.meaning import say
+from skinslide.problems import PATH_TOO_LONG, StageError, UsageError, usd_message
 from skinslide.stage.given import StrPath
 
 _ABANDONED = 24 * 60 * 60  # seconds
@@ -44,7 +45,7 @@ def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
     except (OSError, RuntimeError, ValueError) as error:  # a name too long, links in a circle, a null character
         fault = getattr(error, "strerror", None) or str(error)
         if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG and not _has_long_name(output):
-            fault = "its path from the root is too long"
+            fault = PATH_TOO_LONG
     if fault:
         raise UsageError(f"output {output}: {fault}")
 
@@ -66,7 +67,7 @@ def _fault(output: Path, made: Path | None) -> str | None:
     if target.is_dir():
         return "is a folder"
     if target.exists() and not target.is_file():
-        return "is not a regular file"
+        return say("irregular")
     if len(os.fsencode(partial_name(target))) + _OF_USD > os.pathconf(folder, "PC_NAME_MAX"):  # on Linux 255
         return "the name is too long"
     if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
