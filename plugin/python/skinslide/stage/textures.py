@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pxr import Ar, Sdf, Tf, Usd, UsdShade
 
 from skinslide.arrays.meaning import ControlsMeaning, File, inputs, is_texture
-from skinslide.stage.values import FIRST, Source
+from skinslide.stage.values import FIRST, Source, layer_of
 
 _MAGIC = b"\x76\x2f\x31\x01"  # of OpenEXR
 _START = 8  # bytes that tell OpenEXR whether a file is one: the magic number and the version
@@ -31,14 +31,10 @@ def texture_files(prim: Usd.Prim, patch: str) -> Iterator[str]:
 
 def _all_files(attribute: Usd.Attribute, time: Usd.TimeCode, asset: Sdf.AssetPath) -> Iterator[str]:
     if UsdShade.UdimUtils.IsUdimIdentifier(asset.path):
-        for path, _ in UsdShade.UdimUtils.ResolveUdimTilePaths(asset.path, _layer(attribute, time)):
+        for path, _ in UsdShade.UdimUtils.ResolveUdimTilePaths(asset.path, layer_of(attribute, time)):
             yield str(path)
     elif asset.resolvedPath:
         yield asset.resolvedPath
-
-
-def _layer(attribute: Usd.Attribute, time: Usd.TimeCode) -> Sdf.Layer:
-    return attribute.GetPropertyStack(time)[0].layer
 
 
 def _file(controls: ControlsMeaning, path: str, largest: int) -> File:

@@ -90,7 +90,12 @@ def read_value(
 
 def _anchored(attribute: Usd.Attribute, time: Usd.TimeCode, path: str) -> str:
     """Where a file is looked for: beside the layer that names it."""
-    return Sdf.ComputeAssetPathRelativeToLayer(attribute.GetPropertyStack(time)[0].layer, path) if path else ""
+    return Sdf.ComputeAssetPathRelativeToLayer(layer_of(attribute, time), path) if path else ""
+
+
+def layer_of(attribute: Usd.Attribute, time: Usd.TimeCode) -> Sdf.Layer:
+    """That of the strongest opinion, which paths are relative to."""
+    return attribute.GetPropertyStack(time)[0].layer
 
 
 def _get(attribute: Usd.Attribute, time: Usd.TimeCode) -> object:
