@@ -310,8 +310,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_create(const skinslide_stag
 /* NULL does nothing. Its controls must be gone before it. */
 SKINSLIDE_API void skinslide_stage_patch_destroy(skinslide_stage_patch *patch);
 
-/* Takes the value of an input of the group PATCH or, after its subset was taken, of SUBSET. The primvar of faces may be any record
- * of that kind, of any name; where it chose faces those of the subset are not looked at.
+/* Takes the value of an input of the group PATCH or, after its subset was taken, of SUBSET. The primvar of faces may be any
+ * record of that kind, of any name; where it chose faces those of the subset are not looked at.
  * Fails with BAD_PATCH (faces), BAD_CONTROL (the others; each names what it cannot use), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                                           const skinslide_value *value, skinslide_error *error);
@@ -333,8 +333,8 @@ typedef struct skinslide_stage_subset {
 #define SKINSLIDE_STAGE_SUBSET_DEFAULT                                                                                         \
     { sizeof(skinslide_stage_subset), 0, 0, 0 }
 
-/* Takes the child prim whose inputs follow, or learns from NULL that there is none. Where the primvar chose faces nothing is looked
- * at.
+/* Takes the child prim whose inputs follow, or learns from NULL that there is none. Where the primvar chose faces nothing is
+ * looked at.
  * Fails with BAD_PATCH (no such child, no GeomSubset), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
@@ -363,8 +363,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_create(const skinslide_s
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_controls_destroy(skinslide_stage_controls *controls);
 
-/* Takes the value of an input of the group CONTROLS, or of the one of texture coordinates. Paint is expanded into memory that the
- * controls keep; off the patch, where it is often 0, it does not count.
+/* Takes the value of an input of the group CONTROLS, or of the one of texture coordinates. Paint is expanded into memory that
+ * the controls keep; off the patch, where it is often 0, it does not count.
  * Fails with BAD_CONTROL (names what it cannot use; of texture coordinates skinslide_stage_controls_need says it),
  * BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls,
