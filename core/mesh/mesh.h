@@ -112,7 +112,8 @@ typedef struct ss_patch {
     int32_t setup_index, piece, piece_count;
     int32_t vertex_count, free_count, loop_count;
     ss_faces faces;            /* corners hold patch vertices */
-    int32_t *mesh_vertex;      /* [vertex_count], ascending */
+    int32_t *mesh_vertex;      /* [vertex_count], ascending; the same for those that one was split into */
+    uint8_t *split;            /* [vertex_count] one of several of its mesh vertex */
     int32_t *mesh_face;        /* [face_count], ascending */
     int32_t *vertex_corner;    /* [vertex_count] a corner at the vertex; on the boundary the one whose side leaves along it */
     int32_t (*edge_vertex)[2]; /* [edge_count], lower first */
@@ -139,14 +140,21 @@ void ss_patch_destroy(ss_patch *patch);
 skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error);
 /* "patch elbow", or "patch elbow (piece 2 of 2)". */
 void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size);
-/* The patch vertex of a mesh vertex, or -1. */
+/* The patch vertex of a mesh vertex, the first of several, or -1. */
 int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex);
 /* The edge between two patch vertices, or -1. */
 int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b);
+/* The edge between two mesh vertices, or -1. */
+int32_t ss_patch_mesh_edge(const ss_patch *patch, int32_t a, int32_t b);
 /* The length of every edge, none under patch->shortest; returns how many were. points is the whole mesh's. */
 int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths);
 /* The points [vertex_count][3] of the patch, of the whole mesh's. */
 void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
+
+/* ---- split.c ---- */
+
+/* Gives every fan of faces at a vertex a vertex of its own, and numbers vertices and edges anew. False where memory is short. */
+bool ss_split_vertices(ss_patch *patch);
 
 /* ---- triangles.c ---- */
 

@@ -11,13 +11,21 @@
 int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex) {
     const int32_t *found =
         bsearch(&mesh_vertex, patch->mesh_vertex, (size_t)patch->vertex_count, sizeof mesh_vertex, ss_ascending);
+    while (found && found > patch->mesh_vertex && found[-1] == mesh_vertex)
+        found--;
     return found ? (int32_t)(found - patch->mesh_vertex) : -1;
+}
+
+/* Of the rules, those of the plane need a surface whose vertices have each one fan of faces. */
+static bool splits_vertices(const ss_patch *patch) {
+    return patch->setup->rule == SKINSLIDE_RULE_EVEN;
 }
 
 /* Corners hold mesh vertices before, patch vertices after; edges keep their numbers, since the order of vertices is kept. */
 static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error) {
     ss_faces *faces = &patch->faces;
     patch->mesh_vertex = SS_NEW(&patch->memory, int32_t, faces->corner_count);
+    patch->split = SS_NEW(&patch->memory, uint8_t, faces->corner_count);
     if (patch->memory.failed)
         return ss_out_of_memory(error);
     for (int32_t c = 0; c < faces->corner_count; c++)
@@ -28,7 +36,7 @@ static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error)
             patch->mesh_vertex[patch->vertex_count++] = patch->mesh_vertex[c];
     for (int32_t c = 0; c < faces->corner_count; c++)
         faces->corner_vertex[c] = ss_patch_vertex(patch, faces->corner_vertex[c]);
-    return SKINSLIDE_OK;
+    return splits_vertices(patch) && !ss_split_vertices(patch) ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
 static void list_edges(ss_patch *patch) {
@@ -45,6 +53,14 @@ int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b) {
     const int32_t(*found)[2] =
         bsearch(key, patch->edge_vertex, (size_t)patch->faces.edge_count, sizeof *patch->edge_vertex, ss_ascending_pairs);
     return found ? (int32_t)(found - (const int32_t(*)[2])patch->edge_vertex) : -1;
+}
+
+int32_t ss_patch_mesh_edge(const ss_patch *patch, int32_t a, int32_t b) {
+    int32_t count = patch->vertex_count, first = ss_patch_vertex(patch, a), second = ss_patch_vertex(patch, b), edge = -1;
+    for (int32_t v = first; v >= 0 && v < count && patch->mesh_vertex[v] == a && edge < 0; v++)
+        for (int32_t w = second; w >= 0 && w < count && patch->mesh_vertex[w] == b && edge < 0; w++)
+            edge = ss_patch_edge(patch, v, w);
+    return edge;
 }
 
 /* ---- Loops ---- */
@@ -201,11 +217,13 @@ static void order_free(ss_patch *patch, int32_t *place) {
     }
 }
 
-/* The outer loop is held always, holes where they are pinned. */
-static void hold_loops(ss_patch *patch) {
+static bool holds_loop(const ss_patch *patch, int32_t loop) {
+    return loop == 0 ? patch->setup->holes != SKINSLIDE_HOLES_FREE_ALL : patch->setup->holes == SKINSLIDE_HOLES_PINNED;
+}
+
+static void hold_vertices(ss_patch *patch) {
     for (int32_t v = 0; v < patch->vertex_count; v++)
-        patch->fixed[v] =
-            patch->vertex_loop[v] == 0 || (patch->vertex_loop[v] > 0 && patch->setup->holes == SKINSLIDE_HOLES_PINNED);
+        patch->fixed[v] = patch->split[v] || (patch->vertex_loop[v] >= 0 && holds_loop(patch, patch->vertex_loop[v]));
 }
 
 /* ---- Creation ---- */
@@ -250,7 +268,7 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
     if ((status = measure_rest(patch, rest_points, error)))
         return status;
     put_outer_first(patch, scratch[0]);
-    hold_loops(patch);
+    hold_vertices(patch);
     order_free(patch, scratch[0]);
     return ss_list_triangles(patch) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }

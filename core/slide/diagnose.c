@@ -62,8 +62,7 @@ static bool counted_before(const diagnosis *d, int32_t part, int32_t first, int3
         return false;
     for (int32_t p = 0; p < part; p++) {
         const ss_patch *patch = d->slider->parts[p].patch;
-        int32_t a = ss_patch_vertex(patch, first), b = ss_patch_vertex(patch, second);
-        if (counts(d, p) && a >= 0 && b >= 0 && ss_patch_edge(patch, a, b) >= 0)
+        if (counts(d, p) && ss_patch_mesh_edge(patch, first, second) >= 0)
             return true;
     }
     return false;

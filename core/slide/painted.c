@@ -85,8 +85,7 @@ static void paint_faces(const ss_patch *patch, const float *density, double *pai
 /* Edges of other pieces of the set-up are passed over here: the slider checks that every edge is in some piece. */
 static void paint_edges(const ss_patch *patch, const skinslide_controls *controls, double *paint) {
     for (int32_t i = 0; i < controls->edge_count; i++) {
-        int32_t a = ss_patch_vertex(patch, controls->edges[2 * i]), b = ss_patch_vertex(patch, controls->edges[2 * i + 1]);
-        int32_t edge = a < 0 || b < 0 ? -1 : ss_patch_edge(patch, a, b);
+        int32_t edge = ss_patch_mesh_edge(patch, controls->edges[2 * i], controls->edges[2 * i + 1]);
         if (edge >= 0)
             paint[edge] *= controls->edge_density[i];
     }

@@ -7,12 +7,15 @@
 /* ---- Checks of a set-up ---- */
 
 static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, skinslide_error *error) {
-    if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE ||
+    if ((unsigned)setup->boundary > SKINSLIDE_BOUNDARY_CIRCLE || (unsigned)setup->holes > SKINSLIDE_HOLES_FREE_ALL ||
         (unsigned)setup->rule > SKINSLIDE_RULE_EVEN || (unsigned)setup->interpolation > SKINSLIDE_INTERPOLATION_LIMIT)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no such boundary, holes, rule or interpolation", setup->name);
     if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT && !ss_is_subdivided(mesh))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: interpolation limit needs a mesh that is subdivided",
                        setup->name);
+    if (setup->holes == SKINSLIDE_HOLES_FREE_ALL && setup->rule != SKINSLIDE_RULE_EVEN)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED,
+                       "patch %s: holes freeAll, which frees the outer boundary too, needs rule even", setup->name);
     return SKINSLIDE_OK;
 }
 
@@ -37,8 +40,7 @@ static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a,
         const ss_patch *patch = slider->parts[p].patch;
         if (patch->setup_index != setup)
             continue;
-        int32_t v = ss_patch_vertex(patch, a), w = ss_patch_vertex(patch, b);
-        if (v >= 0 && w >= 0 && ss_patch_edge(patch, v, w) >= 0)
+        if (ss_patch_mesh_edge(patch, a, b) >= 0)
             return true;
     }
     return false;

@@ -95,7 +95,7 @@ def test_fields_are_those_of_the_header(sheet, rest):
 
 def test_tokens_are_those_of_the_stage():
     assert slider.tokens("boundary") == ("auto", "square", "circle")
-    assert slider.tokens("holes") == ("pinned", "free")
+    assert slider.tokens("holes") == ("pinned", "free", "freeAll")
     assert slider.tokens("rule") == ("unit", "fast", "relaxed", "even")
     assert slider.tokens("interpolation") == ("auto", "linear", "meanValue", "limit")
     assert slider.tokens("lookup") == ("auto", "egl", "exact")
@@ -110,6 +110,7 @@ def test_settings_arrive(counts, indices, rest):
         PatchSetup("p", faces, rule="fast"),
         PatchSetup("p", faces, rule="relaxed"),
         PatchSetup("p", faces, rule="even"),
+        PatchSetup("p", faces, rule="even", holes="freeAll"),
         PatchSetup("p", faces, rule="even", controls=Controls(hold=np.full(VERTICES, 5.0))),
         PatchSetup("p", faces, rule="even", controls=Controls(stretch_response=0.5)),
         PatchSetup("p", faces, rule="even", controls=Controls(compression_response=0.5)),

@@ -155,8 +155,9 @@ typedef enum skinslide_boundary {
 
 /* What holds the loops of holes (eyes, nostrils, mouth, the other end of a sleeve). */
 typedef enum skinslide_holes {
-    SKINSLIDE_HOLES_PINNED, /* each where it falls at rest with the holes capped: embeddings rarely fold, and it is counted */
-    SKINSLIDE_HOLES_FREE    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
+    SKINSLIDE_HOLES_PINNED,  /* each where it falls at rest with the holes capped: embeddings rarely fold, and it is counted */
+    SKINSLIDE_HOLES_FREE,    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
+    SKINSLIDE_HOLES_FREE_ALL /* nothing, and the outer boundary slides along itself, too: of EVEN alone */
 } skinslide_holes;
 
 /* Where skin slides to. The first two are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
@@ -244,10 +245,10 @@ typedef struct skinslide_slider skinslide_slider;
  *   out     out, the caller's to destroy
  * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of
  * repeated vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an
- * edge with three faces, faces wound against each other, a boundary that touches itself, a handle; EVEN needs no boundary, and
- * takes handles), BAD_CONTROL (a density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
+ * edge with three faces, faces wound against each other, a boundary that touches itself, faces that meet in a vertex alone, a
+ * handle; EVEN needs no boundary, takes handles, and lets vertices at which faces meet in a point stay), BAD_CONTROL (a density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
  * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice),
- * SINGULAR, UNSUPPORTED (EVEN: another interpolation than LINEAR, too), OUT_OF_MEMORY.
+ * SINGULAR, UNSUPPORTED (FREE_ALL by another rule than EVEN), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
  * edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a hole of
  * the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face with
@@ -266,7 +267,7 @@ typedef struct skinslide_patch_info {
     int32_t setup;             /* its number, from 0 */
     int32_t piece;             /* of this set-up, from 0 */
     int32_t piece_count;       /* of this set-up */
-    int32_t vertex_count;      /* of the patch */
+    int32_t vertex_count;      /* of the patch; EVEN splits those at which faces meet in a point, and has them stay */
     int32_t edge_count;        /* of the patch, each once */
     int32_t face_count;        /* of the patch */
     int32_t free_count;        /* vertices that may slide */
@@ -287,7 +288,7 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slide
                                                            skinslide_patch_info *info, skinslide_error *error);
 
 /* The vertices of a patch.
- *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending
+ *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending: more than once where it is split
  * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
                                                                skinslide_error *error);

@@ -538,33 +538,145 @@ static void wild_poses_stay_finite(void **state) {
     free_mesh(&mesh);
 }
 
+/* Every patch that has nothing to slide, or next to nothing. */
+static void nothing_free_is_nothing_slid(void **state) {
+    (void)state;
+    int32_t counts[6] = {3, 3, 3, 3, 3, 3}, indices[18];
+    float points[54];
+    dice d = {6};
+    for (int32_t k = 0; k < 54; k++)
+        points[k] = (float)roll_share(&d), indices[k / 3] = k / 3;
+    test_mesh triangles = copy_mesh(18, 6, counts, indices, points), strip = quad_grid(5, 1), *meshes[2] = {&triangles, &strip};
+    for (int k = 0; k < 2; k++) {
+        rig r = rig_of(meshes[k], even());
+        skinslide_patch_result results[6];
+        float *pose = random_pose(meshes[k], 4), *slid = slide_with(&r, meshes[k], pose, NULL, results);
+        assert_int_equal(skinslide_slider_patch_count(r.slider), k == 0 ? 6 : 1);
+        assert_same_bytes(slid, pose, POINT_BYTES(meshes[k]));
+        assert_true(results[0].slid_vertices == 0 && results[0].cut_steps == 0);
+        free(pose), free(slid);
+        free_rig(&r);
+        free_mesh(meshes[k]);
+    }
+}
+
+/* ---- Vertices at which faces meet in a point ---- */
+
+/* A sheet of 8 x 8 faces without two that are across from each other at the middle: its boundary touches itself there. In the other
+ * way to have it, the faces of the second have a vertex of their own, beside that of the first. */
+static test_mesh pinched(bool apart) {
+    enum { MIDDLE = 40, FIRST = 28, SECOND = 35 }; /* the faces that stay */
+    test_mesh sheet = quad_grid(8, 8);
+    int32_t counts[64], indices[256], faces = 0;
+    float points[3 * 82];
+    for (int32_t v = 0; v < 81 + apart; v++)
+        memcpy(points + 3 * v, sheet.points + 3 * (apart && v > MIDDLE ? v - 1 : v), sizeof(float[3]));
+    for (int32_t f = 0; f < 64; f++) {
+        if (f == FIRST - 1 || f == SECOND + 1)
+            continue;
+        counts[faces] = 4;
+        for (int k = 0; k < 4; k++) {
+            int32_t v = sheet.face_indices[4 * f + k];
+            indices[4 * faces + k] = v + (apart && (v > MIDDLE || (v == MIDDLE && f == SECOND)));
+        }
+        faces++;
+    }
+    free_mesh(&sheet);
+    return copy_mesh(81 + apart, faces, counts, indices, points);
+}
+
+static void split_vertices_stay(void **state) {
+    (void)state;
+    test_mesh one = pinched(false), two = pinched(true);
+    rig r = rig_of(&one, even()), other = rig_of(&two, even());
+    int32_t edge[2] = {40, 41};
+    float density[1] = {3}, *points = bumped(&one, 4.5, 3.5, 2, 3), *again = copy_points(&two);
+    for (int32_t v = 0; v < 82; v++)
+        memcpy(again + 3 * v, points + 3 * (v > 40 ? v - 1 : v), sizeof(float[3]));
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.edges = edge, controls.edge_density = density, controls.edge_count = 1;
+    float *slid = slide_with(&r, &one, points, &controls, NULL);
+    edge[1] = 42; /* of the face that has no vertex of its own */
+    float *apart = slide_with(&other, &two, again, &controls, NULL);
+    assert_same_bytes(slid + 3 * 40, points + 3 * 40, sizeof(float[3]));
+    assert_same_bytes(slid, apart, 41 * sizeof(float[3]));
+    assert_same_bytes(slid + 3 * 41, apart + 3 * 42, 40 * sizeof(float[3]));
+    assert_true(memcmp(slid, points, POINT_BYTES(&one)) != 0);
+    free(points), free(again), free(slid), free(apart);
+    free_rig(&r), free_rig(&other);
+    free_mesh(&one), free_mesh(&two);
+}
+
 /* ---- Loops and limits ---- */
 
-static void free_loops_slide_along_themselves(void **state) {
-    (void)state;
-    test_mesh mesh = annulus(12, 4);
-    float *points = bumped(&mesh, 1, 0, 1, 1);
-    skinslide_patch_setup choices = even();
-    choices.holes = SKINSLIDE_HOLES_FREE;
-    rig r = rig_of(&mesh, choices);
-    const ss_patch *patch = r.slider->parts[0].patch;
-    float *slid = slide_with(&r, &mesh, points, NULL, NULL);
-    int32_t moved_count = 0;
-    for (int32_t i = patch->loop_start[1]; i < patch->loop_start[2]; i++) {
+/* Points of a loop are on the loop of the pose. Returns how many have moved. */
+static int32_t expect_on_loop(const ss_patch *patch, int32_t loop, const float *points, const float *slid) {
+    int32_t begin = patch->loop_start[loop], end = patch->loop_start[loop + 1], moved_count = 0;
+    for (int32_t i = begin; i < end; i++) {
         const float *p = slid + 3 * patch->mesh_vertex[patch->loop_vertex[i]];
         double here[3] = {p[0], p[1], p[2]}, nearest = INFINITY;
-        for (int32_t k = patch->loop_start[1]; k < patch->loop_start[2]; k++) {
-            int32_t next = k + 1 < patch->loop_start[2] ? k + 1 : patch->loop_start[1];
+        for (int32_t k = begin; k < end; k++) {
             const float *a = points + 3 * patch->mesh_vertex[patch->loop_vertex[k]];
-            const float *b = points + 3 * patch->mesh_vertex[patch->loop_vertex[next]];
+            const float *b = points + 3 * patch->mesh_vertex[patch->loop_vertex[k + 1 < end ? k + 1 : begin]];
             nearest = fmin(nearest, distance_to_triangle(here, a, b, b));
         }
         assert_near(nearest, 0, 1e-6);
         moved_count += memcmp(p, points + 3 * patch->mesh_vertex[patch->loop_vertex[i]], sizeof(float[3])) != 0;
     }
-    assert_true(moved_count > 3);
-    free(points), free(slid);
+    return moved_count;
+}
+
+/* The longest loop is the outer one: it is freed last. */
+static void free_loops_slide_along_themselves(void **state) {
+    (void)state;
+    test_mesh mesh = annulus(12, 4);
+    float *points = bumped(&mesh, 1, 0, 1, 1);
+    for (int way = 0; way < 3; way++) {
+        skinslide_patch_setup choices = even();
+        choices.holes = (skinslide_holes)way;
+        rig r = rig_of(&mesh, choices);
+        float *slid = slide_with(&r, &mesh, points, NULL, NULL);
+        for (int32_t loop = 0; loop < 2; loop++) {
+            int32_t moved_count = expect_on_loop(r.slider->parts[0].patch, loop, points, slid);
+            assert_true(way + loop >= 2 ? moved_count > 3 : moved_count == 0);
+        }
+        free(slid);
+        free_rig(&r);
+    }
+    free(points);
+    free_mesh(&mesh);
+}
+
+/* With no vertex held anywhere: what is no stretch slides nowhere, and the rest loses some. */
+static void freed_sheets_stay_where_they_are(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(10, 10);
+    skinslide_patch_setup choices = even();
+    choices.holes = SKINSLIDE_HOLES_FREE_ALL;
+    rig r = rig_of(&mesh, choices);
+    float *points = bumped(&mesh, 4, 5, 3, 3), *turned = moved(&mesh, mesh.points, 1, 2);
+    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+    free(slide_with(&r, &mesh, points, NULL, &result));
+    assert_true(result.stretch_after < 0.9 * result.stretch_before && result.folded_faces == 0);
+    float *slid = slide_with(&r, &mesh, turned, NULL, NULL);
+    assert_near(largest_difference(slid, turned, 3 * (int64_t)mesh.vertex_count), 0, 1.5e-4);
+    free(points), free(turned), free(slid);
     free_rig(&r);
+    free_mesh(&mesh);
+}
+
+static void planes_need_their_outer_boundary(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(3, 3);
+    skinslide_mesh view = view_of(&mesh);
+    int32_t *faces = all_faces(&mesh);
+    skinslide_patch_setup setup = setup_of(faces, mesh.face_count);
+    setup.holes = SKINSLIDE_HOLES_FREE_ALL;
+    skinslide_slider *slider = NULL;
+    skinslide_error error;
+    assert_fails(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, SKINSLIDE_UNSUPPORTED,
+                 "patch all: holes freeAll, which frees the outer boundary too, needs rule even");
+    free(faces);
     free_mesh(&mesh);
 }
 
@@ -606,7 +718,11 @@ int main(void) {
         cmocka_unit_test(mean_values_are_of_faces_at_rest),
         cmocka_unit_test(degenerate_rest_stays_finite),
         cmocka_unit_test(wild_poses_stay_finite),
+        cmocka_unit_test(nothing_free_is_nothing_slid),
+        cmocka_unit_test(split_vertices_stay),
         cmocka_unit_test(free_loops_slide_along_themselves),
+        cmocka_unit_test(freed_sheets_stay_where_they_are),
+        cmocka_unit_test(planes_need_their_outer_boundary),
         cmocka_unit_test(largest_distances_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -130,6 +130,35 @@ static void what_is_no_patch_is_named(void **state) {
     free_mesh(&point);
 }
 
+static void expect_split(int32_t vertices, int32_t face_count, const int32_t *indices, int32_t expected, int32_t split) {
+    const int32_t counts[8] = {3, 3, 3, 3, 3, 3, 3, 3};
+    const float points[21] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, -1, 0, 0, 0, -1, 0, 0, 0, -1};
+    test_mesh mesh = copy_mesh(vertices, face_count, counts, indices, points);
+    skinslide_patch_setup choices = setup_of(NULL, 0);
+    choices.rule = SKINSLIDE_RULE_EVEN;
+    ss_patch *patch = patch_of(&mesh, choices);
+    assert_surface_holds(patch);
+    assert_int_equal(patch->vertex_count, expected);
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        split -= patch->split[v];
+    assert_int_equal(split, 0);
+    for (int32_t c = 0; c < mesh.index_count; c++)
+        assert_int_equal(ss_patch_mesh_edge(patch, indices[c], indices[c % 3 == 2 ? c - 2 : c + 1]),
+                         patch->faces.corner_edge[c]);
+    assert_int_equal(ss_patch_mesh_edge(patch, 2, 6), -1);
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
+}
+
+/* By a rule without a plane every fan of faces has a vertex of its own. */
+static void vertices_are_split(void **state) {
+    (void)state;
+    /* Two pairs of triangles that meet at vertices 2 and 5 only. */
+    expect_split(6, 4, (int32_t[]){0, 1, 2, 2, 3, 4, 1, 0, 5, 4, 3, 5}, 8, 4);
+    /* Two closed tetrahedra that share vertex 0. */
+    expect_split(7, 8, (int32_t[]){0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 0, 5, 4, 0, 4, 6, 4, 5, 6, 5, 0, 6}, 8, 2);
+}
+
 static void destroying_nothing_is_nothing(void **state) {
     (void)state;
     ss_patch_destroy(NULL);
@@ -142,6 +171,7 @@ int main(void) {
         cmocka_unit_test(the_longest_loop_is_the_outer_one),
         cmocka_unit_test(edges_of_no_length_are_clamped),
         cmocka_unit_test(what_is_no_patch_is_named),
+        cmocka_unit_test(vertices_are_split),
         cmocka_unit_test(destroying_nothing_is_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

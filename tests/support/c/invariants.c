@@ -69,7 +69,9 @@ static void check_loops(const ss_patch *patch) {
 static void check_free(const ss_patch *patch) {
     int32_t fixed = 0;
     for (int32_t v = 0; v < patch->vertex_count; v++) {
-        bool hold = patch->vertex_loop[v] == 0 || (patch->vertex_loop[v] > 0 && patch->setup->holes == SKINSLIDE_HOLES_PINNED);
+        bool outer = patch->vertex_loop[v] == 0, hole = patch->vertex_loop[v] > 0;
+        bool hold = (outer && patch->setup->holes != SKINSLIDE_HOLES_FREE_ALL) ||
+                    (hole && patch->setup->holes == SKINSLIDE_HOLES_PINNED) || patch->split[v];
         assert_int_equal(patch->fixed[v], hold);
         fixed += hold;
     }
@@ -86,16 +88,30 @@ static void check_free(const ss_patch *patch) {
     free(seen);
 }
 
-void assert_patch_holds(const ss_patch *patch) {
-    const ss_faces *faces = &patch->faces;
-    assert_faces_hold(faces);
-    assert_int_equal(patch->vertex_count - faces->edge_count + faces->face_count + patch->loop_count, 2);
+/* Those of one mesh vertex are beside each other, and split. */
+static void check_vertices(const ss_patch *patch) {
     for (int32_t v = 0; v < patch->vertex_count; v++) {
-        assert_int_equal(faces->corner_vertex[patch->vertex_corner[v]], v);
-        assert_int_equal(ss_patch_vertex(patch, patch->mesh_vertex[v]), v);
-        assert_true(v == 0 || patch->mesh_vertex[v - 1] < patch->mesh_vertex[v]);
+        int32_t own = patch->mesh_vertex[v], first = ss_patch_vertex(patch, own);
+        assert_int_equal(patch->faces.corner_vertex[patch->vertex_corner[v]], v);
+        assert_int_equal(patch->mesh_vertex[first], own);
+        assert_true(first == 0 || patch->mesh_vertex[first - 1] < own);
+        assert_true(v == 0 || patch->mesh_vertex[v - 1] <= own);
+        assert_int_equal(patch->split[v], v > first || (v + 1 < patch->vertex_count && patch->mesh_vertex[v + 1] == own));
     }
+}
+
+void assert_surface_holds(const ss_patch *patch) {
+    assert_faces_hold(&patch->faces);
+    check_vertices(patch);
     check_edges(patch);
     check_loops(patch);
     check_free(patch);
+}
+
+void assert_patch_holds(const ss_patch *patch) {
+    const ss_faces *faces = &patch->faces;
+    assert_surface_holds(patch);
+    assert_int_equal(patch->vertex_count - faces->edge_count + faces->face_count + patch->loop_count, 2);
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        assert_false(patch->split[v]);
 }

@@ -4,8 +4,10 @@
 
 #include "support.h"
 
-/* Twins are symmetric, edges numbered by their ends, loops closed and apart, Euler's count that of a disk with holes, and every
- * vertex either fixed or free, each free one after a neighbour. */
+/* Of any surface: twins are symmetric, edges numbered by their ends, loops closed and apart, and every vertex either fixed or free,
+ * each free one after a neighbour. */
+void assert_surface_holds(const ss_patch *patch);
+/* And Euler's count is that of a disk with holes, and no vertex split. */
 void assert_patch_holds(const ss_patch *patch);
 void assert_faces_hold(const ss_faces *faces);
 

@@ -58,8 +58,8 @@ class PatchSetup:
         faces: Of the mesh (n,), in any order.
         corners: Vertices (4,) on the outer boundary that go to the corners of the square; None: none.
         boundary: auto, square or circle: the outline in which the patch is laid out.
-        holes: pinned or free: what happens at the rims of holes.
-        rule: unit, fast or relaxed: where skin slides to.
+        holes: pinned, free or freeAll: what happens at the rims of holes, and by the last at the outer boundary too.
+        rule: unit, fast, relaxed or even: where skin slides to.
         interpolation: auto, linear, meanValue or limit: how a place within a face becomes a point.
         controls: What is painted.
     """
