@@ -88,10 +88,34 @@ bool ss_is_subdivided(const skinslide_mesh *mesh);
 /* Of a subdivided mesh that passed ss_check_mesh: names the face, vertex, crease or sharpness that cannot be. */
 skinslide_status ss_check_subdivision(const skinslide_mesh *mesh, skinslide_error *error);
 
-/* ---- normals.c ---- */
+/* ---- normals.c: smooth normals of a pose ---- */
 
 /* Twice the area vector of a polygon of 3 or more vertices: the sum of its fan's cross products. */
 void ss_area_vector(const int32_t *vertices, int32_t count, const float *points, double out[3]);
+
+/* Faces of a mesh around some of its vertices. */
+typedef struct ss_around {
+    int32_t face_count;
+    int32_t *face_start;    /* [face_count + 1] */
+    int32_t *corner_vertex; /* [face_start[face_count]] mesh vertices; those that are to have one normal are one here */
+} ss_around;
+/* All faces at chosen vertices: chosen is [vertex_count]. False where memory is short. */
+bool ss_take_around(const skinslide_mesh *mesh, const uint8_t *chosen, ss_memory *memory, ss_around *out);
+/* normal [vertex_count] of unit length; 0 where no face at the vertex has an area. Only those of the chosen vertices are whole. */
+void ss_smooth_normals(const ss_around *around, const float *points, int32_t vertex_count, double (*normal)[3]);
+
+/* ---- carry.c: what lives on the skin turns with it ---- */
+
+/* The turn from one unit normal to another; none, which is 0, where they are opposite, or one is 0. See skinslide_workspace_turns. */
+void ss_least_turn(const double from[3], const double to[3], double turn[3]);
+/* Vectors of either type: the other is NULL. */
+typedef struct ss_vectors {
+    float *floats;
+    double *doubles;
+} ss_vectors;
+/* skinslide_carry. The mesh is checked. */
+skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout, ss_vectors vectors,
+                          skinslide_error *error);
 
 /* ---- patch.c: one connected patch ---- */
 

@@ -1,24 +1,8 @@
-/* Normals of slid points, where a face moved: area-weighted means of face normals. */
+/* Smooth normals of a pose: at a vertex the mean of the normals of all faces there, of a patch or not, by the sine of half the
+ * angle that each has there, which plain arithmetic gives. */
 #include "mesh.h"
 
-#include <math.h>
-
-typedef struct work {
-    const skinslide_mesh *mesh;
-    int32_t *face_start;   /* [face_count + 1] */
-    uint8_t *face_moved;   /* [face_count] a vertex of it slid */
-    double (*area)[3];     /* [face_count] twice the area vector of the slid face */
-    int32_t *vertex_start; /* [vertex_count + 1] corners of each vertex ... */
-    int32_t *corner;       /* [index_count] ... in here */
-    int32_t *corner_face;  /* [index_count] */
-} work;
-
-static bool vertex_moved(const float *cached, const float *slid, int32_t vertex) {
-    for (int k = 0; k < 3; k++)
-        if (cached[3 * (int64_t)vertex + k] != slid[3 * (int64_t)vertex + k])
-            return true;
-    return false;
-}
+#include <string.h>
 
 void ss_area_vector(const int32_t *vertices, int32_t count, const float *points, double out[3]) {
     const float *o = points + 3 * (int64_t)vertices[0];
@@ -32,128 +16,71 @@ void ss_area_vector(const int32_t *vertices, int32_t count, const float *points,
     }
 }
 
-static void measure_faces(work *w, const float *cached, const float *slid, double sign) {
-    const skinslide_mesh *mesh = w->mesh;
-    for (int32_t f = 0; f < mesh->face_count; f++) {
-        const int32_t *vertices = mesh->face_indices + w->face_start[f];
-        for (int32_t k = 0; k < mesh->face_counts[f] && !w->face_moved[f]; k++)
-            w->face_moved[f] = vertex_moved(cached, slid, vertices[k]);
-        if (mesh->face_counts[f] >= 3)
-            ss_area_vector(vertices, mesh->face_counts[f], slid, w->area[f]);
-        for (int k = 0; k < 3; k++)
-            w->area[f][k] *= sign;
-    }
+/* ---- Faces around vertices ---- */
+
+static bool has_chosen(const int32_t *vertices, int32_t count, const uint8_t *chosen) {
+    for (int32_t k = 0; k < count; k++)
+        if (chosen[vertices[k]])
+            return true;
+    return false;
 }
 
-/* Corners by vertex, in the order of faces. */
-static void list_corners(work *w) {
-    const skinslide_mesh *mesh = w->mesh;
-    for (int32_t f = 0; f < mesh->face_count; f++) {
-        w->face_start[f + 1] = w->face_start[f] + mesh->face_counts[f];
-        for (int32_t c = w->face_start[f]; c < w->face_start[f + 1]; c++) {
-            w->corner_face[c] = f;
-            w->vertex_start[mesh->face_indices[c] + 1]++;
-        }
-    }
-    for (int32_t v = 0; v < mesh->vertex_count; v++)
-        w->vertex_start[v + 1] += w->vertex_start[v];
-    for (int32_t c = mesh->index_count - 1; c >= 0; c--)
-        w->corner[--w->vertex_start[mesh->face_indices[c] + 1]] = c;
-    for (int32_t v = 0; v < mesh->vertex_count; v++)
-        w->vertex_start[v] = w->vertex_start[v + 1];
-    w->vertex_start[mesh->vertex_count] = mesh->index_count;
-}
-
-/* Writes the unit vector of sum, unless it has no length. */
-static void write_normal(const double sum[3], float *normal) {
-    double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-    for (int k = 0; k < 3 && length > 0; k++)
-        normal[k] = (float)(sum[k] / length);
-}
-
-static double dot(const float *a, const float *b) {
-    return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
-}
-
-/* Within a quarter of a degree, whatever their lengths: caches round normals. */
-static bool same_normal(const float *a, const float *b) {
-    double product = dot(a, b);
-    return a == b || (product > 0 && product * product > (1 - 2e-5) * dot(a, a) * dot(b, b));
-}
-
-/* Sums faces around a vertex. With normals of corners, only those that share the normal of one corner. */
-static bool sum_around(const work *w, int32_t vertex, const float *corner_normals, const float *normal, double sum[3]) {
-    bool moved = false;
-    sum[0] = sum[1] = sum[2] = 0;
-    for (int32_t i = w->vertex_start[vertex]; i < w->vertex_start[vertex + 1]; i++) {
-        int32_t c = w->corner[i], face = w->corner_face[c];
-        if (corner_normals && !same_normal(corner_normals + 3 * (int64_t)c, normal))
+bool ss_take_around(const skinslide_mesh *mesh, const uint8_t *chosen, ss_memory *memory, ss_around *out) {
+    int32_t corner_count = 0;
+    for (int32_t f = 0, c = 0; f < mesh->face_count; c += mesh->face_counts[f++])
+        if (has_chosen(mesh->face_indices + c, mesh->face_counts[f], chosen))
+            out->face_count++, corner_count += mesh->face_counts[f];
+    out->face_start = SS_NEW(memory, int32_t, (int64_t)out->face_count + 1);
+    out->corner_vertex = SS_NEW(memory, int32_t, corner_count);
+    if (memory->failed)
+        return false;
+    for (int32_t f = 0, c = 0, taken = 0; f < mesh->face_count; c += mesh->face_counts[f++]) {
+        int32_t n = mesh->face_counts[f], start = out->face_start[taken];
+        if (!has_chosen(mesh->face_indices + c, n, chosen))
             continue;
-        moved |= w->face_moved[face];
-        for (int k = 0; k < 3; k++)
-            sum[k] += w->area[face][k];
+        memcpy(out->corner_vertex + start, mesh->face_indices + c, (size_t)n * sizeof *out->corner_vertex);
+        out->face_start[++taken] = start + n;
     }
-    return moved;
+    return true;
 }
 
-static void vertex_normals(const work *w, float *normals) {
-    double sum[3];
-    for (int32_t v = 0; v < w->mesh->vertex_count; v++)
-        if (sum_around(w, v, NULL, NULL, sum))
-            write_normal(sum, normals + 3 * (int64_t)v);
+/* ---- Normals ---- */
+
+/* A unit vector from one vertex to another; of no length where they coincide. */
+static void towards(const float *points, int32_t from, int32_t to, double out[3]) {
+    const float *p = points + 3 * (int64_t)from, *q = points + 3 * (int64_t)to;
+    for (int k = 0; k < 3; k++)
+        out[k] = (double)q[k] - p[k];
+    ss_normalise(out);
 }
 
-/* before: a copy of the cache's normals. */
-static void corner_normals(const work *w, const float *before, float *normals) {
-    double sum[3];
-    for (int32_t c = 0; c < w->mesh->index_count; c++)
-        if (sum_around(w, w->mesh->face_indices[c], before, before + 3 * (int64_t)c, sum))
-            write_normal(sum, normals + 3 * (int64_t)c);
+/* The sine of half the angle of a face at its corner k: half the distance between unit vectors along its sides. */
+static double half_angle(const int32_t *vertices, int32_t count, int32_t k, const float *points) {
+    double next[3], last[3], between[3];
+    towards(points, vertices[k], vertices[(k + 1) % count], next);
+    towards(points, vertices[k], vertices[(k + count - 1) % count], last);
+    ss_subtract(next, last, between);
+    return ss_length(between) / 2;
 }
 
-static void face_normals(const work *w, float *normals) {
-    for (int32_t f = 0; f < w->mesh->face_count; f++)
-        if (w->face_moved[f])
-            write_normal(w->area[f], normals + 3 * (int64_t)f);
+static void add_face(const int32_t *vertices, int32_t count, const float *points, double (*normal)[3]) {
+    double area[3];
+    ss_area_vector(vertices, count, points, area);
+    double size = ss_length(area);
+    if (!(size > 0 && isfinite(size)))
+        return;
+    ss_normalise(area);
+    for (int32_t k = 0; k < count; k++)
+        ss_add(half_angle(vertices, count, k, points), area, normal[vertices[k]]);
 }
 
-static skinslide_status allocate(ss_memory *memory, work *w, float **before, skinslide_error *error) {
-    const skinslide_mesh *mesh = w->mesh;
-    w->face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
-    w->face_moved = SS_NEW(memory, uint8_t, mesh->face_count);
-    w->area = ss_new(memory, mesh->face_count, sizeof *w->area);
-    w->vertex_start = SS_NEW(memory, int32_t, (int64_t)mesh->vertex_count + 1);
-    w->corner = SS_NEW(memory, int32_t, mesh->index_count);
-    w->corner_face = SS_NEW(memory, int32_t, mesh->index_count);
-    *before = SS_NEW(memory, float, 3 * (int64_t)mesh->index_count);
-    return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-}
-
-skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
-                                   skinslide_normals_layout layout, skinslide_bool left_handed, float *normals,
-                                   skinslide_error *error) {
-    ss_taken_mesh taken;
-    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
-    if (status)
-        return status;
-    if (!cached || !slid || !normals || (unsigned)layout > SKINSLIDE_NORMALS_UNIFORM)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no points or normals, or no such layout of normals");
-    ss_memory memory = {0};
-    work w = {.mesh = mesh};
-    float *before;
-    status = allocate(&memory, &w, &before, error);
-    if (!status) {
-        list_corners(&w);
-        measure_faces(&w, cached, slid, left_handed ? -1 : 1);
-        if (layout == SKINSLIDE_NORMALS_VERTEX)
-            vertex_normals(&w, normals);
-        if (layout == SKINSLIDE_NORMALS_UNIFORM)
-            face_normals(&w, normals);
-        for (int64_t i = 0; layout == SKINSLIDE_NORMALS_FACE_VARYING && i < 3 * (int64_t)mesh->index_count; i++)
-            before[i] = normals[i];
-        if (layout == SKINSLIDE_NORMALS_FACE_VARYING)
-            corner_normals(&w, before, normals);
+void ss_smooth_normals(const ss_around *around, const float *points, int32_t vertex_count, double (*normal)[3]) {
+    memset(normal, 0, (size_t)vertex_count * sizeof *normal);
+    for (int32_t f = 0; f < around->face_count; f++) {
+        int32_t start = around->face_start[f], count = around->face_start[f + 1] - start;
+        if (count >= 3)
+            add_face(around->corner_vertex + start, count, points, normal);
     }
-    ss_free(&memory);
-    return status;
+    for (int32_t v = 0; v < vertex_count; v++)
+        ss_normalise(normal[v]);
 }

@@ -84,14 +84,20 @@ skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int3
     return SKINSLIDE_OK;
 }
 
+skinslide_status ss_check_frame(const skinslide_workspace *workspace, skinslide_error *error) {
+    if (workspace->has_frame)
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
+}
+
 skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
                                                skinslide_error *error) {
     const ss_part *part;
     skinslide_status status = find_plane(workspace ? workspace->slider : NULL, patch, uv, &part, error);
     if (status)
         return status;
-    if (!workspace->has_frame)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
+    if ((status = ss_check_frame(workspace, error)))
+        return status;
     memcpy(uv, workspace->patches[patch].slide->flat.uv, (size_t)part->patch->vertex_count * sizeof *part->rest->uv);
     return SKINSLIDE_OK;
 }
@@ -104,8 +110,8 @@ skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, i
         return status;
     if (!workspace->idbuffer)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace's lookup is exact: it draws no ID buffer");
-    if (!workspace->has_frame)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the workspace has slid no frame yet");
+    if ((status = ss_check_frame(workspace, error)))
+        return status;
     const double(*uv)[2] = workspace->patches[patch].slide->flat.uv;
     if (texels)
         status = ss_idbuffer_read(workspace->idbuffer, patch, uv, texels, error);

@@ -260,6 +260,18 @@ static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_me
     return status;
 }
 
+/* The faces that smooth normals of the patches are made of. */
+static skinslide_status take_around(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error) {
+    ss_memory scratch = {0};
+    uint8_t *chosen = SS_NEW(&scratch, uint8_t, mesh->vertex_count);
+    for (int32_t p = 0; p < slider->part_count && chosen; p++)
+        for (int32_t v = 0; v < slider->parts[p].patch->vertex_count; v++)
+            chosen[slider->parts[p].patch->mesh_vertex[v]] = 1;
+    bool done = chosen && ss_take_around(mesh, chosen, &slider->memory, &slider->around);
+    ss_free(&scratch);
+    return done ? SKINSLIDE_OK : ss_out_of_memory(error);
+}
+
 /* Drops pointers to what is the caller's. */
 static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
@@ -285,6 +297,8 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
     status = copy_setups(slider, mesh, setups, error);
     for (int32_t i = 0; i < setup_count && !status; i++)
         status = add_setup(slider, mesh, i, error);
+    if (!status)
+        status = take_around(slider, mesh, error);
     ss_topology_destroy(slider->topology);
     slider->topology = NULL;
     if (status) {

@@ -28,6 +28,7 @@ struct skinslide_slider {
         *setups;           /* [setup_count] names copied, interpolation not AUTO; their arrays are the caller's, and not kept */
     ss_part *parts;        /* [part_count] */
     ss_topology *topology; /* while the slider is built, once a set-up needs it */
+    ss_around around;      /* the patches' vertices, for smooth normals */
 };
 
 /* What one thread needs to slide one patch. */
@@ -54,7 +55,15 @@ struct skinslide_workspace {
     int stop;              /* a flag that other threads set, see base.h */
     ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
     skinslide_lookup_info lookup;
+    ss_memory turning;                 /* of nothing before turns are first asked for: */
+    double (*normal)[3], (*target)[3]; /* [vertex_count] the cache's, and where each vertex slid to; normals of unit length */
 };
+
+/* How much the displacement of a free vertex, or its normal, counts where patches overlap. One of no weight keeps its limit point,
+ * for which it follows its neighbours, but has no say there. */
+static inline double ss_say(const ss_patch_work *work, int32_t i) {
+    return fmax(work->frame.weights[i], 1e-30);
+}
 
 /* ---- painted.c ---- */
 
@@ -75,6 +84,11 @@ void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls,
 /* The caller's controls of one frame, in controls [setup_count], and checked. */
 skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
                                         skinslide_controls *controls, skinslide_error *error);
+
+/* ---- inspect.c ---- */
+
+/* BAD_ARGUMENT before the first frame, and after one that failed. */
+skinslide_status ss_check_frame(const skinslide_workspace *workspace, skinslide_error *error);
 
 /* ---- workspace.c ---- */
 

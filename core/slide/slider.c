@@ -60,13 +60,10 @@ static skinslide_status slide_patch(skinslide_workspace *workspace, int32_t p, s
 
 /* ---- The blend ---- */
 
-/* A vertex of no weight keeps its limit point, for which it follows its neighbours, but has no say where patches overlap. */
-static const double least_weight = 1e-30;
-
 /* Sums weight times displacement, and weight, over the patches of each vertex. */
 static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = fmax(work->frame.weights[i], least_weight);
+        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = ss_say(work, i);
         for (int k = 0; k < 3; k++)
             total[k] += weight * work->displacement[i][k];
         total[3] += weight;

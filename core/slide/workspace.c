@@ -67,6 +67,7 @@ void skinslide_workspace_destroy(skinslide_workspace *workspace) {
             workspace->slider->parts[p].rest->rule->close(workspace->patches[p].slide);
     }
     ss_idbuffer_destroy(workspace->idbuffer);
+    ss_free(&workspace->turning);
     ss_free(&workspace->memory);
     free(workspace);
 }

@@ -1,6 +1,8 @@
-/* What else a mesh has that follows from its points: which normals, velocities and accelerations count, which are recomputed,
- * and which are blocked because they cannot be, since stale ones would shade and blur wrongly. */
+/* What else a mesh has that follows from its points: which vectors are carried with the skin, which rates are recomputed, and
+ * which are blocked because they cannot be, since stale ones would shade and blur wrongly. */
 #include "stage.h"
+
+#include "mesh.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -8,13 +10,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OUTPUTS = 2 * SS_DERIVED_ROWS, MOST_POSES = 3 };
+enum { MOST_POSES = 3 };
 
 typedef struct derivation {
     skinslide_stage_output output;
-    int32_t row;
-    skinslide_normals_layout layout; /* of normals */
+    const ss_input *input;
+    skinslide_normals_layout layout; /* of what is carried */
+    struct derivation *next;
 } derivation;
+
+/* A primvar that is an input like those of the table. */
+typedef struct offer {
+    ss_input input;
+    struct offer *next;
+} offer;
+
+typedef struct warning {
+    const char *text;
+    struct warning *next;
+} warning;
 
 struct skinslide_stage_derived {
     ss_memory memory;
@@ -24,14 +38,31 @@ struct skinslide_stage_derived {
     double *merged;
     int64_t merged_count;
     double rate;
-    bool primvar_counts; /* primvars:normals win over normals */
-    derivation derivations[MOST_OUTPUTS];
-    int32_t count;
+    bool primvar_counts;       /* primvars:normals win over normals */
+    derivation *first, **last; /* outputs */
+    offer *offers;
+    warning *warnings, **last_warning;
 };
 
-static const ss_input *inputs(void) {
+/* Of the table. */
+static const ss_input *input_of_row(int32_t row) {
     int32_t count;
-    return ss_inputs(SKINSLIDE_STAGE_DERIVED, &count);
+    return &ss_inputs(SKINSLIDE_STAGE_DERIVED, &count)[row];
+}
+
+static bool is_row(const ss_input *input, int32_t row) {
+    return input == input_of_row(row);
+}
+
+/* Of the table, or a primvar that was offered; NULL for any other. */
+static const ss_input *find_input(const skinslide_stage_derived *derived, const skinslide_stage_input *shown) {
+    int32_t row = ss_row_of(SKINSLIDE_STAGE_DERIVED, shown);
+    if (row >= 0)
+        return input_of_row(row);
+    for (const offer *own = derived->offers; own; own = own->next)
+        if (&own->input.shown == shown)
+            return &own->input;
+    return NULL;
 }
 
 static int64_t length_of_mesh(const skinslide_stage_mesh *mesh, skinslide_normals_layout layout) {
@@ -69,6 +100,7 @@ skinslide_status skinslide_stage_derived_create(const skinslide_stage_mesh *mesh
         return ss_out_of_memory(error);
     derived->mesh = mesh;
     derived->rate = rate;
+    derived->last = &derived->first, derived->last_warning = &derived->warnings;
     skinslide_status status = copy_times(derived, point_times, point_time_count, error);
     if (status)
         skinslide_stage_derived_destroy(derived);
@@ -84,9 +116,9 @@ void skinslide_stage_derived_destroy(skinslide_stage_derived *derived) {
     free(derived);
 }
 
-/* ---- Normals ---- */
+/* ---- Vectors by element ---- */
 
-/* Which elements carry a normal. Constant ones do not follow from points. */
+/* Which elements carry one. Constant ones do not follow from points. */
 static skinslide_status choose_layout(const ss_record *record, const char *interpolation, skinslide_normals_layout *layout,
                                       skinslide_error *error) {
     if (ss_is_by_vertex(interpolation))
@@ -140,102 +172,153 @@ static skinslide_status check_rate(const skinslide_stage_derived *derived, int32
     return SKINSLIDE_OK;
 }
 
+/* ---- Warnings ---- */
+
+static void warn(skinslide_stage_derived *derived, const char *text) {
+    warning *made = SS_NEW(&derived->memory, warning, 1);
+    if (!made)
+        return;
+    made->text = ss_copy_text(&derived->memory, text);
+    *derived->last_warning = made, derived->last_warning = &made->next;
+}
+
+/* Of one pose on points of many. */
+static void warn_of_static(skinslide_stage_derived *derived, const char *name) {
+    skinslide_error said;
+    ss_fail(&said, SKINSLIDE_BAD_POINTS, SS_NAMED " has no samples, but points has: it belongs to another pose than they do",
+            SS_NAME(name));
+    warn(derived, said.message);
+}
+
+const char *skinslide_stage_derived_warning(const skinslide_stage_derived *derived, int32_t number) {
+    const warning *own = derived && number >= 0 ? derived->warnings : NULL;
+    while (own && number-- > 0)
+        own = own->next;
+    return own ? own->text : NULL;
+}
+
 /* ---- Outputs ---- */
 
 static const char *property_name(skinslide_stage_derived *derived, const skinslide_stage_input *input, const char *suffix) {
-    char name[64];
-    snprintf(name, sizeof name, "%s%s%s", input->prefix, input->name, suffix);
-    return ss_copy_text(&derived->memory, name);
+    size_t size = strlen(input->prefix) + strlen(input->name) + strlen(suffix) + 1;
+    char *name = SS_NEW(&derived->memory, char, (int64_t)size);
+    if (name)
+        snprintf(name, size, "%s%s%s", input->prefix, input->name, suffix);
+    return name;
+}
+
+/* One more, of nothing yet: NULL where memory is short. */
+static derivation *append(skinslide_stage_derived *derived, const ss_input *input) {
+    derivation *made = SS_NEW(&derived->memory, derivation, 1);
+    if (!made)
+        return NULL;
+    made->input = input;
+    *derived->last = made, derived->last = &made->next;
+    return made;
 }
 
 /* A primvar keeps the type that it has; of the others USD says which. */
-static void add(skinslide_stage_derived *derived, int32_t row, const ss_record *record, skinslide_normals_layout layout,
-                const char *reason) {
-    const ss_input *input = &inputs()[row];
-    derivation *made = &derived->derivations[derived->count++];
-    made->row = row, made->layout = layout;
+static void add(skinslide_stage_derived *derived, const ss_input *input, const ss_record *record,
+                skinslide_normals_layout layout, const char *reason) {
+    bool is_primvar = input->shown.is_primvar, is_carried = input->kind == SS_KIND_CARRIED && !reason;
+    derivation *made = append(derived, input);
+    if (!made)
+        return;
+    made->layout = layout;
     made->output = (skinslide_stage_output){
         .name = property_name(derived, &input->shown, ""),
-        .type_name = input->shown.is_primvar ? ss_copy_text(&derived->memory, record->value.type_name) : input->shown.type_name,
+        .type_name = is_primvar ? ss_copy_text(&derived->memory, record->value.type_name) : input->shown.type_name,
         .pose_count = reason ? 0 : input->pose_count,
         .count = (int32_t)length_of_mesh(derived->mesh, layout),
         .reason = reason ? ss_copy_text(&derived->memory, reason) : NULL,
+        .is_carried = is_carried,
+        .is_double = is_carried && is_primvar && record->value.type == SKINSLIDE_VALUE_DOUBLE,
     };
 }
 
 /* What is blocked because something else is written, or blocked, in its place. */
-static void block(skinslide_stage_derived *derived, int32_t row, const char *suffix, const char *type_name) {
-    derivation *made = &derived->derivations[derived->count++];
-    *made = (derivation){.row = row};
-    made->output.name = property_name(derived, &inputs()[row].shown, suffix);
+static void block(skinslide_stage_derived *derived, const ss_input *input, const char *suffix, const char *type_name) {
+    derivation *made = append(derived, input);
+    if (!made)
+        return;
+    made->output.name = property_name(derived, &input->shown, suffix);
     made->output.type_name = type_name;
 }
 
-static skinslide_status judge(const skinslide_stage_derived *derived, int32_t row, const ss_record *record,
+static skinslide_status judge(const skinslide_stage_derived *derived, const ss_input *input, const ss_record *record,
                               const char *interpolation, const double *times, int64_t time_count,
                               skinslide_normals_layout *layout, skinslide_error *error) {
-    const ss_input *input = &inputs()[row];
-    skinslide_status status = input->kind == SS_KIND_NORMALS ? choose_layout(record, interpolation, layout, error)
+    skinslide_status status = input->kind == SS_KIND_CARRIED ? choose_layout(record, interpolation, layout, error)
                                                              : check_rate(derived, input->pose_count, times, time_count, error);
     return status ? status : check_value(derived->mesh, record, *layout, error);
 }
 
 /* Normals that the primvar hides are read again where it has to be blocked. */
 static void block_hidden(skinslide_stage_derived *derived) {
-    block(derived, SS_ROW_NORMALS, "", inputs()[SS_ROW_NORMALS].shown.type_name);
+    const ss_input *normals = input_of_row(SS_ROW_NORMALS);
+    block(derived, normals, "", normals->shown.type_name);
 }
 
 static void hide(skinslide_stage_derived *derived) {
-    derivation *primvar = &derived->derivations[0];
-    primvar->output.hidden = property_name(derived, &inputs()[SS_ROW_NORMALS].shown, "");
+    derivation *primvar = derived->first;
+    primvar->output.hidden = property_name(derived, &input_of_row(SS_ROW_NORMALS)->shown, "");
     if (!primvar->output.pose_count)
         block_hidden(derived);
 }
 
-static void take(skinslide_stage_derived *derived, int32_t row, const ss_record *record, const double *times,
+static void take(skinslide_stage_derived *derived, const ss_input *input, const ss_record *record, const double *times,
                  int64_t time_count) {
     skinslide_error why;
     skinslide_normals_layout layout = SKINSLIDE_NORMALS_VERTEX;
-    const char *interpolation = row == SS_ROW_NORMALS && !record->value.interpolation ? "vertex" : ss_interpolation(record);
-    bool is_constant = inputs()[row].kind == SS_KIND_NORMALS && strcmp(interpolation, "constant") == 0;
-    if (row == SS_ROW_NORMALS && derived->primvar_counts) {
-        if (derived->count)
+    bool is_attribute = is_row(input, SS_ROW_NORMALS), is_carried = input->kind == SS_KIND_CARRIED;
+    const char *interpolation = is_attribute && !record->value.interpolation ? "vertex" : ss_interpolation(record);
+    if (is_attribute && derived->primvar_counts) {
+        if (derived->first)
             hide(derived);
         return;
     }
-    derived->primvar_counts = derived->primvar_counts || row == SS_ROW_NORMALS_PRIMVAR;
-    if (is_constant)
+    derived->primvar_counts = derived->primvar_counts || is_row(input, SS_ROW_NORMALS_PRIMVAR);
+    if (is_carried && strcmp(interpolation, "constant") == 0)
         return;
-    skinslide_status status = judge(derived, row, record, interpolation, times, time_count, &layout, &why);
-    add(derived, row, record, layout, status ? why.message : NULL);
+    skinslide_status status = judge(derived, input, record, interpolation, times, time_count, &layout, &why);
+    add(derived, input, record, layout, status ? why.message : NULL);
     if (record->indices.type != SKINSLIDE_VALUE_NONE)
-        block(derived, row, ":indices", "int[]");
+        block(derived, input, ":indices", "int[]");
+    if (!status && is_carried && time_count < 2 && derived->merged_count > 1)
+        warn_of_static(derived, record->value.name);
+}
+
+/* Whether an input has made an output. */
+static bool is_taken(const skinslide_stage_derived *derived, const ss_input *input) {
+    for (const derivation *own = derived->first; own; own = own->next)
+        if (own->input == input)
+            return true;
+    return false;
 }
 
 skinslide_status skinslide_stage_derived_take(skinslide_stage_derived *derived, const skinslide_stage_input *input,
                                               const skinslide_value *value, const double *times, int64_t time_count,
                                               skinslide_error *error) {
-    int32_t row = ss_row_of(SKINSLIDE_STAGE_DERIVED, input);
-    if (!derived || row < 0 || time_count < 0 || (time_count > 0 && !times) || derived->count + 2 > MOST_OUTPUTS)
+    const ss_input *own = derived ? find_input(derived, input) : NULL;
+    if (!own || time_count < 0 || (time_count > 0 && !times) || is_taken(derived, own))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "nothing to derive into, no input of that, one taken twice, or no times");
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
     if (!status && record.value.type != SKINSLIDE_VALUE_NONE)
-        take(derived, row, &record, times, time_count);
+        take(derived, own, &record, times, time_count);
     return status ? status : derived->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
 skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived, const skinslide_stage_input *input,
                                                const skinslide_value *value, skinslide_error *error) {
-    int32_t row = ss_row_of(SKINSLIDE_STAGE_DERIVED, input);
-    if (!derived || row < 0)
+    const ss_input *of = derived ? find_input(derived, input) : NULL;
+    if (!of)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "nothing derived, or no input of that");
     ss_record record;
     skinslide_error why;
     skinslide_status status = ss_open(value, &record, error);
-    for (int32_t i = 0; !status && i < derived->count; i++) {
-        derivation *own = &derived->derivations[i];
-        if (own->row != row || !own->output.pose_count || !check_shape(derived->mesh, &record, own->layout, &why))
+    for (derivation *own = status ? NULL : derived->first; own; own = own->next) {
+        if (own->input != of || !own->output.pose_count || !check_shape(derived->mesh, &record, own->layout, &why))
             continue;
         own->output.pose_count = 0;
         own->output.reason = ss_copy_text(&derived->memory, why.message);
@@ -246,15 +329,59 @@ skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
 }
 
 const skinslide_stage_output *skinslide_stage_derived_output(const skinslide_stage_derived *derived, int32_t number) {
-    return number >= 0 && number < derived->count ? &derived->derivations[number].output : NULL;
+    const derivation *own = derived && number >= 0 ? derived->first : NULL;
+    while (own && number-- > 0)
+        own = own->next;
+    return own ? &own->output : NULL;
+}
+
+/* ---- Primvars that are offered ---- */
+
+static const skinslide_stage_input *accept(skinslide_stage_derived *derived, const ss_primvar *primvar, ss_kind kind,
+                                           int32_t pose_count) {
+    offer *made = SS_NEW(&derived->memory, offer, 1);
+    if (!made)
+        return NULL;
+    made->input.shown = (skinslide_stage_input){
+        .name = ss_copy_text(&derived->memory, primvar->name + strlen(SS_PRIMVARS)),
+        .type_name = ss_copy_text(&derived->memory, primvar->type_name),
+        .group = SKINSLIDE_STAGE_DERIVED,
+        .prefix = SS_PRIMVARS,
+        .when = SKINSLIDE_STAGE_ANIMATED,
+        .is_primvar = 1,
+    };
+    made->input.kind = kind, made->input.pose_count = pose_count;
+    made->next = derived->offers, derived->offers = made;
+    return &made->input.shown;
+}
+
+skinslide_status skinslide_stage_derived_offer(skinslide_stage_derived *derived, const char *name, const char *type_name,
+                                               const char *interpolation, int32_t element_size,
+                                               const skinslide_stage_input **out, skinslide_error *error) {
+    if (!derived || !name || !type_name || !out)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "nothing to derive into, no name or type, or no place for the input");
+    const ss_primvar primvar = {name, type_name, interpolation ? interpolation : "constant", element_size};
+    const skinslide_stage_input *input = NULL;
+    skinslide_error told;
+    ss_kind kind;
+    int32_t pose_count;
+    ss_following following = ss_follows(&primvar, &kind, &pose_count, &told);
+    if (following == SS_FOLLOWS_UNKNOWN)
+        warn(derived, told.message);
+    if (following == SS_FOLLOWS)
+        input = accept(derived, &primvar, kind, pose_count);
+    if (derived->memory.failed)
+        return ss_out_of_memory(error);
+    *out = input;
+    return SKINSLIDE_OK;
 }
 
 /* ---- Values ---- */
 
 static const derivation *find(const skinslide_stage_derived *derived, const skinslide_stage_output *output) {
-    for (int32_t i = 0; derived && i < derived->count; i++)
-        if (&derived->derivations[i].output == output && output->pose_count)
-            return &derived->derivations[i];
+    for (const derivation *own = derived ? derived->first : NULL; own; own = own->next)
+        if (&own->output == output && output->pose_count)
+            return own;
     return NULL;
 }
 
@@ -269,22 +396,31 @@ int32_t skinslide_stage_derived_times(const skinslide_stage_derived *derived, co
     return 1;
 }
 
+static void copy(const ss_record *record, ss_vectors out) {
+    if (out.floats)
+        ss_copy_floats(record, out.floats);
+    for (int64_t i = 0; out.doubles && i < 3 * record->length; i++)
+        out.doubles[i] = ss_number(record, i / 3, (int32_t)(i % 3));
+}
+
+/* The output, of the cache's vectors. */
 static skinslide_status compute(const skinslide_stage_derived *derived, const derivation *own,
-                                const skinslide_stage_pose *poses, float *out, skinslide_error *error) {
+                                const skinslide_stage_pose *poses, ss_vectors out, skinslide_error *error) {
     skinslide_mesh mesh = ss_faces_of(derived->mesh);
     skinslide_sample samples[MOST_POSES];
-    if (own->output.pose_count == 1)
-        return skinslide_normals(&mesh, poses[0].cached, poses[0].slid, own->layout, derived->mesh->left_handed, out, error);
+    if (own->output.is_carried)
+        return poses[0].turns ? ss_carry(&mesh, poses[0].turns, own->layout, out, error)
+                              : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the pose has no turns");
     for (int32_t i = 0; i < own->output.pose_count; i++)
         samples[i] =
             (skinslide_sample){sizeof(skinslide_sample), poses[i].time / derived->rate, poses[i].cached, poses[i].slid};
-    return own->output.pose_count == 2 ? skinslide_velocities(mesh.vertex_count, samples, out, error)
-                                       : skinslide_accelerations(mesh.vertex_count, samples, out, error);
+    return own->output.pose_count == 2 ? skinslide_velocities(mesh.vertex_count, samples, out.floats, error)
+                                       : skinslide_accelerations(mesh.vertex_count, samples, out.floats, error);
 }
 
 skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *derived, const skinslide_stage_output *output,
                                                const skinslide_value *value, const skinslide_stage_pose *poses,
-                                               int32_t pose_count, float *out, skinslide_error *error) {
+                                               int32_t pose_count, void *out, skinslide_error *error) {
     const derivation *own = find(derived, output);
     if (!own || pose_count < 0 || (pose_count && !poses) || !out)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such output, no poses, or no place for the value");
@@ -301,6 +437,7 @@ skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *de
         status = ss_take_all(poses, pose_count, "skinslide_stage_pose", taken, sizeof standard, &standard, error);
     if (status)
         return status;
-    ss_copy_floats(&record, out);
-    return compute(derived, own, taken, out, error);
+    ss_vectors vectors = output->is_double ? (ss_vectors){NULL, out} : (ss_vectors){out, NULL};
+    copy(&record, vectors);
+    return compute(derived, own, taken, vectors, error);
 }

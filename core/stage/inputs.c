@@ -107,8 +107,8 @@ static const ss_input control_inputs[SS_CONTROL_ROWS] = {
     .shown = {name, type, NULL, NULL, SKINSLIDE_STAGE_DERIVED, prefix, SKINSLIDE_STAGE_ANIMATED, primvar, 0}
 
 static const ss_input derived_inputs[SS_DERIVED_ROWS] = {
-    [SS_ROW_NORMALS_PRIMVAR] = {OF_DERIVED("normals", "normal3f[]", "primvars:", 1), .kind = SS_KIND_NORMALS, .pose_count = 1},
-    [SS_ROW_NORMALS] = {OF_DERIVED("normals", "normal3f[]", "", 0), .kind = SS_KIND_NORMALS, .pose_count = 1},
+    [SS_ROW_NORMALS_PRIMVAR] = {OF_DERIVED("normals", "normal3f[]", "primvars:", 1), .kind = SS_KIND_CARRIED, .pose_count = 1},
+    [SS_ROW_NORMALS] = {OF_DERIVED("normals", "normal3f[]", "", 0), .kind = SS_KIND_CARRIED, .pose_count = 1},
     [SS_ROW_VELOCITIES] = {OF_DERIVED("velocities", "vector3f[]", "", 0), .kind = SS_KIND_RATE, .pose_count = 2},
     [SS_ROW_ACCELERATIONS] = {OF_DERIVED("accelerations", "vector3f[]", "", 0), .kind = SS_KIND_RATE, .pose_count = 3},
 };

@@ -4,7 +4,7 @@
  *     inputs ─► values ─► topology, rest, scheme       a mesh
  *                         settings (faces)             a patch
  *                         controls (textures)          a frame
- *                         derived (times)              what follows from points */
+ *                         follows ─► derived (times)   what follows from points */
 #ifndef SS_STAGE_H
 #define SS_STAGE_H
 
@@ -85,8 +85,8 @@ typedef enum ss_kind {
     SS_KIND_PAINT,   /* by point, by face or constant */
     SS_KIND_FACTORS, /* by painted edge */
     SS_KIND_TEXTURE, /* multiplies paint by point */
-    SS_KIND_NORMALS,
-    SS_KIND_RATE
+    SS_KIND_CARRIED, /* turns as the skin does */
+    SS_KIND_RATE     /* of change of the points */
 } ss_kind;
 
 /* What a number must be. */
@@ -286,6 +286,26 @@ void ss_texture_drop(ss_texture *texture);
 /* By vertex, 1 off the patch; NULL where there is no map, or none yet. */
 const float *ss_texture_values(const ss_texture *texture);
 const skinslide_stage_texture *ss_texture_shown(const ss_texture *texture);
+
+/* ---- follows.c: primvars that follow the skin ---- */
+
+#define SS_PRIMVARS "primvars:"
+
+/* A primvar of a mesh as it is declared. */
+typedef struct ss_primvar {
+    const char *name; /* "primvars:tangents" */
+    const char *type_name, *interpolation;
+    int32_t element_size;
+} ss_primvar;
+
+typedef enum ss_following {
+    SS_FOLLOWS_NOT,
+    SS_FOLLOWS,         /* as something of a kind that takes that many poses */
+    SS_FOLLOWS_UNKNOWN, /* it seems to, but cannot be carried: told says why */
+} ss_following;
+
+/* Not what is no primvar, or an input of a table. */
+ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *told);
 
 /* ---- times.c ---- */
 

@@ -79,7 +79,7 @@ void Data::addMesh(const std::shared_ptr<LiveMesh> &live) {
         }
         // Normals may move over points that do not.
         const Attribute &cached = derived.cached.attribute();
-        compute(name, derived.output->type_name, mesh.times.empty() ? cached.times() : mesh.times,
+        compute(name, derived.output->type_name, mesh.times.empty() ? derived.cached.samples() : mesh.times,
                 [live, &derived](double time) { return live->derived(derived, time); });
         VtValue interpolation = cached.metadata(names().interpolation);
         if (!interpolation.IsEmpty())

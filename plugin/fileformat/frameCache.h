@@ -24,6 +24,7 @@ using namespace PXR_NS;
 struct Frame {
     VtValue points;      // slid, or the cache's own
     VtVec3fArray cached; // before sliding; empty where the frame could not be solved
+    VtVec3fArray turns;  // how the skin turned under each point, where anything depends on it
     size_t bytes = 0;    // that are kept for it alone
 };
 

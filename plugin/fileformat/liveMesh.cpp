@@ -168,20 +168,22 @@ std::vector<skinslide_controls> LiveMesh::controlsAt(double time, const Work &wo
 
 Frame LiveMesh::slide(double time) {
     Record record = _mesh->points.at(time);
-    VtVec3fArray cached = cachedPoints(record), slid(cached.size());
+    VtVec3fArray cached = cachedPoints(record), slid(cached.size()), turns(_mesh->carries() ? cached.size() : 0);
     Work work = takeWork();
     try {
         std::vector<skinslide_controls> controls = controlsAt(time, work);
         Counted counted;
         call(skinslide_slide, work.workspace.get(), floatsOf(cached), controls.empty() ? nullptr : controls.data(),
              floatsOf(&slid), nullptr);
+        if (!turns.empty())
+            call(skinslide_workspace_turns, work.workspace.get(), floatsOf(cached), floatsOf(&turns));
     } catch (const Fault &) {
         giveBack(std::move(work));
         throw;
     }
     giveBack(std::move(work));
     int arrays = record.value().IsHolding<VtVec3fArray>() ? 1 : 2;
-    return {VtValue(slid), cached, arrays * slid.size() * sizeof(GfVec3f)};
+    return {VtValue(slid), cached, turns, (arrays * slid.size() + turns.size()) * sizeof(GfVec3f)};
 }
 
 Frame LiveMesh::solve(double time) {
@@ -190,7 +192,7 @@ Frame LiveMesh::solve(double time) {
     } catch (const std::exception &bad) {
         say(time, std::string(bad.what()) + "; the points are those of the cache");
         VtValue points = asDeclared(_mesh->points.attribute().at(time));
-        return {points, {}, points.IsArrayValued() ? points.GetArraySize() * sizeof(GfVec3f) : 0};
+        return {points, {}, {}, points.IsArrayValued() ? points.GetArraySize() * sizeof(GfVec3f) : 0};
     }
 }
 
@@ -229,13 +231,14 @@ VtValue LiveMesh::derived(const Derived &derived, double time) {
         if (frames.back()->cached.empty())
             return asDeclared(derived.cached.attribute().at(time));
         poses.push_back({sizeof(skinslide_stage_pose), times[i], floatsOf(frames.back()->cached),
-                         floatsOf(frames.back()->points.UncheckedGet<VtVec3fArray>())});
+                         floatsOf(frames.back()->points.UncheckedGet<VtVec3fArray>()), floatsOf(frames.back()->turns)});
     }
     try {
-        VtVec3fArray out(static_cast<size_t>(output->count));
-        call(skinslide_stage_derived_value, _mesh->derivation.get(), output, derived.cached.at(time), poses.data(), count,
-             floatsOf(&out));
-        return VtValue(out);
+        VtVec3fArray floats(output->is_double ? 0 : static_cast<size_t>(output->count));
+        VtVec3dArray doubles(output->is_double ? static_cast<size_t>(output->count) : 0);
+        void *out = output->is_double ? static_cast<void *>(doubles.data()) : floats.data();
+        call(skinslide_stage_derived_value, _mesh->derivation.get(), output, derived.cached.at(time), poses.data(), count, out);
+        return output->is_double ? VtValue(doubles) : VtValue(floats);
     } catch (const std::exception &bad) {
         say(time, std::string(output->name) + " cannot be recomputed, so they are blocked here: " + bad.what());
         return VtValue(SdfValueBlock());

@@ -7,6 +7,10 @@
 
 namespace skinslide {
 
+bool PatchedMesh::carries() const {
+    return std::any_of(derived.begin(), derived.end(), [](const Derived &own) { return own.output->is_carried; });
+}
+
 bool PatchedMesh::controlsVary() const {
     return std::any_of(patches.begin(), patches.end(), [](const Patch &patch) { return patch.varies(); });
 }
@@ -160,6 +164,24 @@ std::vector<double> timesOf(const PatchedMesh &mesh) {
     return times;
 }
 
+// The primvars that follow from points too.
+void addOffered(Composition &composition, const Prim &prim, skinslide_stage_derived *derived, std::vector<Property> *cached) {
+    TfTokenVector properties = prim.propertyNames();
+    std::sort(properties.begin(), properties.end());
+    for (const TfToken &name : properties) {
+        Attribute attribute = prim.attribute(name);
+        if (!attribute.authored() && !attribute.clipped())
+            continue;
+        VtValue size = attribute.metadata(names().elementSize);
+        const skinslide_stage_input *input = nullptr;
+        call(skinslide_stage_derived_offer, derived, name.GetText(), attribute.typeName().GetText(),
+             attribute.token(names().interpolation, names().constant).GetText(), size.IsHolding<int>() ? size.Get<int>() : 1,
+             &input);
+        if (input)
+            cached->emplace_back(composition, prim, input);
+    }
+}
+
 void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, std::vector<std::string> *problems) {
     std::vector<double> pointTimes = mesh->points.attribute().times();
     mesh->derivation =
@@ -167,15 +189,18 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
                             static_cast<int64_t>(pointTimes.size()), composition.root()->GetTimeCodesPerSecond());
     skinslide_stage_derived *derived = mesh->derivation.get();
     std::vector<Property> cached = properties(composition, prim, SKINSLIDE_STAGE_DERIVED);
+    addOffered(composition, prim, derived, &cached);
     for (const Property &property : cached) {
-        std::vector<double> times = property.attribute().times();
+        std::vector<double> times = property.samples();
         call(skinslide_stage_derived_take, derived, property.input(), property.first(), times.data(),
              static_cast<int64_t>(times.size()));
     }
     for (const Property &property : cached) {
-        for (double time : property.attribute().times())
+        for (double time : property.samples())
             call(skinslide_stage_derived_check, derived, property.input(), property.at(time));
     }
+    for (int32_t i = 0; const char *said = skinslide_stage_derived_warning(derived, i); i++)
+        problems->push_back(mesh->path.GetString() + ": " + said);
     for (int32_t i = 0; const skinslide_stage_output *output = skinslide_stage_derived_output(derived, i); i++) {
         auto own = std::find_if(cached.begin(), cached.end(),
                                 [&](const Property &property) { return property.attribute().name() == output->name; });

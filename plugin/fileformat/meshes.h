@@ -24,6 +24,7 @@ struct PatchedMesh {
     std::vector<Derived> derived;
 
     bool controlsVary() const;
+    bool carries() const; // whether anything depends on how the skin turned
 };
 
 // Every mesh that can be slid. `problems` says of every other why not, each a line that begins with the prim.

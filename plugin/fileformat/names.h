@@ -14,7 +14,7 @@ struct Names {
     const TfToken points{"points"}, extent{"extent"}, indices{"indices"}, elementType{"elementType"};
     const TfToken prototypes{"prototypes"}, apiSchemas{"apiSchemas"}, clips{"clips"};
     const TfToken jointIndices{"primvars:skel:jointIndices"}, blendShapes{"skel:blendShapeTargets"};
-    const TfToken interpolation{"interpolation"}, constant{"constant"};
+    const TfToken interpolation{"interpolation"}, constant{"constant"}, elementSize{"elementSize"};
 };
 
 inline const Names &names() {

@@ -13,7 +13,9 @@
 #include "pxr/base/gf/vec4h.h"
 #include "pxr/usd/sdf/assetPath.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace skinslide {
 
@@ -123,6 +125,12 @@ std::vector<double> Property::times() const {
         }
     }
     return times;
+}
+
+std::vector<double> Property::samples() const {
+    std::vector<double> own = _values.times(), indices = _indices.times(), all;
+    std::set_union(own.begin(), own.end(), indices.begin(), indices.end(), std::back_inserter(all));
+    return all;
 }
 
 std::vector<Property> properties(Composition &composition, const Prim &prim, skinslide_stage_group group,

@@ -89,7 +89,8 @@ class Property {
     bool varies() const {
         return _values.authored() && (_values.varies() || _indices.varies());
     }
-    std::vector<double> times() const; // of values and of indices, where they vary
+    std::vector<double> times() const;   // of values and of indices, where they vary
+    std::vector<double> samples() const; // of both, each once, ascending
     Record at(double time) const {
         return Record(_values, time, _indices.authored() ? &_indices : nullptr);
     }

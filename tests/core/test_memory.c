@@ -84,7 +84,7 @@ typedef struct scene {
     skinslide_patch_setup setups[SETUPS];
     skinslide_controls controls[SETUPS];
     painted paint;
-    float *points, *slid, *slide, *normals, *limits;
+    float *points, *slid, *slide, *turns, *normals, *limits;
 } scene;
 
 /* Three set-ups, one of them relaxed and one even, of two grids and holes; painted and limited by the frame, with edges. */
@@ -106,13 +106,14 @@ static void make_scene(scene *s) {
     s->controls[0].edges = edges, s->controls[0].edge_density = factors, s->controls[0].edge_count = 1;
     s->points = random_pose(&s->mesh, 1);
     s->slid = malloc(POINT_BYTES(&s->mesh)), s->slide = malloc(POINT_BYTES(&s->mesh));
+    s->turns = malloc(POINT_BYTES(&s->mesh));
     s->normals = calloc((size_t)s->mesh.index_count, sizeof(float[3]));
     memcpy(s->slid, s->points, POINT_BYTES(&s->mesh));
     free_mesh(&sheet), free_mesh(&holed);
 }
 
 static void free_scene(scene *s) {
-    free(s->faces), free(s->points), free(s->slid), free(s->slide), free(s->normals), free(s->limits);
+    free(s->faces), free(s->points), free(s->slid), free(s->slide), free(s->turns), free(s->normals), free(s->limits);
     free_painted(&s->paint);
     free_mesh(&s->mesh);
 }
@@ -160,7 +161,9 @@ static skinslide_status run_all(void *subject, skinslide_error *error) {
     if (!status)
         status = skinslide_diagnose(slider, s->controls, NULL, s->points, s->slid, &diagnostics, error);
     if (!status)
-        status = skinslide_normals(&view, s->points, s->slid, SKINSLIDE_NORMALS_FACE_VARYING, 0, s->normals, error);
+        status = skinslide_workspace_turns(workspace, s->points, s->turns, error);
+    if (!status)
+        status = skinslide_carry(&view, s->turns, SKINSLIDE_NORMALS_FACE_VARYING, s->normals, error);
     if (!status)
         status = skinslide_limit_points(&view, s->points, &place, 1, point, error);
     skinslide_workspace_destroy(workspace);
@@ -339,8 +342,15 @@ static skinslide_status run_stage_controls(const stage_scene *s, skinslide_stage
 static skinslide_status run_stage_derived(const skinslide_stage_mesh *mesh, skinslide_error *error) {
     const double times[] = {1, 2};
     const skinslide_value none = blocked_of("velocities");
+    const skinslide_stage_input *input;
     skinslide_stage_derived *derived = NULL;
     skinslide_status status = skinslide_stage_derived_create(mesh, times, 2, 24, &derived, error);
+    if (!status)
+        status = skinslide_stage_derived_offer(derived, "primvars:tangents", "vector3f[]", "vertex", 1, &input, error);
+    if (!status)
+        status = skinslide_stage_derived_take(derived, input, &none, times, 2, error);
+    if (!status)
+        status = skinslide_stage_derived_offer(derived, "primvars:tangents", "float4[]", "vertex", 1, &input, error);
     if (!status)
         status = skinslide_stage_derived_take(derived, input_of(SKINSLIDE_STAGE_DERIVED, NULL, "velocities"), &none, times, 2,
                                               error);

@@ -262,7 +262,44 @@ def clips(edit: Callable[[Usd.Prim], None], declare: Callable[[Usd.Prim], None])
     return author
 
 
-# ---- Normals and rates ----
+# ---- Normals, vectors and rates ----
+
+# Names of primvars: vectors that the skin carries, by role the last; rates of points; and what is left as it is.
+CARRIED = (
+    "normals",
+    "normal",
+    "N",
+    "tangents",
+    "bitangents",
+    "tangentU",
+    "tangentv",
+    "binormals",
+    "rig:tangent",
+    "flow",
+)
+RATES = ("velocities", "v", "accelerations")
+LEFT = ("Nref", "__Nref", "restNormals", "bentNormals", "width")
+
+
+def directions(
+    name: str,
+    type_name: Sdf.ValueTypeName = Types.Vector3fArray,
+    interpolation: str = "vertex",
+    count: int = 49,
+    times: Iterable[float | None] = FRAMES,
+) -> Edit:
+    """A primvar of vectors of any length, others at each time."""
+    element, size = _vector(type_name), type_name.scalarType.type.pythonClass.dimension
+
+    def values(time: float | None) -> list:
+        numbers = np.random.default_rng(int(time or 0)).normal(size=(count, size))
+        return [element(*map(float, each)) for each in numbers]
+
+    return all_of(*(put(name, type_name, interpolation, values(time), time) for time in times))
+
+
+def of_size(name: str, size: int) -> Edit:
+    return lambda scene: UsdGeom.PrimvarsAPI(scene.prim).GetPrimvar(name).SetElementSize(size)
 
 
 def vectors(attribute: str, count: int, times: Iterable[float | None], value: tuple = (0, 0, 1)) -> Edit:

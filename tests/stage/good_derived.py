@@ -4,16 +4,21 @@ import numpy as np
 from pxr import Gf, Vt
 
 from edits import (
+    CARRIED,
     DENSITY,
     FARTHEST,
+    LEFT,
+    RATES,
     WEIGHT,
     Scene,
     Types,
     all_of,
     blocked_at,
+    directions,
     half_way,
     indexed,
     normals,
+    of_size,
     painted,
     put,
     ramp,
@@ -25,6 +30,15 @@ from edits import (
 )
 from rows import Good
 from stages import FRAMES
+
+ROLES = (
+    Types.Normal3fArray,
+    Types.Normal3hArray,
+    Types.Normal3dArray,
+    Types.Vector3fArray,
+    Types.Vector3hArray,
+    Types.Vector3dArray,
+)
 
 
 def everything_that_varies(scene: Scene) -> None:
@@ -53,16 +67,21 @@ DERIVED = [
     ),
     Good("normals: constant, which are left", normals("constant", 1)),
     Good("normals: interpolation of the fallback", normals(None, 49)),
-    Good("normals: without samples", normals("vertex", 49, [None])),
+    Good("normals: without samples", normals("vertex", 49, [None]), warns="normals has no samples, but points has"),
     Good("normals: samples of their own", normals("vertex", 49, [1001, 1001.5])),
     Good("normals: over points without samples", all_of(still, normals("vertex", 49))),
-    Good("normals: a primvar", put("normals", Types.Normal3fArray, "vertex", [(0, 0, 1)] * 49)),
+    Good(
+        "normals: a primvar",
+        put("normals", Types.Normal3fArray, "vertex", [(0, 0, 1)] * 49),
+        warns="has no samples, but points has",
+    ),
     Good(
         "normals: an indexed primvar",
         all_of(
             put("normals", Types.Normal3fArray, "faceVarying", [(0, 0, 1), (0, 1, 0)]), indexed("normals", [0, 1] * 72)
         ),
         blocked=("primvars:normals:indices",),
+        warns="has no samples, but points has",
     ),
     Good("normals: a constant primvar, which is left", put("normals", Types.Normal3fArray, "constant", [(0, 0, 1)])),
     Good(
@@ -81,9 +100,18 @@ DERIVED = [
     Good(
         "normals: the primvar wins",
         all_of(normals("uniform", 36), put("normals", Types.Normal3fArray, "vertex", [(0, 0, 1)] * 49)),
+        warns="has no samples, but points has",
     ),
-    Good("normals: double", all_of(retyped("normals", Types.Normal3dArray, Vt.Vec3dArray([(0, 0, 1)] * 49)))),
-    Good("normals: half", all_of(retyped("normals", Types.Normal3hArray, Vt.Vec3hArray([Gf.Vec3h(0, 0, 1)] * 49)))),
+    Good(
+        "normals: double",
+        all_of(retyped("normals", Types.Normal3dArray, Vt.Vec3dArray([(0, 0, 1)] * 49))),
+        warns="has no samples, but points has",
+    ),
+    Good(
+        "normals: half",
+        all_of(retyped("normals", Types.Normal3hArray, Vt.Vec3hArray([Gf.Vec3h(0, 0, 1)] * 49))),
+        warns="has no samples, but points has",
+    ),
     Good(
         "normals: an indexed primvar over time",
         all_of(
@@ -93,8 +121,16 @@ DERIVED = [
         ),
         blocked=("primvars:normals:indices",),
     ),
-    Good("normals: a primvar of doubles", put("normals", Types.Normal3dArray, "vertex", [(0, 0, 1)] * 49)),
-    Good("normals: a primvar of another kind", put("normals", Types.Float3Array, "vertex", [(0, 0, 1)] * 49)),
+    Good(
+        "normals: a primvar of doubles",
+        put("normals", Types.Normal3dArray, "vertex", [(0, 0, 1)] * 49),
+        warns="has no samples, but points has",
+    ),
+    Good(
+        "normals: a primvar of another kind",
+        put("normals", Types.Float3Array, "vertex", [(0, 0, 1)] * 49),
+        warns="has no samples, but points has",
+    ),
     Good(
         "normals: indexed badly",
         all_of(put("normals", Types.Normal3fArray, "faceVarying", [(0, 0, 1)]), indexed("normals", [0, 9] * 72)),
@@ -121,6 +157,85 @@ DERIVED = [
         ),
         blocked=("normals",),
         warns="normals",
+    ),
+    *(Good(f"carried: {name}", directions(name, Types.Float3Array)) for name in CARRIED[1:-1]),
+    *(
+        Good(f"carried: {interpolation}", directions("tangents", interpolation=interpolation, count=count))
+        for interpolation, count in (("varying", 49), ("uniform", 36), ("faceVarying", 144))
+    ),
+    *(Good(f"carried: by its role, {type_name}", directions("flow", type_name)) for type_name in ROLES),
+    Good("carried: several", all_of(*(directions(name) for name in CARRIED))),
+    Good(
+        "carried: indexed over time",
+        all_of(
+            directions("tangents", interpolation="faceVarying", count=2, times=[None]),
+            indexed("tangents", [0, 1] * 72, 1001),
+            indexed("tangents", [1, 0] * 72, 1002.5),
+        ),
+        blocked=("primvars:tangents:indices",),
+    ),
+    Good("carried: over points without samples", all_of(still, directions("tangents"))),
+    Good("carried: of one pose", directions("tangents", times=[None]), warns="primvars:tangents has no samples"),
+    Good(
+        "carried: of a wrong length",
+        directions("tangents", count=3),
+        blocked=("primvars:tangents",),
+        warns="primvars:tangents has 3 values, but the mesh has 49 points",
+    ),
+    Good(
+        "carried: of a wrong length at a frame",
+        all_of(directions("tangents", times=[1001, 1003]), directions("tangents", count=3, times=[1002])),
+        blocked=("primvars:tangents",),
+        warns="primvars:tangents",
+    ),
+    Good(
+        "carried: blocked at a frame",
+        all_of(directions("flow"), blocked_at("primvars:flow", 1002)),
+        blocked=("primvars:flow",),
+        warns="primvars:flow",
+    ),
+    Good(
+        "carried: indexed badly",
+        all_of(
+            directions("tangents", interpolation="faceVarying", count=1, times=[None]), indexed("tangents", [0, 9] * 72)
+        ),
+        blocked=("primvars:tangents", "primvars:tangents:indices"),
+        warns="primvars:tangents",
+    ),
+    Good("left: a constant vector", directions("flow", interpolation="constant", count=1)),
+    Good("left: floats without a role", directions("width", Types.Float3Array)),
+    *(Good(f"left: {name}, of rest", directions(name, times=[None])) for name in LEFT[:3]),
+    Good(
+        "left: tangents with a sign",
+        directions("tangents", Types.Float4Array),
+        warns="primvars:tangents is float4[] and stays as it is while the skin slides: make it normal3f[]",
+    ),
+    Good(
+        "left: normals by their name alone",
+        directions("bentNormals", Types.Float3Array),
+        warns="primvars:bentNormals is float3[] and stays as it is",
+    ),
+    Good(
+        "left: two vectors an element",
+        all_of(directions("tangents", count=98), of_size("tangents", 2)),
+        warns="primvars:tangents has elementSize 2 and stays as it is",
+    ),
+    Good(
+        "left: rates of faces' corners",
+        directions("v", interpolation="faceVarying", count=144),
+        warns="primvars:v has interpolation faceVarying and stays as it is",
+    ),
+    Good("left: another v", put("v", Types.FloatArray, "vertex", [0.5] * 49)),
+    *(Good(f"rates: primvars:{name}", directions(name)) for name in RATES),
+    Good(
+        "rates: a primvar at other times",
+        directions("v", times=FRAMES[:1]),
+        blocked=("primvars:v",),
+        warns="primvars:v cannot be recomputed",
+    ),
+    Good(
+        "rates: a primvar and the attribute",
+        all_of(vectors("velocities", 49, FRAMES), directions("velocities", Types.Float3Array)),
     ),
     Good("velocities", vectors("velocities", 49, FRAMES)),
     Good(
@@ -178,6 +293,16 @@ DERIVED = [
         blocked=("velocities",),
         warns="velocities cannot be recomputed",
     ),
-    Good("everything that varies", everything_that_varies, blocked=("primvars:normals:indices",)),
-    Good("everything that varies, relaxed", relaxed, blocked=("primvars:normals:indices",)),
+    Good(
+        "everything that varies",
+        everything_that_varies,
+        blocked=("primvars:normals:indices",),
+        warns="has no samples, but points has",
+    ),
+    Good(
+        "everything that varies, relaxed",
+        relaxed,
+        blocked=("primvars:normals:indices",),
+        warns="has no samples, but points has",
+    ),
 ]

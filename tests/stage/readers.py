@@ -13,12 +13,14 @@ from pxr import Sdf, Usd
 import skinslide
 import stages
 from digests import Contents, Values, contents
-from edits import Scene
+from edits import CARRIED, LEFT, RATES, Scene
 from layers import said
 from skinslide.command.cli import main
 
-# What a bake writes, and a layer computes, for each mesh.
-OUTPUTS = ("points", "extent", "normals", "primvars:normals", "primvars:normals:indices", "velocities", "accelerations")
+# What a bake writes, and a layer computes, for each mesh; and primvars of the rows that it might.
+OUTPUTS = {"points", "extent", "normals", "velocities", "accelerations"}
+for _name in (*CARRIED, *RATES, *LEFT):
+    OUTPUTS |= {f"primvars:{_name}", f"primvars:{_name}:indices"}
 
 
 class Sentence(NamedTuple):

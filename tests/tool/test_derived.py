@@ -1,4 +1,4 @@
-"""What a bake writes that follows from points: normals, velocities, accelerations."""
+"""What a bake writes that follows from points: what the skin carries, velocities, accelerations."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from shots import (
     direct,
     pose,
 )
-from skinslide import bake, bake_to_file
+from skinslide import PatchSetup, Slider, bake, bake_to_file
 from skinslide.arrays import slider
 from stages import vectors
 
@@ -29,23 +29,94 @@ def flat_normals(count: int) -> Vt.Vec3fArray:
     return vectors(np.tile([0.0, 0.0, 1.0], (count, 1)))
 
 
-@pytest.mark.parametrize(
-    ("interpolation", "count"),
-    [("vertex", VERTICES), ("varying", VERTICES), ("faceVarying", 4 * FACES), ("uniform", FACES)],
-)
+def true_normals(points: np.ndarray, frame: float) -> np.ndarray:
+    """Those of the bump of `pose` at points on it, (n, 3)."""
+    x, y = points[:, 0].astype(np.float64) - frame, points[:, 1].astype(np.float64) - 4.0
+    slope = 1.8 * np.exp(-0.3 * (x * x + y * y))
+    normals = np.stack([slope * x, slope * y, np.ones_like(x)], axis=1)
+    return normals / np.linalg.norm(normals, axis=1)[:, None]
+
+
+def angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Between vectors (n, 3), in degrees; exact where they are small."""
+    a, b = np.asarray(a, np.float64), np.asarray(b, np.float64)
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)))
+
+
+INTERPOLATIONS = [("vertex", VERTICES), ("varying", VERTICES), ("faceVarying", 4 * FACES), ("uniform", FACES)]
+
+
+@pytest.mark.parametrize(("interpolation", "count"), INTERPOLATIONS)
 @pytest.mark.parametrize("animated", [True, False])
-def test_normals_are_recomputed_at_their_interpolation(shot, out, interpolation, count, animated):
+def test_normals_are_carried_at_their_interpolation(shot, out, interpolation, count, animated):
     shot.mesh.SetNormalsInterpolation(interpolation)
     shot.mesh.CreateNormalsAttr()
     for sample in range(1, 6) if animated else [Usd.TimeCode.Default()]:
         shot.mesh.GetNormalsAttr().Set(flat_normals(count), sample)
-    bake_to_file(shot.save().path, out)
+    report = bake_to_file(shot.save().path, out)
     _stage, mesh = baked_mesh(out)
     assert mesh.GetNormalsAttr().GetTimeSamples() == mesh.GetPointsAttr().GetTimeSamples()
-    slid = direct(pose(2))
-    expected = slider.normals(COUNTS, INDICES, pose(2), slid, np.array(flat_normals(count)), interpolation)
+    turns = Slider(COUNTS, INDICES, REST, [PatchSetup("sheet", np.arange(FACES))]).slide(pose(2), turns=True).turns
+    expected = slider.carry(COUNTS, INDICES, turns, np.array(flat_normals(count)), interpolation)
     assert np.array(mesh.GetNormalsAttr().Get(OFFSET + 2)).tobytes() == expected.tobytes()
     assert not mesh.GetNormalsAttr().HasMetadata("interpolation")
+    assert [problem.message for problem in report.problems] == (
+        [] if animated else ["normals has no samples, but points has: it belongs to another pose than they do"]
+    )
+    assert skinslide.check(shot.path).problems == report.problems
+
+
+def with_normals(shot, envelope: float) -> np.ndarray:
+    """The true normals of the cache at frame 2, by corner, on a shot that slides so far."""
+    shot.mesh.SetNormalsInterpolation("faceVarying")
+    for frame in range(1, 6):
+        normals = true_normals(pose(frame), frame)[INDICES]
+        shot.mesh.CreateNormalsAttr().Set(vectors(normals), frame)
+    shot.envelope().Set(envelope)
+    shot.save()
+    return np.float32(true_normals(pose(2), 2)[INDICES])
+
+
+def test_without_a_slide_normals_keep_their_bits(shot, out):
+    cached = with_normals(shot, 0)
+    bake_to_file(shot.path, out)
+    _stage, mesh = baked_mesh(out)
+    assert np.array(mesh.GetNormalsAttr().Get(OFFSET + 2)).tobytes() == cached.tobytes()
+
+
+def test_a_tiny_slide_is_no_jump(shot, out):
+    cached = with_normals(shot, 1e-5)
+    bake_to_file(shot.path, out)
+    _stage, mesh = baked_mesh(out)
+    slid = np.array(mesh.GetPointsAttr().Get(OFFSET + 2)) - pose(2)
+    assert 1e-7 < np.linalg.norm(slid, axis=1).max() < 2e-5
+    assert angles(mesh.GetNormalsAttr().Get(OFFSET + 2), cached).max() < 0.005
+
+
+def test_angles_across_seams_stay_as_in_the_cache(shot, out):
+    """Each corner of a vertex turns alike, whatever its normal is."""
+    rng = np.random.default_rng(1)
+    normals = rng.normal(size=(4 * FACES, 3)).astype(np.float32)
+    tangents = rng.normal(size=(4 * FACES, 3)).astype(np.float32)
+    shot.mesh.SetNormalsInterpolation("faceVarying")
+    primvars = UsdGeom.PrimvarsAPI(shot.mesh)
+    primvar = primvars.CreatePrimvar("tangents", Sdf.ValueTypeNames.Vector3fArray, "faceVarying")
+    for frame in range(1, 6):
+        shot.mesh.CreateNormalsAttr().Set(vectors(normals), frame)
+        primvar.Set(vectors(tangents), frame)
+    bake_to_file(shot.save().path, out)
+    _stage, mesh = composed_mesh(shot, out)
+    values = mesh.GetNormalsAttr(), UsdGeom.PrimvarsAPI(mesh).GetPrimvar("tangents")
+    after = [np.array(each.Get(OFFSET + 2)) for each in values]
+    assert angles(after[0], normals).max() > 1
+    by_vertex = np.argsort(INDICES, kind="stable")
+    pairs = by_vertex[:-1][np.diff(INDICES[by_vertex]) == 0], by_vertex[1:][np.diff(INDICES[by_vertex]) == 0]
+    for cached, carried in zip((normals, tangents), after, strict=True):
+        assert np.allclose(
+            angles(carried[pairs[0]], carried[pairs[1]]), angles(cached[pairs[0]], cached[pairs[1]]), atol=1e-4
+        )
+    # And a normal and its tangent, which are floats of length 2 or so.
+    assert np.allclose(angles(after[0], after[1]), angles(normals, tangents), atol=1e-4)
 
 
 def test_indexed_normals_are_flattened(shot, out):

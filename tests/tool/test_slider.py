@@ -258,12 +258,12 @@ def test_a_slider_in_a_circle_is_collected(counts, indices, rest):
         gc.collect()
 
 
-def test_normals(counts, indices, rest, sheet):
-    cached = np.tile(np.float32([0, 0, 1]), (VERTICES, 1))
-    same = slider.normals(counts, indices, rest, rest, cached, "vertex")
-    assert same.tobytes() == cached.tobytes()
-    points = bumped(rest)
-    slid = sheet.slide(points).points
+def test_carry(counts, indices, rest, sheet):
+    """Vectors along each vertex's own turn stay; others turn about it, by twice what its sine is of."""
+    assert sheet.slide(rest).turns is None
+    assert not sheet.slide(rest, turns=True).turns.any()
+    turns = sheet.slide(bumped(rest), turns=True).turns
+    assert turns.shape == (VERTICES, 3) and turns.dtype == np.float32 and turns.any()
     for interpolation, count in [
         ("vertex", VERTICES),
         ("varying", VERTICES),
@@ -271,13 +271,18 @@ def test_normals(counts, indices, rest, sheet):
         ("uniform", FACES),
     ]:
         cached = np.tile(np.float32([0, 0, 1]), (count, 1))
-        right = slider.normals(counts, indices, points, slid, cached, interpolation)
-        left = slider.normals(counts, indices, points, slid, cached, interpolation, left_handed=True)
-        assert np.allclose(np.linalg.norm(right, axis=1), 1, atol=1e-6)  # float32
-        changed = (right != cached).any(axis=1)
-        assert changed.any() and (right[changed, 2] > 0).all() and (left[changed, 2] < 0).all()
+        same = slider.carry(counts, indices, 0 * turns, cached, interpolation)
+        assert same.tobytes() == cached.tobytes()
+        carried = slider.carry(counts, indices, turns, cached, interpolation)
+        assert np.allclose(np.linalg.norm(carried, axis=1), 1, atol=1e-6)  # float32
+        assert (carried != cached).any() and cached.tobytes() == same.tobytes()
         with pytest.raises(SliderError, match=f"it must be {count} x 3"):
-            slider.normals(counts, indices, points, slid, cached[1:], interpolation)
+            slider.carry(counts, indices, turns, cached[1:], interpolation)
+    of_corners = slider.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (4 * FACES, 1)), "faceVarying")
+    of_vertices = slider.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (VERTICES, 1)), "vertex")
+    assert of_corners.tobytes() == of_vertices[indices].tobytes()
+    along = slider.carry(counts, indices, turns, turns, "vertex")
+    assert np.allclose(along, turns, atol=1e-7)
 
 
 def test_velocities_and_accelerations():

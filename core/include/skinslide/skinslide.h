@@ -510,24 +510,32 @@ SKINSLIDE_API skinslide_status skinslide_limit_points(const skinslide_mesh *mesh
 
 /* ---- What else a cache holds -------------------------------------------------------------------------------------------- */
 
-/* Which elements carry a normal, as USD names it. */
+/* How the skin turned under each vertex in the last frame that this workspace slid: the least rotation from the smooth normal
+ * of the cache at the vertex's own place to that at the place it slid to. Smooth normals are means over all faces of the mesh,
+ * and blended from vertex to vertex.
+ *   points  in   [vertex_count][3] those of that frame, before sliding
+ *   turns   out  [vertex_count][3] axis times the sine of half the angle, right-handed, which is at most half a circle; 0, and
+ *                no other, where a vertex did not slide, no face has an area, or the normals are opposite
+ * Fails with BAD_ARGUMENT (NULL, no frame yet), BAD_POINTS (not finite), OUT_OF_MEMORY. One thread a workspace. */
+SKINSLIDE_API skinslide_status skinslide_workspace_turns(skinslide_workspace *workspace, const float *points, float *turns,
+                                                         skinslide_error *error);
+
+/* Which elements carry a vector, such as a normal, as USD names it. */
 typedef enum skinslide_normals_layout {
     SKINSLIDE_NORMALS_VERTEX,       /* [vertex_count][3] */
-    SKINSLIDE_NORMALS_FACE_VARYING, /* [index_count][3]; corners of a vertex that share a normal in the cache share one after */
-    SKINSLIDE_NORMALS_UNIFORM       /* [face_count][3] */
+    SKINSLIDE_NORMALS_FACE_VARYING, /* [index_count][3]; each turns as its vertex, so corners keep the angles between them */
+    SKINSLIDE_NORMALS_UNIFORM       /* [face_count][3]; by the mean of the turns of the face's vertices */
 } skinslide_normals_layout;
 
-/* Recomputes the normals, area-weighted over faces, of the elements whose faces have a vertex that slid. Others keep their
- * bits.
- *   mesh         in  rest_points are not read
- *   cached       in  [vertex_count][3] points before sliding
- *   slid         in  [vertex_count][3] points after
- *   left_handed  in  the mesh's orientation is leftHanded
- *   normals      in, out  the cache's, then the corrected, of unit length; where faces have no area they stay
- * Fails with BAD_MESH, BAD_ARGUMENT, OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_normals(const skinslide_mesh *mesh, const float *cached, const float *slid,
-                                                 skinslide_normals_layout layout, skinslide_bool left_handed, float *normals,
-                                                 skinslide_error *error);
+/* Carries what lives on the skin with it: normals, tangents and the like turn as the skin under them turned. Those that do not
+ * turn keep their bits, and none changes its length but by rounding.
+ *   mesh     in  rest_points are not read
+ *   turns    in  [vertex_count][3] as skinslide_workspace_turns gives them
+ *   vectors  in, out  the cache's, then the carried
+ * Fails with BAD_MESH, BAD_ARGUMENT (NULL, no such layout), BAD_POINTS (a vector so long that it might not stay finite: names
+ * it), and then carries none. */
+SKINSLIDE_API skinslide_status skinslide_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout,
+                                               float *vectors, skinslide_error *error);
 
 /* Points of one time, for rates of change. Start from SKINSLIDE_SAMPLE_DEFAULT. */
 typedef struct skinslide_sample {

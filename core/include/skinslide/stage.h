@@ -19,8 +19,9 @@
  *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes.
  *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
  *        that of step 4, is given those that do, and skinslide_stage_controls_get gives what skinslide_slide takes.
- *     8. What follows from points: skinslide_stage_derived_create, each input of the group DERIVED to
- *        skinslide_stage_derived_take, then skinslide_stage_derived_value for each of its outputs at each time.
+ *     8. What follows from points: skinslide_stage_derived_create, each input of the group DERIVED and each primvar that
+ *        skinslide_stage_derived_offer accepts to skinslide_stage_derived_take, then skinslide_stage_derived_value for each of
+ *        its outputs at each time.
  * Every sentence names the property by the name in its record, and the element; the reader puts prim, patch and frame in front.
  * A handle that refused a value may be given the others all the same, so that a reader can say all that is wrong; it then gives
  * nothing, until a value that it can use takes the place of the refused one.
@@ -461,7 +462,8 @@ SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
 
 /* ---- What follows from points -------------------------------------------------------------------------------------------- */
 
-/* Normals, velocities and accelerations that a mesh has beside its points. */
+/* What a mesh has beside its points that follows from them: normals, tangents and other vectors on the skin, which are carried
+ * with it; velocities and accelerations, which are recomputed. */
 typedef struct skinslide_stage_derived skinslide_stage_derived;
 
 /* Makes what follows from the points of a mesh: nothing yet.
@@ -476,13 +478,32 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_create(const skinslide_st
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_derived_destroy(skinslide_stage_derived *derived);
 
-/* Takes an input of the group DERIVED, in the order of its inputs: each makes outputs or, where it does not count, none.
+/* Asks whether a primvar of the mesh itself follows from points, by its name or the role of its type. Offer each that has a
+ * value, in the order of their names.
+ *   name           in  "primvars:tangents"
+ *   type_name      in  as the scene declares it: "vector3f[]"
+ *   interpolation  in  as authored; NULL: it is not
+ *   element_size   in  its elementSize; 1 where that is not authored
+ *   input          out  an input to take after those of the group DERIVED, which lives as long as derived; NULL: it does not
+ *                  follow, or nobody knows how, of which there is a warning then
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_offer(skinslide_stage_derived *derived, const char *name,
+                                                             const char *type_name, const char *interpolation,
+                                                             int32_t element_size, const skinslide_stage_input **input,
+                                                             skinslide_error *error);
+
+/* Takes an input of the group DERIVED, in the order of its inputs, or one that was offered: each makes outputs or, where it
+ * does not count, none.
  *   value  in  at its first time
- *   times  in  [time_count] its samples, ascending
+ *   times  in  [time_count] its samples and those of its indices, each once, ascending
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY: what cannot be recomputed becomes an output that is blocked. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_take(skinslide_stage_derived *derived,
                                                             const skinslide_stage_input *input, const skinslide_value *value,
                                                             const double *times, int64_t time_count, skinslide_error *error);
+
+/* What to warn of, of a number from 0 on; NULL beyond the last: vectors of one pose on points that move, and primvars that
+ * nobody knows how to carry, but that follow the skin by their names. Lives as long as derived. */
+SKINSLIDE_API const char *skinslide_stage_derived_warning(const skinslide_stage_derived *derived, int32_t number);
 
 /* Looks at a later sample of an input, once all inputs are taken: a type or a length that it cannot have blocks its output, at
  * all times. What else keeps it from being recomputed skinslide_stage_derived_value says.
@@ -493,12 +514,14 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_check(skinslide_stage_der
 
 /* An attribute to write beside the points. */
 typedef struct skinslide_stage_output {
-    const char *name;      /* "primvars:normals" */
-    const char *type_name; /* "normal3f[]"; of a primvar, as its record says */
-    int32_t pose_count;    /* poses that a value of it takes: 1, 2 or 3; 0: it is blocked at all times */
-    int32_t count;         /* elements of a value */
-    const char *reason;    /* why it is blocked; NULL of what is blocked without a warning, and of what is not */
-    const char *hidden;    /* what would be read in its place were it blocked alone: block that with it; or NULL */
+    const char *name;          /* "primvars:normals" */
+    const char *type_name;     /* "normal3f[]"; of a primvar, as its record says */
+    int32_t pose_count;        /* poses that a value of it takes: 1, 2 or 3; 0: it is blocked at all times */
+    int32_t count;             /* elements of a value */
+    const char *reason;        /* why it is blocked; NULL of what is blocked without a warning, and of what is not */
+    const char *hidden;        /* what would be read in its place were it blocked alone: block that with it; or NULL */
+    skinslide_bool is_carried; /* its pose needs turns */
+    skinslide_bool is_double;  /* its values are of doubles; of floats else */
 } skinslide_stage_output;
 
 /* The output of a number from 0 on; NULL beyond the last. Lives as long as derived. */
@@ -517,20 +540,22 @@ typedef struct skinslide_stage_pose {
     double time;
     const float *cached; /* [vertex_count][3] before sliding */
     const float *slid;   /* [vertex_count][3] after */
+    const float *turns;  /* [vertex_count][3] as skinslide_workspace_turns gives them, for what is carried; NULL: none is */
 } skinslide_stage_pose;
 
 #define SKINSLIDE_STAGE_POSE_DEFAULT                                                                                           \
-    { sizeof(skinslide_stage_pose), 0, 0, 0 }
+    { sizeof(skinslide_stage_pose), 0, 0, 0, 0 }
 
 /* The value of an output at a time.
  *   value  in  the cache's, of the input that the output is of
  *   poses  in  [pose_count] at the times that skinslide_stage_derived_times gives
- *   out    out [count][3]
+ *   out    out [count][3] floats, or doubles where the output says so; indices are applied. Values that do not change keep
+ *          their bits
  * Fails with BAD_POINTS (no value, of a wrong type or length, too few samples of points), BAD_ARGUMENT, OUT_OF_MEMORY. It is
  * then to be blocked at all times: where a sample is missing, its neighbours would be taken instead. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *derived,
                                                              const skinslide_stage_output *output, const skinslide_value *value,
-                                                             const skinslide_stage_pose *poses, int32_t pose_count, float *out,
+                                                             const skinslide_stage_pose *poses, int32_t pose_count, void *out,
                                                              skinslide_error *error);
 
 /* ---- Text ---------------------------------------------------------------------------------------------------------------- */

@@ -1,7 +1,8 @@
-/* What follows from points: which normals count, which poses a rate takes, and what is blocked, with why. */
+/* What follows from points: which vectors are carried, which poses a rate takes, and what is blocked or warned of, with why. */
 #include "records.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -173,21 +174,194 @@ static void later_samples_are_looked_at(void **state) {
     tear_down(&s);
 }
 
-/* As skinslide_normals makes them. */
-static void normals_are_recomputed(void **state) {
+static const skinslide_stage_output *only_output(const scene *s) {
+    expect_no_more(s, 1);
+    return skinslide_stage_derived_output(s->derived, 0);
+}
+
+/* As skinslide_carry makes them. */
+static void normals_are_carried(void **state) {
     (void)state;
     scene s = set_up();
-    float *slid = bumped(&s.grid, 1, 1, 1, 0.5), out[3 * VERTICES], expected[3 * VERTICES];
+    float turns[3 * VERTICES] = {0}, out[3 * VERTICES], expected[3 * VERTICES];
+    turns[3] = 0.25f, turns[7] = 0.5f;
     const skinslide_value value = vectors("normals", VERTICES);
-    const skinslide_stage_pose pose = {sizeof(skinslide_stage_pose), 2, s.grid.points, slid};
+    const skinslide_stage_pose pose = {sizeof(skinslide_stage_pose), 2, s.grid.points, s.grid.points, turns};
     skinslide_mesh view = view_of(&s.grid);
     take(&s, "", "normals", value, frames, 4);
-    const skinslide_stage_output *output = skinslide_stage_derived_output(s.derived, 0);
+    const skinslide_stage_output *output = only_output(&s);
+    assert_true(output->is_carried && !output->is_double);
     assert_ok(skinslide_stage_derived_value(s.derived, output, &value, &pose, 1, out, &error), &error);
     memcpy(expected, value.data, sizeof expected);
-    assert_ok(skinslide_normals(&view, s.grid.points, slid, SKINSLIDE_NORMALS_VERTEX, 0, expected, &error), &error);
+    assert_ok(skinslide_carry(&view, turns, SKINSLIDE_NORMALS_VERTEX, expected, &error), &error);
     assert_same_bytes(out, expected, sizeof out);
-    free(slid);
+    skinslide_stage_pose without = pose;
+    without.turns = NULL;
+    assert_fails(skinslide_stage_derived_value(s.derived, output, &value, &without, 1, out, &error), &error,
+                 SKINSLIDE_BAD_ARGUMENT, "the pose has no turns");
+    tear_down(&s);
+}
+
+/* Primvars of doubles stay doubles; where nothing turns, with their bits. Indices are applied. */
+static void doubles_are_carried(void **state) {
+    (void)state;
+    scene s = set_up();
+    const double pair[6] = {1.0 / 3, 0, 1e-300, 0, 2.0 / 3, 0};
+    const int32_t places[VERTICES] = {0, 1, 0, 1, 0, 1, 0, 1, 0};
+    const skinslide_value indices = array_of("indices", SKINSLIDE_VALUE_INT32, 1, VERTICES, places);
+    skinslide_value value = painted_as(array_of("primvars:normals", SKINSLIDE_VALUE_DOUBLE, 3, 2, pair), "vertex");
+    value = indexed_by(value, &indices);
+    float turns[3 * VERTICES] = {0};
+    double out[3 * VERTICES];
+    turns[0] = (float)sqrt(0.5); /* 90 degrees about x */
+    const skinslide_stage_pose pose = {sizeof(skinslide_stage_pose), 2, s.grid.points, s.grid.points, turns};
+    take(&s, "primvars:", "normals", value, frames, 4);
+    const skinslide_stage_output *output = skinslide_stage_derived_output(s.derived, 0);
+    assert_true(output->is_carried && output->is_double);
+    assert_ok(skinslide_stage_derived_value(s.derived, output, &value, &pose, 1, out, &error), &error);
+    assert_true(out[0] == 1.0 / 3 && fabs(out[1]) < 1e-299);
+    for (int v = 1; v < VERTICES; v++)
+        assert_same_bytes(out + 3 * v, pair + 3 * places[v], sizeof(double[3]));
+    tear_down(&s);
+}
+
+static void expect_warning(const scene *s, int32_t number, const char *text) {
+    const char *said = skinslide_stage_derived_warning(s->derived, number);
+    if (text)
+        assert_string_equal(said, text);
+    else
+        assert_null(said);
+}
+
+/* Of one pose on points of several. */
+static void static_vectors_are_warned_of(void **state) {
+    (void)state;
+    const char *said = "normals has no samples, but points has: it belongs to another pose than they do";
+    for (int points = 1; points <= 4; points += 3)
+        for (int times = 0; times <= 2; times++) {
+            scene s = set_up_at(frames, points, 24);
+            take(&s, "", "normals", vectors("normals", VERTICES), frames, times);
+            expect(&s, 0, "normals", 1, NULL);
+            expect_warning(&s, 0, points > 1 && times < 2 ? said : NULL);
+            expect_warning(&s, 1, NULL);
+            expect_warning(&s, -1, NULL);
+            tear_down(&s);
+        }
+}
+
+/* ---- Primvars that are offered ---- */
+
+static const skinslide_stage_input *offer(scene *s, const char *name, const char *type, const char *interpolation,
+                                          int32_t size) {
+    const skinslide_stage_input *input = NULL;
+    assert_ok(skinslide_stage_derived_offer(s->derived, name, type, interpolation, size, &input, &error), &error);
+    return input;
+}
+
+static void offered_primvars_are_inputs(void **state) {
+    (void)state;
+    scene s = set_up();
+    const skinslide_stage_input *tangents = offer(&s, "primvars:tangents", "float3[]", "vertex", 1);
+    const skinslide_stage_input *velocities = offer(&s, "primvars:v", "vector3f[]", "vertex", 1);
+    assert_string_equal(tangents->name, "tangents");
+    assert_string_equal(tangents->prefix, "primvars:");
+    assert_string_equal(tangents->type_name, "float3[]");
+    assert_true(tangents->is_primvar && !tangents->is_inherited && tangents->group == SKINSLIDE_STAGE_DERIVED);
+    skinslide_value value = painted_as(vectors("primvars:tangents", VERTICES), "vertex");
+    value.type_name = "float3[]";
+    assert_ok(skinslide_stage_derived_take(s.derived, tangents, &value, frames, 4, &error), &error);
+    assert_fails(skinslide_stage_derived_take(s.derived, tangents, &value, frames, 4, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "nothing to derive into, no input of that, one taken twice, or no times");
+    value.name = "primvars:v", value.type_name = "vector3f[]";
+    assert_ok(skinslide_stage_derived_take(s.derived, velocities, &value, frames, 4, &error), &error);
+    expect(&s, 0, "primvars:tangents", 1, NULL);
+    assert_string_equal(skinslide_stage_derived_output(s.derived, 0)->type_name, "float3[]");
+    expect(&s, 1, "primvars:v", 2, NULL);
+    assert_false(skinslide_stage_derived_output(s.derived, 1)->is_carried);
+    value = painted_as(vectors("primvars:tangents", 5), "vertex");
+    assert_ok(skinslide_stage_derived_check(s.derived, tangents, &value, &error), &error);
+    expect(&s, 0, "primvars:tangents", 0, "primvars:tangents has 5 values, but the mesh has 9 points");
+    expect_no_more(&s, 2);
+    tear_down(&s);
+}
+
+/* What follows, as which, and what is said of what seems to. */
+static void which_primvars_follow(void **state) {
+    (void)state;
+    static const char *const names[] = {"normal",     "N",         "tangents",  "tangent",  "tangentU",    "TANGENTV",
+                                        "bitangents", "bitangent", "binormals", "binormal", "a:b:tangents"};
+    static const char *const types[] = {"float3[]", "half3[]", "double3[]", "normal3f[]", "vector3h[]", "vector3d[]"};
+    scene s = set_up();
+    char name[64];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        for (size_t t = 0; t < sizeof types / sizeof *types; t++) {
+            snprintf(name, sizeof name, "primvars:%s", names[i]);
+            assert_non_null(offer(&s, name, types[t], t % 2 ? "vertex" : "faceVarying", 1));
+        }
+    for (size_t t = 0; t < 6; t++)
+        assert_int_equal(offer(&s, "primvars:flow", types[t], "uniform", 1) != NULL, t >= 3);
+    assert_non_null(offer(&s, "primvars:velocity", "float3[]", "varying", 1));
+    assert_non_null(offer(&s, "primvars:acceleration", "float3[]", "vertex", 1));
+    expect_warning(&s, 0, NULL);
+    tear_down(&s);
+}
+
+static void which_primvars_do_not(void **state) {
+    (void)state;
+    static const char *const primvars[][3] = {
+        {"primvars:normals", "normal3f[]", "vertex"},                 /* of the table */
+        {"normals", "normal3f[]", "vertex"},                          /* no primvar */
+        {"primvars:skinSlide:elbow:normals", "normal3f[]", "vertex"}, /* ours */
+        {"primvars:skel:tangents", "vector3f[]", "vertex"},           /* UsdSkel's */
+        {"primvars:Nref", "normal3f[]", "vertex"},                    /* of rest */
+        {"primvars:__Nref", "normal3f[]", "vertex"},
+        {"primvars:restNormals", "normal3f[]", "vertex"},
+        {"primvars:N_rest", "normal3f[]", "vertex"},
+        {"primvars:tangents", "vector3f[]", "constant"},
+        {"primvars:tangents", "vector3f[]", NULL}, /* which is constant */
+        {"primvars:tangents", "vector3f", "vertex"},
+        {"primvars:displayColor", "color3f[]", "vertex"},
+        {"primvars:tangents", "color3f[]", "vertex"},
+        {"primvars:v", "float[]", "vertex"},
+        {"primvars:Pref", "point3f[]", "vertex"},
+        {"primvars:n", "float3[]", "vertex"}, /* N is a name, n is not */
+    };
+    scene s = set_up();
+    for (size_t i = 0; i < sizeof primvars / sizeof *primvars; i++)
+        assert_null(offer(&s, primvars[i][0], primvars[i][1], primvars[i][2], 1));
+    expect_warning(&s, 0, NULL);
+    tear_down(&s);
+}
+
+static void what_nobody_knows_how_to_carry(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *type, *interpolation;
+        int32_t size;
+        const char *said;
+    } cases[] = {
+        {"primvars:tangents", "float4[]", "vertex", 1,
+         "primvars:tangents is float4[] and stays as it is while the skin slides: make it normal3f[] or vector3f[] if it lies "
+         "along the surface"},
+        {"primvars:tangentFrame", "quatf[]", "vertex", 1,
+         "primvars:tangentFrame is quatf[] and stays as it is while the skin slides: make it normal3f[] or vector3f[] if it "
+         "lies "
+         "along the surface"},
+        {"primvars:bentNormals", "float3[]", "vertex", 1,
+         "primvars:bentNormals is float3[] and stays as it is while the skin slides: make it normal3f[] or vector3f[] if it "
+         "lies "
+         "along the surface"},
+        {"primvars:flow", "vector3f[]", "vertex", 2,
+         "primvars:flow has elementSize 2 and stays as it is while the skin slides"},
+        {"primvars:v", "vector3f[]", "faceVarying", 1,
+         "primvars:v has interpolation faceVarying and stays as it is while the skin slides"},
+    };
+    scene s = set_up();
+    for (int32_t i = 0; i < (int32_t)(sizeof cases / sizeof *cases); i++) {
+        assert_null(offer(&s, cases[i].name, cases[i].type, cases[i].interpolation, cases[i].size));
+        expect_warning(&s, i, cases[i].said);
+    }
+    expect_no_more(&s, 0);
     tear_down(&s);
 }
 
@@ -233,9 +407,9 @@ static void rates_are_recomputed(void **state) {
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3 * VERTICES; i++)
             slid[k][i] = (float)(k * k);
-    const skinslide_stage_pose poses[] = {{sizeof(skinslide_stage_pose), 1, cached, slid[0]},
-                                          {sizeof(skinslide_stage_pose), 2, cached, slid[1]},
-                                          {sizeof(skinslide_stage_pose), 3, cached, slid[2]}};
+    const skinslide_stage_pose poses[] = {{sizeof(skinslide_stage_pose), 1, cached, slid[0], NULL},
+                                          {sizeof(skinslide_stage_pose), 2, cached, slid[1], NULL},
+                                          {sizeof(skinslide_stage_pose), 3, cached, slid[2], NULL}};
     const float zeros[3 * VERTICES] = {0};
     const skinslide_value value = array_of("velocities", SKINSLIDE_VALUE_FLOAT, 3, VERTICES, zeros);
     take(&s, "", "velocities", value, frames, 4);
@@ -297,10 +471,19 @@ static void arguments_that_are_none(void **state) {
     assert_int_equal(skinslide_stage_derived_take(s.derived, normals, &value, NULL, 3, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_stage_derived_take(s.derived, NULL, &value, frames, 4, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_stage_derived_value(s.derived, &copy, &value, NULL, 0, out, &error), SKINSLIDE_BAD_ARGUMENT);
-    for (int i = 0; i < 99; i++) /* taken again and again, it ends */
-        if (skinslide_stage_derived_take(s.derived, normals, &value, frames, 4, &error))
-            break;
-    assert_int_equal(error.status, SKINSLIDE_BAD_ARGUMENT);
+    assert_ok(skinslide_stage_derived_take(s.derived, normals, &value, frames, 4, &error), &error);
+    assert_int_equal(skinslide_stage_derived_take(s.derived, normals, &value, frames, 4, &error), SKINSLIDE_BAD_ARGUMENT);
+    const skinslide_stage_input *input = normals;
+    const char *none = "nothing to derive into, no name or type, or no place for the input";
+    assert_fails(skinslide_stage_derived_offer(NULL, "primvars:N", "normal3f[]", "vertex", 1, &input, &error), &error,
+                 SKINSLIDE_BAD_ARGUMENT, none);
+    assert_fails(skinslide_stage_derived_offer(s.derived, NULL, "normal3f[]", "vertex", 1, &input, &error), &error,
+                 SKINSLIDE_BAD_ARGUMENT, none);
+    assert_fails(skinslide_stage_derived_offer(s.derived, "primvars:N", NULL, "vertex", 1, &input, &error), &error,
+                 SKINSLIDE_BAD_ARGUMENT, none);
+    assert_fails(skinslide_stage_derived_offer(s.derived, "primvars:N", "normal3f[]", "vertex", 1, NULL, &error), &error,
+                 SKINSLIDE_BAD_ARGUMENT, none);
+    assert_true(input == normals);
     tear_down(&s);
 }
 
@@ -312,7 +495,13 @@ int main(void) {
         cmocka_unit_test(bad_normals_are_blocked_with_what_they_hide),
         cmocka_unit_test(why_normals_are_blocked),
         cmocka_unit_test(later_samples_are_looked_at),
-        cmocka_unit_test(normals_are_recomputed),
+        cmocka_unit_test(normals_are_carried),
+        cmocka_unit_test(doubles_are_carried),
+        cmocka_unit_test(static_vectors_are_warned_of),
+        cmocka_unit_test(offered_primvars_are_inputs),
+        cmocka_unit_test(which_primvars_follow),
+        cmocka_unit_test(which_primvars_do_not),
+        cmocka_unit_test(what_nobody_knows_how_to_carry),
         cmocka_unit_test(poses_that_a_value_takes),
         cmocka_unit_test(rates_are_recomputed),
         cmocka_unit_test(why_rates_are_blocked),

@@ -216,20 +216,39 @@ static void use_patch(dice *d, const test_mesh *mesh, const skinslide_stage_mesh
     skinslide_stage_patch_destroy(patch);
 }
 
+static void take_offered(dice *d, const test_mesh *mesh, skinslide_stage_derived *derived) {
+    static const char *const names[] = {"primvars:tangents", "primvars:v", "primvars:flow", "primvars:", "", "primvars:a:N"};
+    static const char *const types[] = {"vector3f[]", "double3[]", "normal3h[]", "float4[]", "quatf[]", "", "float"};
+    static const char *const interpolations[] = {"vertex", "faceVarying", "uniform", "constant", "bumpy"};
+    for (int i = 0; i < 8; i++) {
+        const skinslide_stage_input *input = NULL;
+        random_value v;
+        assert_ok(skinslide_stage_derived_offer(derived, names[roll_below(d, 6)], types[roll_below(d, 7)],
+                                                interpolations[roll_below(d, 5)], roll_below(d, 3), &input, &error),
+                  &error);
+        make_value(&v, d, mesh, input_of(SKINSLIDE_STAGE_DERIVED, NULL, "normals"));
+        if (input)
+            expect_said(take_derived(derived, input, &v.value));
+        free_value(&v);
+    }
+}
+
 static void use_derived(dice *d, const test_mesh *mesh, const skinslide_stage_mesh *scene) {
     static const double times[] = {1, 2, 3};
     skinslide_stage_derived *derived = NULL;
     const skinslide_stage_output *output;
     assert_ok(skinslide_stage_derived_create(scene, times, 3, 24, &derived, &error), &error);
     take_all(d, mesh, SKINSLIDE_STAGE_DERIVED, take_derived, derived, 2);
+    take_offered(d, mesh, derived);
     for (int32_t i = 0; (output = skinslide_stage_derived_output(derived, i)) != NULL; i++) {
         double around[3];
         int32_t count = skinslide_stage_derived_times(derived, output, 2, around);
         skinslide_stage_pose poses[3];
-        float *out = malloc(3 * sizeof *out * (size_t)(output->count ? output->count : 1));
+        double *out = malloc(3 * sizeof *out * (size_t)(output->count ? output->count : 1));
         random_value v;
         for (int32_t k = 0; k < count; k++)
-            poses[k] = (skinslide_stage_pose){sizeof(skinslide_stage_pose), around[k], mesh->points, mesh->points};
+            poses[k] =
+                (skinslide_stage_pose){sizeof(skinslide_stage_pose), around[k], mesh->points, mesh->points, mesh->points};
         make_value(&v, d, mesh, input_of(SKINSLIDE_STAGE_DERIVED, NULL, "normals"));
         if (output->pose_count)
             expect_said(skinslide_stage_derived_value(derived, output, &v.value, poses, count, out, &error));

@@ -469,19 +469,22 @@ class Output(NamedTuple):
     value_count: int
     reason: str | None
     hidden: str | None
+    is_carried: bool
+    is_double: bool
     pointer: Any
 
 
 class Pose(NamedTuple):
-    """Points of one time, before and after sliding, float32 (V, 3) each."""
+    """Points of one time, before and after sliding, and turns of the skin where wanted: float32 (V, 3) each."""
 
     time: float
     cached: np.ndarray
     slid: np.ndarray
+    turns: np.ndarray | None
 
 
 class DerivedMeaning:
-    """Normals, velocities and accelerations that a mesh has beside its points."""
+    """What a mesh has beside its points that follows from them: vectors that the skin carries, and rates of change."""
 
     def __init__(self, mesh: MeshMeaning, point_times: Sequence[float], rate: float):
         out = ffi.new("skinslide_stage_derived **")
@@ -489,8 +492,14 @@ class DerivedMeaning:
         _call(lib.skinslide_stage_derived_create, mesh.handle, times, len(times), rate, out)
         self.handle = Handle(out[0], lib.skinslide_stage_derived_destroy, mesh.handle)
 
+    def offer(self, name: str, type_name: str, interpolation: str | None, element_size: int) -> Input | None:
+        """The input that a primvar is to be taken as; None where it does not follow, or nobody knows how."""
+        out = ffi.new("const skinslide_stage_input **")
+        _call(lib.skinslide_stage_derived_offer, self.handle, name, type_name, interpolation, element_size, out)
+        return _input(out[0]) if out[0] else None
+
     def take(self, source: Input, value: Value | None, times: Sequence[float]) -> None:
-        """Takes an input of the group derived, at its first time, with its samples."""
+        """Takes an input of the group derived, or one that was offered, at its first time, with its samples."""
         given = ffi.new("double[]", list(times))
         _call(lib.skinslide_stage_derived_take, self.handle, source, value, given, len(times))
 
@@ -499,7 +508,14 @@ class DerivedMeaning:
         while each := lib.skinslide_stage_derived_output(self.handle.pointer, len(found)):
             reason, hidden = (text(words) if words else None for words in (each.reason, each.hidden))
             words = (text(each.name), text(each.type_name))
-            found.append(Output(*words, each.pose_count, each.count, reason, hidden, each))
+            kind = (bool(each.is_carried), bool(each.is_double))
+            found.append(Output(*words, each.pose_count, each.count, reason, hidden, *kind, each))
+        return found
+
+    def warnings(self) -> list[str]:
+        found: list[str] = []
+        while said := lib.skinslide_stage_derived_warning(self.handle.pointer, len(found)):
+            found.append(text(said))
         return found
 
     def times(self, output: Output, time: float) -> list[float]:
@@ -509,9 +525,9 @@ class DerivedMeaning:
         return list(times[0:count])
 
     def value(self, output: Output, cached: Value | None, poses: Sequence[Pose]) -> np.ndarray:
-        """The value at a time, float32 (n, 3). Raises Fault."""
-        out = np.empty((output.value_count, 3), np.float32)
-        place = writable("float[]", out)
+        """The value at a time, (n, 3) of float32 or, where the output is double, float64. Raises Fault."""
+        out = np.empty((output.value_count, 3), np.float64 if output.is_double else np.float32)
+        place = writable("char[]", out)
         _call(lib.skinslide_stage_derived_value, self.handle, output, cached, _Poses(poses), len(poses), place)
         return out
 
@@ -593,6 +609,7 @@ class _Native:
         for struct, pose in zip(structs, poses, strict=True):
             struct.time = pose.time
             struct.cached, struct.slid = (self._array("float[]", each) for each in (pose.cached, pose.slid))
+            struct.turns = ffi.NULL if pose.turns is None else self._array("float[]", pose.turns)
         return structs
 
     def _text(self, words: str) -> Any:

@@ -48,9 +48,9 @@ __all__ = [
     "SliderError",
     "Subdivision",
     "accelerations",
+    "carry",
     "choose_lookup",
     "limit_points",
-    "normals",
     "tokens",
     "velocities",
     "version",
@@ -64,11 +64,13 @@ class Frame(NamedTuple):
         points: float32 (V, 3).
         patches: What happened to each of the slider's patches.
         embeddings: Of each patch in the plane, float64 (patch vertices, 2), where asked for; else None.
+        turns: How the skin turned under each vertex, float32 (V, 3), where asked for; else None. See `carry`.
     """
 
     points: np.ndarray
     patches: tuple[PatchResult, ...]
     embeddings: tuple[np.ndarray, ...] | None
+    turns: np.ndarray | None
 
 
 class Diagnostics(NamedTuple):
@@ -138,7 +140,12 @@ class Slider:
         self._lock = threading.Lock()
 
     def slide(
-        self, points: npt.ArrayLike, controls: Sequence[Controls] | None = None, *, embeddings: bool = False
+        self,
+        points: npt.ArrayLike,
+        controls: Sequence[Controls] | None = None,
+        *,
+        embeddings: bool = False,
+        turns: bool = False,
     ) -> Frame:
         """Slides one frame.
 
@@ -146,6 +153,7 @@ class Slider:
             points: Of the deformed mesh (V, 3).
             controls: One a set-up; None: the set-ups' own.
             embeddings: Whether the frame's embeddings are wanted.
+            turns: Whether it is wanted how the skin turned.
 
         Returns:
             The frame.
@@ -162,9 +170,10 @@ class Slider:
         try:
             call(lib.skinslide_slide, workspace.pointer, cached, given, writable("float[]", slid), results)
             planes = self._frame_embeddings(workspace) if embeddings else None
+            turned = self._frame_turns(workspace, cached) if turns else None
         finally:
             self._give_back(workspace)
-        return Frame(slid, tuple(read(PatchResult, result) for result in results), planes)
+        return Frame(slid, tuple(read(PatchResult, result) for result in results), planes, turned)
 
     def stop(self) -> None:
         """Has the frames that are being slid, on any thread, fail before long, and all after them.
@@ -289,6 +298,11 @@ class Slider:
             call(lib.skinslide_workspace_embedding, workspace.pointer, i, writable("double[]", array))
         return arrays
 
+    def _frame_turns(self, workspace: Handle, cached: Any) -> np.ndarray:
+        turns = np.empty((self._sizes.vertices, 3), np.float32)
+        call(lib.skinslide_workspace_turns, workspace.pointer, cached, writable("float[]", turns))
+        return turns
+
     def _new_workspace(self) -> Handle:
         out = ffi.new("skinslide_workspace **")
         call(lib.skinslide_workspace_create, self._slider.pointer, self._lookup, out)
@@ -364,19 +378,23 @@ def limit_points(
     return result
 
 
-def normals(
-    face_counts: np.ndarray,
-    face_indices: np.ndarray,
-    cached: np.ndarray,
-    slid: np.ndarray,
-    normals: np.ndarray,
-    interpolation: str,
-    *,
-    left_handed: bool = False,
+def carry(
+    face_counts: np.ndarray, face_indices: np.ndarray, turns: np.ndarray, vectors: np.ndarray, interpolation: str
 ) -> np.ndarray:
-    """The cache's normals, recomputed where the skin slid: float32 (n, 3), for any interpolation but constant."""
+    """The cache's normals, tangents or other vectors on the skin, turned as a frame's skin turned.
+
+    Args:
+        face_counts: Vertices of each face (F,).
+        face_indices: Vertices (sum of counts,), face by face.
+        turns: Of the frame (V, 3): axis times the sine of half the angle.
+        vectors: The cache's (n, 3).
+        interpolation: Which elements have one: vertex, varying, faceVarying or uniform.
+
+    Returns:
+        float32 (n, 3); those that do not turn have the bits they had.
+    """
     native = Arguments()
-    mesh = native.mesh(face_counts, face_indices, cached)
+    mesh = native.mesh(face_counts, face_indices, turns)
     # On a mesh, varying values sit on the vertices.
     layout = enum_value("normals_layout", "vertex" if interpolation == "varying" else interpolation, "")
     sizes = {
@@ -384,11 +402,8 @@ def normals(
         lib.SKINSLIDE_NORMALS_FACE_VARYING: mesh.index_count,
         lib.SKINSLIDE_NORMALS_UNIFORM: mesh.face_count,
     }
-    result = as_array(normals, np.float32, (sizes[layout], 3), "normals").copy()
-    after = native.points(slid, mesh.vertex_count, "slid")
-    before = mesh.rest_points
-    out = writable("float[]", result)
-    call(lib.skinslide_normals, ffi.addressof(mesh), before, after, layout, left_handed, out)
+    result = as_array(vectors, np.float32, (sizes[layout], 3), "vectors").copy()
+    call(lib.skinslide_carry, ffi.addressof(mesh), mesh.rest_points, layout, writable("float[]", result))
     return result
 
 

@@ -1,6 +1,6 @@
 """A layer with the slid points of every mesh, to be sublayered above the cache; or the same in a stage's edit target.
 
-At each time: points, extent, normals, velocities, accelerations, and diagnostics where they are asked for.
+At each time: points, extent, what the skin carries, rates of change, and diagnostics where they are asked for.
 """
 
 from __future__ import annotations
@@ -187,6 +187,7 @@ class _MeshBake(MeshMaking):
     def __init__(self, planned: PlannedMesh, baking: _Baking):
         self._mesh, self._patches, self._baking = planned.mesh, planned.slider.patches, baking
         self._derived = Derived(planned.mesh)
+        self.turns = self._derived.carries
         self._diagnostics = baking.options.diagnostics
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:

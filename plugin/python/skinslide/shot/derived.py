@@ -1,4 +1,4 @@
-"""What else a cache holds that follows from its points: normals, velocities, accelerations."""
+"""What else a cache holds that follows from its points: vectors that the skin carries, and rates of change."""
 
 from __future__ import annotations
 
@@ -30,15 +30,25 @@ class Derived:
         self.problems: list[Problem] = []
         self.blocked: list[Usd.Attribute] = []
         self._mesh = mesh
-        sources = [Source(mesh.prim, each) for each in inputs("derived")]
+        points = UsdGeom.PointBased(mesh.prim).GetPointsAttr().GetTimeSamples()
+        self._meaning = DerivedMeaning(mesh.meaning, points, mesh.stage.GetTimeCodesPerSecond())
+        sources = [*(Source(mesh.prim, each) for each in inputs("derived")), *_offered(mesh.prim, self._meaning)]
         self._sources = {source.wanted.property(): source for source in sources}
-        self._meaning = _meaning_of(mesh, sources)
+        for source in sources:
+            self._meaning.take(source.wanted, source.first(), _samples(source))
+        for said in self._meaning.warnings():
+            self._warn(said)
         self._recomputed: list[Output] = []
         for output in self._meaning.outputs():
             if output.pose_count:
                 self._recomputed.append(output)
             else:
                 self._block(output.name, reason=output.reason and f": {output.reason}")
+
+    @property
+    def carries(self) -> bool:
+        """Whether values depend on how the skin turned."""
+        return any(output.is_carried for output in self._recomputed)
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         """The times that must be slid before the values at `time` are known; it is one of them."""
@@ -65,27 +75,37 @@ class Derived:
         source = self._sources[output.name]
         poses = [_pose(each, frames) for each in self._times_of(output, time)]
         # Normals may move over points that do not.
-        samples = source.attribute.GetTimeSamples() if time.IsDefault() else []
+        samples = _samples(source) if time.IsDefault() else []
+        array = Vt.Vec3dArray if output.is_double else Vt.Vec3fArray
         for sample in map(Usd.TimeCode, samples or [time]):
             recomputed = self._meaning.value(output, source.at(sample), poses)
-            yield Value(source.attribute, sample, Vt.Vec3fArray.FromNumpy(recomputed))
+            yield Value(source.attribute, sample, array.FromNumpy(recomputed))
 
     def _block(self, name: str, time: Usd.TimeCode = FIRST, reason: str | None = None) -> None:
         self.blocked.append(self._mesh.prim.GetAttribute(name))
         if reason is not None:
-            said = self._mesh.problem(f"{name} cannot be recomputed, so the bake blocks them{reason}", time)
-            self.problems.append(replace(said, severity="warning"))
+            self._warn(f"{name} cannot be recomputed, so the bake blocks them{reason}", time)
+
+    def _warn(self, message: str, time: Usd.TimeCode = FIRST) -> None:
+        self.problems.append(replace(self._mesh.problem(message, time), severity="warning"))
 
 
-def _meaning_of(mesh: PatchedMesh, sources: list[Source]) -> DerivedMeaning:
-    points = UsdGeom.PointBased(mesh.prim).GetPointsAttr().GetTimeSamples()
-    meaning = DerivedMeaning(mesh.meaning, points, mesh.stage.GetTimeCodesPerSecond())
-    for source in sources:
-        times = source.attribute.GetTimeSamples() if source.attribute else []
-        meaning.take(source.wanted, source.first(), times)
-    return meaning
+def _offered(prim: Usd.Prim, meaning: DerivedMeaning) -> Iterator[Source]:
+    """The primvars that follow from points."""
+    for name in sorted(prim.GetAuthoredPropertyNames(lambda name: name.startswith("primvars:"))):
+        primvar = UsdGeom.Primvar(prim.GetAttribute(name))
+        if primvar and primvar.HasAuthoredValue():
+            interpolation = primvar.GetAttr().GetMetadata("interpolation")
+            wanted = meaning.offer(name, str(primvar.GetTypeName()), interpolation, primvar.GetElementSize())
+            yield from [Source(prim, wanted)] if wanted else []
+
+
+def _samples(source: Source) -> list[float]:
+    """Those of a value and of its indices."""
+    there = [each for each in (source.attribute, source.indices) if each]
+    return sorted({time for attribute in there for time in attribute.GetTimeSamples()})
 
 
 def _pose(time: Usd.TimeCode, frames: SlidFrames) -> Pose:
     frame = frames[time]
-    return Pose(0.0 if time.IsDefault() else time.GetValue(), frame.cached, frame.slid)
+    return Pose(0.0 if time.IsDefault() else time.GetValue(), frame.cached, frame.slid, frame.turns)

@@ -108,13 +108,14 @@ class _Mesh(NamedTuple):
     def _reader(self, wanted: set[Usd.TimeCode]) -> Callable[[Usd.TimeCode], Callable[[], tuple[SlidFrame, list[Any]]]]:
         """Reads a time, and what is made of it where it is wanted and not only needed for another."""
         mesh, slider = self.planned.mesh, self.planned.slider
+        turns = any(making.turns for making in self.makings)
 
         def read(time: Usd.TimeCode) -> Callable[[], tuple[SlidFrame, list[Any]]]:
             points, controls = mesh.points_at(time), mesh.controls_at(time)
             works = [making.read(time) for making in self.makings] if time in wanted else []
 
             def work() -> tuple[SlidFrame, list[Any]]:
-                frame = SlidFrame(slider, points, controls)
+                frame = SlidFrame(slider, points, controls, turns=turns)
                 return frame, [each(frame) for each in works]
 
             return work

@@ -42,11 +42,11 @@ class Shot(NamedTuple):
 
 
 class SlidFrame:
-    """One time of a mesh, slid. Points float32 (V, 3); `patches` is the core's result of each."""
+    """One time of a mesh, slid. Points float32 (V, 3); `patches` is the core's result of each, `turns` where wanted."""
 
-    def __init__(self, slider: Slider, points: np.ndarray, controls: Sequence[Controls] | None):
-        frame = slider.slide(points, controls)
-        self.cached, self.slid, self.patches = points, frame.points, frame.patches
+    def __init__(self, slider: Slider, points: np.ndarray, controls: Sequence[Controls] | None, *, turns: bool):
+        frame = slider.slide(points, controls, turns=turns)
+        self.cached, self.slid, self.patches, self.turns = points, frame.points, frame.patches, frame.turns
         self._slider, self._controls = slider, controls
         self._measured: dict[tuple[bool, ...], Diagnostics] = {}
 
@@ -88,6 +88,8 @@ class Making(ABC):
 
 class MeshMaking(ABC):
     """One mesh of a run."""
+
+    turns = False  # whether its frames are to say how the skin turned
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         """The times that must be slid before `take` is called for `time`; it is one of them."""
