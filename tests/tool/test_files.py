@@ -244,16 +244,18 @@ def test_what_killed_bakes_left_is_removed_after_a_day(shot, tmp_path):
     names = [
         ".out.0123abcd.usdc",
         ".out.0123abcd.usdc.tmpXY",
+        ".out.0123abcd.rbsRVw",
         ".out.89abcdef.usdc",
         ".out.words.usdc",
+        ".out.20260101.backup",
         ".other.0123abcd.usdc",
     ]
     for name in names:
         (tmp_path / name).touch()
-    for name in [*names[:2], *names[3:]]:
+    for name in [*names[:3], *names[4:]]:
         os.utime(tmp_path / name, (0, time.time() - 2 * 24 * 3600))
     bake_to_file(shot, tmp_path / "out.usdc")
-    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith(".")) == sorted(names[2:])
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith(".")) == sorted(names[3:])
 
 
 def test_a_fault_of_the_stage_is_not_blamed_on_the_output(shot, tmp_path, monkeypatch):

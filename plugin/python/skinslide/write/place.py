@@ -190,7 +190,7 @@ def replacing(output: Path, if_still: Callable[[], bool] = lambda: True) -> Iter
                         raise Changed
                     os.replace(partial, output)
         finally:
-            for left in partial.parent.glob(f"{glob.escape(partial.name)}*"):  # also what USD writes beside it
+            for left in partial.parent.glob(f"{glob.escape(partial.stem)}.*"):  # also what USD writes beside it
                 left.unlink(missing_ok=True)
 
 
@@ -217,12 +217,12 @@ def _locked(folder: Path) -> Iterator[None]:
 
 def _remove_abandoned(output: Path) -> None:
     """Removes what earlier writers of this output left when they were killed, a day ago or more."""
-    for other in output.parent.glob(glob.escape(partial_name(output, "")[: -len(output.suffix)]) + "*"):
-        ours = re.fullmatch(
-            re.escape(partial_name(output, "\0")).replace("\0", "[0-9a-f]{8}") + r"(\.\w+)?", other.name
-        )
+    # USD writes beside a file: six letters and digits after its name, or in place of its suffix; never a mere word.
+    suffixes = re.escape(output.suffix) + r"(\.\w+)?|\.(?![a-z]{6}$)[A-Za-z0-9]{6}"
+    ours = re.compile(re.escape(f".{output.stem}.") + f"[0-9a-f]{{8}}({suffixes})")
+    for other in output.parent.glob(f".{glob.escape(output.stem)}.*"):
         with suppress(OSError):
-            if ours and other.is_file() and time.time() - other.stat().st_mtime > _ABANDONED:
+            if ours.fullmatch(other.name) and other.is_file() and time.time() - other.stat().st_mtime > _ABANDONED:
                 other.unlink()
 
 
