@@ -41,11 +41,15 @@ say "Measuring"
 measure lookup "$out"
 measure limit_distance "$out"/*/stage.usda
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
+measure normals "$out"/{elbow,sleeve,chequer}/stage.usda
 measure share "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 echo
 
 say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"
 "$python" examples/measure/table.py "$out"
+
+say "Normals, in degrees: their largest jump at a tiny slide (0), and largest angle across seams (as in the cache)"
+cat "$out/normals.txt"
 cat <<SUMMARY
 
 Look at these in $out:
@@ -60,6 +64,7 @@ And measured:
   lookup.txt                     how much of the lookup the texture finds
   limit_distance.txt             how far the limit surface moves
   smoothness.txt                 how smoothly each rule moves skin
+  normals.txt                    how authored normals are carried with the skin
   share.txt                      the share of the removable stretch that each rule removes
   shot/play.txt                  shot/shot.usda, played live with nothing baked
 SUMMARY

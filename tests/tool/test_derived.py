@@ -7,6 +7,7 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 import skinslide
+from repository import load
 from shots import (
     COUNTS,
     FACES,
@@ -117,6 +118,21 @@ def test_angles_across_seams_stay_as_in_the_cache(shot, out):
         )
     # And a normal and its tangent, which are floats of length 2 or so.
     assert np.allclose(angles(after[0], after[1]), angles(normals, tangents), atol=1e-4)
+
+
+def test_normals_of_an_example_are_measured(example_stage):
+    _name, _slide, turned, jump, cached, slid = load("measure/normals.py").row(example_stage("chequer"))
+    assert float(turned) > 5 and (jump, cached, slid) == ("0.00", "0.00", "0.00")
+
+
+def test_a_seam_that_parts_is_measured():
+    measure = load("measure/normals.py")
+    up, tilted, across = (0.0, 0.0, 1.0), (0.0, np.sin(0.1), np.cos(0.1)), (1.0, 0.0, 0.0)
+    cached, slid = {1: np.array([up, up, up, across])}, {1: np.array([up, tilted, up, up])}
+    pairs = np.array([0, 2]), np.array([1, 3])  # the second of which is a hard edge in the cache
+    assert measure.largest_seam(cached, cached, pairs) == 0
+    assert measure.largest_seam(cached, slid, pairs) == pytest.approx(np.degrees(0.1))
+    assert measure.largest_turn(cached, slid) == pytest.approx(90)
 
 
 def test_indexed_normals_are_flattened(shot, out):
