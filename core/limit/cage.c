@@ -74,22 +74,26 @@ static void list_samples(ss_cage *cage) {
 
 static const double negligible = 1e-13; /* weights that OpenSubdiv leaves where there are none */
 
+/* Adds to the value of a column in the row that begins there and ends at end, for which there is room. Returns where it ends. */
+static int32_t add_entry(ss_rows *rows, int32_t begin, int32_t end, int32_t column, double value) {
+    int32_t place = begin;
+    while (place < end && rows->column[place] != column)
+        place++;
+    if (place == end)
+        rows->column[end] = column, rows->value[end++] = 0;
+    rows->value[place] += value;
+    return end;
+}
+
 /* Row s of the stencils, for which there is room. */
 static void append_stencil(const ss_cage *cage, int32_t s, double *weights, ss_rows *rows) {
     const sample *own = &cage->samples[s];
     const int32_t *vertices;
     int32_t count = ss_limit_stencil(cage->surfaces, own->face, &own->at, &vertices, weights);
     int32_t begin = rows->start[s], end = begin;
-    for (int32_t k = 0; k < count; k++) {
-        int32_t place = begin;
-        if (fabs(weights[k]) < negligible)
-            continue;
-        while (place < end && rows->column[place] != vertices[k])
-            place++;
-        if (place == end)
-            rows->column[end] = vertices[k], rows->value[end++] = 0;
-        rows->value[place] += weights[k];
-    }
+    for (int32_t k = 0; k < count; k++)
+        if (fabs(weights[k]) >= negligible)
+            end = add_entry(rows, begin, end, vertices[k], weights[k]);
     rows->start[s + 1] = end;
 }
 
@@ -131,7 +135,7 @@ static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
     return status;
 }
 
-/* Drops the columns of held vertices, whose p - Md is 0. */
+/* Drops the columns of held vertices, whose p - Md is 0; columns of vertices that are one are one. */
 static skinslide_status restrict_to_free(ss_cage *cage, skinslide_error *error) {
     const ss_rows *all = &cage->stencils;
     ss_rows *rows = &cage->free_rows;
@@ -145,7 +149,7 @@ static skinslide_status restrict_to_free(ss_cage *cage, skinslide_error *error) 
         for (int32_t k = all->start[s]; k < all->start[s + 1]; k++) {
             int32_t vertex = ss_patch_vertex(cage->patch, all->column[k]);
             if (vertex >= 0 && cage->free_index[vertex] >= 0)
-                rows->column[end] = cage->free_index[vertex], rows->value[end++] = all->value[k];
+                end = add_entry(rows, rows->start[s], end, cage->free_index[vertex], all->value[k]);
         }
         rows->start[s + 1] = end;
     }

@@ -24,6 +24,17 @@ skinslide_status ss_check_points(const float *points, int32_t vertex_count, cons
     return SKINSLIDE_OK;
 }
 
+/* What vertices are one with must be one with itself. */
+static skinslide_status check_weld(const skinslide_mesh *mesh, skinslide_error *error) {
+    for (int32_t v = 0; mesh->weld && v < mesh->vertex_count; v++) {
+        int32_t one = mesh->weld[v];
+        if (one < 0 || one >= mesh->vertex_count || mesh->weld[one] != one)
+            return ss_fail(error, SKINSLIDE_BAD_MESH, "weld: vertex %d is one with %d, which is none or is one with another", v,
+                           one);
+    }
+    return SKINSLIDE_OK;
+}
+
 skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error) {
     if (!mesh || mesh->vertex_count < 0 || mesh->face_count < 0 || mesh->index_count < 0)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh, or a negative count in it");
@@ -45,7 +56,7 @@ skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *erro
             if (mesh->face_indices[c] < 0 || mesh->face_indices[c] >= mesh->vertex_count)
                 return ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has vertex %d, but the mesh has %d vertices", f,
                                mesh->face_indices[c], mesh->vertex_count);
-    return SKINSLIDE_OK;
+    return check_weld(mesh, error);
 }
 
 skinslide_status ss_take_mesh(const skinslide_mesh **mesh, ss_taken_mesh *own, skinslide_error *error) {
@@ -119,13 +130,14 @@ bool ss_number_edges(ss_faces *faces) {
 
 /* ---- The faces of a patch ---- */
 
-/* sorted is scratch of the face's size. */
-static skinslide_status check_face(const int32_t *vertices, int32_t count, int32_t face, int32_t *sorted, const char *label,
+/* Of face number own, which is the mesh's face. sorted is scratch of its size. */
+static skinslide_status check_face(const ss_faces *faces, int32_t own, int32_t face, int32_t *sorted, const char *label,
                                    skinslide_error *error) {
+    int32_t count = faces->face_start[own + 1] - faces->face_start[own];
     if (count < 3)
         return ss_fail(error, SKINSLIDE_BAD_MESH, "%s: face %d has %d vertices; a face needs 3", label, face, count);
     for (int32_t k = 0; k < count; k++)
-        sorted[k] = vertices[k];
+        sorted[k] = faces->corner_vertex[faces->face_start[own] + k];
     qsort(sorted, (size_t)count, sizeof *sorted, ss_ascending);
     for (int32_t k = 1; k < count; k++)
         if (sorted[k] == sorted[k - 1])
@@ -150,17 +162,19 @@ skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen
     faces->corner_face = SS_NEW(memory, int32_t, corners);
     faces->corner_twin = SS_NEW(memory, int32_t, corners);
     faces->corner_edge = SS_NEW(memory, int32_t, corners);
+    faces->corner_copy = SS_NEW(memory, int32_t, corners);
     ss_side *sides = SS_NEW(&scratch, ss_side, corners);
     int32_t *sorted = SS_NEW(&scratch, int32_t, corners);
     skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t f = 0, c = 0; f < count && !status; f++) {
         const int32_t *vertices = mesh->face_indices + start_in_mesh[chosen[f]];
-        status = check_face(vertices, mesh->face_counts[chosen[f]], chosen[f], sorted, label, error);
         for (int32_t k = 0; k < mesh->face_counts[chosen[f]]; k++, c++) {
-            faces->corner_vertex[c] = vertices[k];
+            faces->corner_copy[c] = vertices[k];
+            faces->corner_vertex[c] = ss_one(mesh, vertices[k]);
             faces->corner_face[c] = f;
         }
         faces->face_start[f + 1] = c;
+        status = check_face(faces, f, chosen[f], sorted, label, error);
     }
     if (!status) {
         list_sides(faces, sides);

@@ -20,6 +20,7 @@ typedef struct ss_faces {
     int32_t *corner_face;   /* [corner_count] */
     int32_t *corner_twin;   /* [corner_count] the same edge seen from the other face; -1 on the boundary */
     int32_t *corner_edge;   /* [corner_count] edges are numbered by their lower, then their higher vertex */
+    int32_t *corner_copy; /* [corner_count] the mesh vertex as the face has it, which corner_vertex may be one with; or NULL */
     int32_t edge_count;
 } ss_faces;
 
@@ -56,6 +57,27 @@ bool ss_number_edges(ss_faces *faces);
 /* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
  */
 int32_t ss_number_pieces(const ss_faces *faces, int32_t *piece_of_face, int32_t *stack);
+
+/* The vertex that a vertex of the mesh is one with. */
+static inline int32_t ss_one(const skinslide_mesh *mesh, int32_t vertex) {
+    return mesh->weld ? mesh->weld[vertex] : vertex;
+}
+
+/* ---- places.c: points in one place ---- */
+
+/* A point to be told apart from others. */
+typedef struct ss_spot {
+    double along; /* where it is along a line */
+    float at[3];
+    int32_t place, vertex;
+} ss_spot;
+/* Splits places by a pose: of vertices that share one, by its lowest vertex, those stay together that are linked by distances of
+ * no more than tolerance. vertices [count] are those to look at; spots is scratch [count]. */
+void ss_split_places(const float *points, double tolerance, const int32_t *vertices, int32_t count, ss_spot *spots,
+                     int32_t *place);
+/* The root of a vertex in a forest, whose roots are their own parents; joins two trees under the lower root. */
+int32_t ss_root(int32_t *parent, int32_t vertex);
+void ss_join(int32_t *parent, int32_t a, int32_t b);
 
 /* ---- winding.c ---- */
 
@@ -135,10 +157,14 @@ typedef struct ss_patch {
     const skinslide_patch_setup *setup;
     int32_t setup_index, piece, piece_count;
     int32_t vertex_count, free_count, loop_count;
-    ss_faces faces;            /* corners hold patch vertices */
-    int32_t *mesh_vertex;      /* [vertex_count], ascending; the same for those that one was split into */
-    uint8_t *split;            /* [vertex_count] one of several of its mesh vertex */
-    int32_t *mesh_face;        /* [face_count], ascending */
+    ss_faces faces;       /* corners hold patch vertices */
+    int32_t *mesh_vertex; /* [vertex_count], ascending; the same for those that one was split into */
+    uint8_t *split;       /* [vertex_count] one of several of its mesh vertex */
+    int32_t *copy_start;  /* [vertex_count + 1] */
+    int32_t *copy;        /* the mesh vertices of its faces that are one with each, ascending: most have one */
+    int32_t *mesh_face;   /* [face_count], ascending */
+    const int32_t *weld;  /* the mesh's, [mesh_vertex_count]; or NULL */
+    int32_t mesh_vertex_count;
     int32_t *vertex_corner;    /* [vertex_count] a corner at the vertex; on the boundary the one whose side leaves along it */
     int32_t (*edge_vertex)[2]; /* [edge_count], lower first */
     double *rest_length;       /* [edge_count] clamped to shortest */
@@ -156,6 +182,7 @@ typedef struct ss_patch {
     ss_triangles triangles;
 } ss_patch;
 
+/* The mesh's weld must outlive the patch. */
 skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,
                                  const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
                                  ss_patch **out, skinslide_error *error);
@@ -164,7 +191,7 @@ void ss_patch_destroy(ss_patch *patch);
 skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error);
 /* "patch elbow", or "patch elbow (piece 2 of 2)". */
 void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size);
-/* The patch vertex of a mesh vertex, the first of several, or -1. */
+/* The patch vertex, the first of several, that a mesh vertex is, or is one with; or -1. */
 int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex);
 /* The edge between two patch vertices, or -1. */
 int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b);

@@ -18,9 +18,9 @@ void ss_area_vector(const int32_t *vertices, int32_t count, const float *points,
 
 /* ---- Faces around vertices ---- */
 
-static bool has_chosen(const int32_t *vertices, int32_t count, const uint8_t *chosen) {
+static bool has_chosen(const skinslide_mesh *mesh, const int32_t *vertices, int32_t count, const uint8_t *chosen) {
     for (int32_t k = 0; k < count; k++)
-        if (chosen[vertices[k]])
+        if (chosen[ss_one(mesh, vertices[k])])
             return true;
     return false;
 }
@@ -28,7 +28,7 @@ static bool has_chosen(const int32_t *vertices, int32_t count, const uint8_t *ch
 bool ss_take_around(const skinslide_mesh *mesh, const uint8_t *chosen, ss_memory *memory, ss_around *out) {
     int32_t corner_count = 0;
     for (int32_t f = 0, c = 0; f < mesh->face_count; c += mesh->face_counts[f++])
-        if (has_chosen(mesh->face_indices + c, mesh->face_counts[f], chosen))
+        if (has_chosen(mesh, mesh->face_indices + c, mesh->face_counts[f], chosen))
             out->face_count++, corner_count += mesh->face_counts[f];
     out->face_start = SS_NEW(memory, int32_t, (int64_t)out->face_count + 1);
     out->corner_vertex = SS_NEW(memory, int32_t, corner_count);
@@ -36,9 +36,10 @@ bool ss_take_around(const skinslide_mesh *mesh, const uint8_t *chosen, ss_memory
         return false;
     for (int32_t f = 0, c = 0, taken = 0; f < mesh->face_count; c += mesh->face_counts[f++]) {
         int32_t n = mesh->face_counts[f], start = out->face_start[taken];
-        if (!has_chosen(mesh->face_indices + c, n, chosen))
+        if (!has_chosen(mesh, mesh->face_indices + c, n, chosen))
             continue;
-        memcpy(out->corner_vertex + start, mesh->face_indices + c, (size_t)n * sizeof *out->corner_vertex);
+        for (int32_t k = 0; k < n; k++)
+            out->corner_vertex[start + k] = ss_one(mesh, mesh->face_indices[c + k]);
         out->face_start[++taken] = start + n;
     }
     return true;

@@ -8,7 +8,14 @@
 
 /* ---- Vertices ---- */
 
+/* What a mesh vertex is one with; one that is none stays as it is. */
+static int32_t welded(const ss_patch *patch, int32_t mesh_vertex) {
+    bool known = patch->weld && mesh_vertex >= 0 && mesh_vertex < patch->mesh_vertex_count;
+    return known ? patch->weld[mesh_vertex] : mesh_vertex;
+}
+
 int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex) {
+    mesh_vertex = welded(patch, mesh_vertex);
     const int32_t *found =
         bsearch(&mesh_vertex, patch->mesh_vertex, (size_t)patch->vertex_count, sizeof mesh_vertex, ss_ascending);
     while (found && found > patch->mesh_vertex && found[-1] == mesh_vertex)
@@ -39,6 +46,20 @@ static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error)
     return splits_vertices(patch) && !ss_split_vertices(patch) ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
+/* pairs is scratch [corner_count]: the patch vertex and the mesh vertex at each corner. */
+static void list_copies(ss_patch *patch, int32_t (*pairs)[2]) {
+    const ss_faces *faces = &patch->faces;
+    int32_t count = 0;
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        pairs[c][0] = faces->corner_vertex[c], pairs[c][1] = faces->corner_copy[c];
+    qsort(pairs, (size_t)faces->corner_count, sizeof *pairs, ss_ascending_pairs);
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        if (c == 0 || ss_ascending_pairs(pairs[c], pairs[c - 1]) != 0)
+            patch->copy[count++] = pairs[c][1];
+        patch->copy_start[pairs[c][0] + 1] = count;
+    }
+}
+
 static void list_edges(ss_patch *patch) {
     const ss_faces *faces = &patch->faces;
     for (int32_t c = 0; c < faces->corner_count; c++) {
@@ -56,6 +77,7 @@ int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b) {
 }
 
 int32_t ss_patch_mesh_edge(const ss_patch *patch, int32_t a, int32_t b) {
+    a = welded(patch, a), b = welded(patch, b);
     int32_t count = patch->vertex_count, first = ss_patch_vertex(patch, a), second = ss_patch_vertex(patch, b), edge = -1;
     for (int32_t v = first; v >= 0 && v < count && patch->mesh_vertex[v] == a && edge < 0; v++)
         for (int32_t w = second; w >= 0 && w < count && patch->mesh_vertex[w] == b && edge < 0; w++)
@@ -246,6 +268,8 @@ void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_c
 static void allocate(ss_patch *patch) {
     ss_memory *memory = &patch->memory;
     int32_t vertices = patch->vertex_count, edges = patch->faces.edge_count;
+    patch->copy_start = SS_NEW(memory, int32_t, (int64_t)vertices + 1);
+    patch->copy = SS_NEW(memory, int32_t, patch->faces.corner_count);
     patch->vertex_corner = SS_NEW(memory, int32_t, vertices);
     patch->edge_vertex = ss_new(memory, edges, sizeof *patch->edge_vertex);
     patch->rest_length = SS_NEW(memory, double, edges);
@@ -281,6 +305,7 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_pat
         return ss_out_of_memory(error);
     ss_memory scratch = {0};
     patch->setup = setup, patch->setup_index = setup_index, patch->piece = piece, patch->piece_count = piece_count;
+    patch->weld = mesh->weld, patch->mesh_vertex_count = mesh->vertex_count;
     ss_label(setup, piece, piece_count, patch->label, sizeof patch->label);
     skinslide_status status = ss_take_faces(mesh, mesh_faces, face_count, patch->label, &patch->memory, &patch->faces, error);
     if (!status)
@@ -289,8 +314,12 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_pat
         allocate(patch);
         patch->mesh_face = SS_NEW(&patch->memory, int32_t, face_count);
         int32_t *arrays[2] = {SS_NEW(&scratch, int32_t, patch->vertex_count), SS_NEW(&scratch, int32_t, patch->vertex_count)};
-        status =
-            patch->memory.failed || scratch.failed ? ss_out_of_memory(error) : build(patch, mesh->rest_points, arrays, error);
+        int32_t(*pairs)[2] = ss_new(&scratch, patch->faces.corner_count, sizeof *pairs);
+        status = patch->memory.failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+        if (!status)
+            list_copies(patch, pairs);
+        if (!status)
+            status = build(patch, mesh->rest_points, arrays, error);
     }
     ss_free(&scratch);
     if (status) {

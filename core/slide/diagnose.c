@@ -21,11 +21,12 @@ typedef struct diagnosis {
     const skinslide_slider *slider;
     skinslide_controls *controls; /* [setup_count] of the frame; NULL: the set-ups' own */
     const uint8_t *chosen;
-    tally *tallies;         /* [vertex_count] */
-    double *before, *after; /* [most edges of a patch] lengths */
-    double *own_paint;      /* [most edges] */
-    double *paint_sum;      /* [most vertices] over the edges of one patch */
-    int32_t *degree;        /* [most vertices] those edges */
+    tally *tallies;            /* [vertex_count] */
+    double *before, *after;    /* [most edges of a patch] lengths */
+    double *own_paint;         /* [most edges] */
+    ss_edge_paint *edge_paint; /* [most edges] scratch */
+    double *paint_sum;         /* [most vertices] over the edges of one patch */
+    int32_t *degree;           /* [most vertices] those edges */
 } diagnosis;
 
 static bool counts(const diagnosis *d, int32_t part) {
@@ -43,6 +44,7 @@ static skinslide_status allocate(diagnosis *d, skinslide_error *error) {
     d->before = SS_NEW(&d->memory, double, most_edges);
     d->after = SS_NEW(&d->memory, double, most_edges);
     d->own_paint = SS_NEW(&d->memory, double, most_edges);
+    d->edge_paint = SS_NEW(&d->memory, ss_edge_paint, most_edges);
     d->paint_sum = SS_NEW(&d->memory, double, most_vertices);
     d->degree = SS_NEW(&d->memory, int32_t, most_vertices);
     return d->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
@@ -94,7 +96,7 @@ static void add_density(diagnosis *d, int32_t part) {
     const ss_patch *patch = d->slider->parts[part].patch;
     const double *paint = d->slider->parts[part].paint;
     if (d->controls) {
-        ss_paint(patch, &d->controls[patch->setup_index], d->own_paint);
+        ss_paint(patch, &d->controls[patch->setup_index], d->edge_paint, d->own_paint);
         paint = d->own_paint;
     }
     for (int32_t v = 0; v < patch->vertex_count; v++)
@@ -149,11 +151,11 @@ static skinslide_status write(const diagnosis *d, const float *cached, const flo
                               skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t v = 0; v < d->slider->vertex_count && !status; v++) {
-        measures own = measure(&d->tallies[v], cached, slid, v);
+        measures own = measure(&d->tallies[ss_welded(d->slider, v)], cached, slid, v);
         status = check_vertex(&own, out, v, error);
     }
     for (int32_t v = 0; v < d->slider->vertex_count && !status; v++) {
-        measures own = measure(&d->tallies[v], cached, slid, v);
+        measures own = measure(&d->tallies[ss_welded(d->slider, v)], cached, slid, v);
         write_vertex(&own, out, v);
     }
     return status;

@@ -62,10 +62,18 @@ skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name,
 
 /* ---- Paint ---- */
 
+/* The mean over the copies of a patch vertex; of one, its value to the bit. */
+static double mean_of(const ss_patch *patch, const float *values, int32_t vertex) {
+    double sum = 0;
+    for (int32_t i = patch->copy_start[vertex]; i < patch->copy_start[vertex + 1]; i++)
+        sum += values[patch->copy[i]];
+    return sum / (patch->copy_start[vertex + 1] - patch->copy_start[vertex]);
+}
+
 static void paint_vertices(const ss_patch *patch, const float *density, double *paint) {
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         const int32_t *v = patch->edge_vertex[e];
-        paint[e] *= 0.5 * ((double)density[patch->mesh_vertex[v[0]]] + density[patch->mesh_vertex[v[1]]]);
+        paint[e] *= 0.5 * (mean_of(patch, density, v[0]) + mean_of(patch, density, v[1]));
     }
 }
 
@@ -83,22 +91,28 @@ static void paint_faces(const ss_patch *patch, const float *density, double *pai
 }
 
 /* Edges of other pieces of the set-up are passed over here: the slider checks that every edge is in some piece. */
-static void paint_edges(const ss_patch *patch, const skinslide_controls *controls, double *paint) {
+static void paint_edges(const ss_patch *patch, const skinslide_controls *controls, ss_edge_paint *edges, double *paint) {
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        edges[e] = (ss_edge_paint){0, 0};
     for (int32_t i = 0; i < controls->edge_count; i++) {
         int32_t edge = ss_patch_mesh_edge(patch, controls->edges[2 * i], controls->edges[2 * i + 1]);
         if (edge >= 0)
-            paint[edge] *= controls->edge_density[i];
+            edges[edge].sum += controls->edge_density[i], edges[edge].count++;
     }
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        if (edges[e].count > 0)
+            paint[e] *= edges[e].sum / edges[e].count;
 }
 
-void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double *paint) {
+void ss_paint(const ss_patch *patch, const skinslide_controls *controls, ss_edge_paint *edges, double *paint) {
     for (int32_t e = 0; e < patch->faces.edge_count; e++)
         paint[e] = 1;
     if (controls->vertex_density)
         paint_vertices(patch, controls->vertex_density, paint);
     if (controls->face_density)
         paint_faces(patch, controls->face_density, paint);
-    paint_edges(patch, controls, paint);
+    if (controls->edge_count > 0)
+        paint_edges(patch, controls, edges, paint);
 }
 
 /* ---- Weights ---- */
@@ -108,20 +122,32 @@ static double clamped_share(double value, int32_t *clamped) {
     return value < 0 ? 0 : value > 1 ? 1 : value;
 }
 
+static double mean_share(const ss_patch *patch, const float *values, int32_t vertex, int32_t *clamped) {
+    double sum = 0;
+    for (int32_t i = patch->copy_start[vertex]; i < patch->copy_start[vertex + 1]; i++)
+        sum += clamped_share(values[patch->copy[i]], clamped);
+    return sum / (patch->copy_start[vertex + 1] - patch->copy_start[vertex]);
+}
+
 int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights) {
     int32_t clamped = 0;
     double envelope = clamped_share(controls->envelope, &clamped);
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        float weight = controls->weight ? controls->weight[patch->mesh_vertex[patch->free_vertex[i]]] : 1;
-        weights[i] = envelope * clamped_share(weight, &clamped);
-    }
+    for (int32_t i = 0; i < patch->free_count; i++)
+        weights[i] = envelope * (controls->weight ? mean_share(patch, controls->weight, patch->free_vertex[i], &clamped) : 1);
     return clamped;
+}
+
+static double smallest_of(const ss_patch *patch, const float *values, int32_t vertex) {
+    double smallest = INFINITY;
+    for (int32_t i = patch->copy_start[vertex]; i < patch->copy_start[vertex + 1]; i++)
+        smallest = fmin(smallest, values[patch->copy[i]]);
+    return smallest;
 }
 
 bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits) {
     bool any = false;
     for (int32_t i = 0; i < patch->free_count; i++) {
-        limits[i] = controls->max_distance ? controls->max_distance[patch->mesh_vertex[patch->free_vertex[i]]] : INFINITY;
+        limits[i] = controls->max_distance ? smallest_of(patch, controls->max_distance, patch->free_vertex[i]) : INFINITY;
         any = any || !isinf(limits[i]);
     }
     return any;
@@ -129,5 +155,5 @@ bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls
 
 void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls, double *holds) {
     for (int32_t v = 0; v < patch->vertex_count; v++)
-        holds[v] = controls->hold ? controls->hold[patch->mesh_vertex[v]] : 1;
+        holds[v] = controls->hold ? mean_of(patch, controls->hold, v) : 1;
 }

@@ -94,6 +94,16 @@ static const ss_rule *rule_of(skinslide_rule rule) {
     return rules[rule];
 }
 
+/* False where memory is short. */
+static bool paint_part(ss_part *part, const skinslide_controls *controls) {
+    ss_memory scratch = {0};
+    ss_edge_paint *edges = SS_NEW(&scratch, ss_edge_paint, part->patch->faces.edge_count);
+    if (edges)
+        ss_paint(part->patch, controls, edges, part->paint);
+    ss_free(&scratch);
+    return !scratch.failed;
+}
+
 /* From a patch to a part: its controls, and what its rule makes of it at rest. */
 static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslide_mesh *mesh,
                                 const skinslide_controls *controls, skinslide_error *error) {
@@ -104,7 +114,8 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
     part->holds = SS_NEW(memory, double, patch->vertex_count);
     if (memory->failed)
         return ss_out_of_memory(error);
-    ss_paint(patch, controls, part->paint);
+    if (!paint_part(part, controls))
+        return ss_out_of_memory(error);
     part->clamped_weights = ss_control_weights(patch, controls, part->weights);
     part->limited = ss_control_limits(patch, controls, part->limits);
     ss_control_holds(patch, controls, part->holds);
@@ -272,6 +283,18 @@ static skinslide_status take_around(skinslide_slider *slider, const skinslide_me
     return done ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
+/* The mesh's weld is the slider's from here on: patches keep it. */
+static skinslide_status copy_weld(skinslide_slider *slider, skinslide_mesh *mesh, skinslide_error *error) {
+    if (!mesh->weld)
+        return SKINSLIDE_OK;
+    slider->weld = SS_NEW(&slider->memory, int32_t, mesh->vertex_count);
+    if (!slider->weld)
+        return ss_out_of_memory(error);
+    memcpy(slider->weld, mesh->weld, (size_t)mesh->vertex_count * sizeof *slider->weld);
+    mesh->weld = slider->weld;
+    return SKINSLIDE_OK;
+}
+
 /* Drops pointers to what is the caller's. */
 static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
@@ -294,7 +317,9 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
     if (!slider)
         return ss_out_of_memory(error);
     slider->vertex_count = mesh->vertex_count, slider->face_count = mesh->face_count, slider->setup_count = setup_count;
-    status = copy_setups(slider, mesh, setups, error);
+    status = copy_weld(slider, &taken.mesh, error);
+    if (!status)
+        status = copy_setups(slider, mesh, setups, error);
     for (int32_t i = 0; i < setup_count && !status; i++)
         status = add_setup(slider, mesh, i, error);
     if (!status)

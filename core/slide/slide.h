@@ -27,9 +27,16 @@ struct skinslide_slider {
     skinslide_patch_setup
         *setups;           /* [setup_count] names copied, interpolation not AUTO; their arrays are the caller's, and not kept */
     ss_part *parts;        /* [part_count] */
+    int32_t *weld;         /* [vertex_count] the mesh's; NULL: none */
     ss_topology *topology; /* while the slider is built, once a set-up needs it */
     ss_around around;      /* the patches' vertices, for smooth normals */
 };
+
+/* What is painted on an edge by name, maybe on several copies of it. */
+typedef struct ss_edge_paint {
+    double sum;
+    int32_t count;
+} ss_edge_paint;
 
 /* What one thread needs to slide one patch. */
 typedef struct ss_patch_work {
@@ -37,6 +44,7 @@ typedef struct ss_patch_work {
     ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
     double *lengths;                  /* [edge_count] */
     double *own_paint;                /* [edge_count] */
+    ss_edge_paint *edge_paint;        /* [edge_count] scratch */
     double *own_weights, *own_limits; /* [free_count] */
     double *own_holds;                /* [vertex_count] */
     double (*displacement)[3];        /* [free_count] */
@@ -65,13 +73,21 @@ static inline double ss_say(const ss_patch_work *work, int32_t i) {
     return fmax(work->frame.weights[i], 1e-30);
 }
 
+/* The vertex that a vertex of the mesh is one with. */
+static inline int32_t ss_welded(const skinslide_slider *slider, int32_t vertex) {
+    return slider->weld ? slider->weld[vertex] : vertex;
+}
+
 /* ---- painted.c ---- */
 
 /* Values of controls: names the mesh element whose value is not one. */
 skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
                                    skinslide_error *error);
-/* The painted multiplier of every edge: [edge_count]. Controls are checked. */
-void ss_paint(const ss_patch *patch, const skinslide_controls *controls, double *paint);
+/* Of vertices that are one, and of edges that are, what is painted on each counts as its mean, and the smallest of largest
+ * distances. */
+
+/* The painted multiplier of every edge: [edge_count]. Controls are checked. edges is scratch [edge_count]. */
+void ss_paint(const ss_patch *patch, const skinslide_controls *controls, ss_edge_paint *edges, double *paint);
 /* weight times envelope of every free vertex, in their order: [free_count]. Returns how many values were outside 0..1. */
 int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
 /* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */

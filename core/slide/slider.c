@@ -22,7 +22,7 @@ static void apply_controls(const ss_part *part, ss_patch_work *work, const skins
     ss_control_holds(part->patch, controls, work->own_holds);
     frame->holds = work->own_holds;
     frame->stretch_response = controls->stretch_response, frame->compression_response = controls->compression_response;
-    ss_paint(part->patch, controls, work->own_paint);
+    ss_paint(part->patch, controls, work->edge_paint, work->own_paint);
     if (memcmp(work->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) != 0)
         frame->paint = work->own_paint;
 }
@@ -85,9 +85,9 @@ static bool moves(const double displacement[3]) {
     return displacement[0] != 0 || displacement[1] != 0 || displacement[2] != 0;
 }
 
-/* Where a vertex goes. */
+/* Where a vertex goes: as that goes which it is one with. */
 static void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
-    const double *displacement = workspace->sum[vertex];
+    const double *displacement = workspace->sum[ss_welded(workspace->slider, vertex)];
     bool moved = moves(displacement);
     for (int k = 0; k < 3; k++) {
         float here = points[3 * (int64_t)vertex + k];
@@ -95,17 +95,25 @@ static void land(const skinslide_workspace *workspace, const float *points, int3
     }
 }
 
-static skinslide_status check_landing(const skinslide_workspace *workspace, const ss_patch *patch, const float *points,
-                                      skinslide_error *error) {
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        int32_t vertex = patch->mesh_vertex[patch->free_vertex[i]];
-        float to[3];
-        land(workspace, points, vertex, to);
-        if (!isfinite(to[0]) || !isfinite(to[1]) || !isfinite(to[2]))
-            return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d slides to where it is not finite: (%g, %g, %g)",
-                           patch->label, vertex, to[0], to[1], to[2]);
+static skinslide_status check_landing(const skinslide_workspace *workspace, const ss_patch *patch, int32_t vertex,
+                                      const float *points, skinslide_error *error) {
+    float to[3];
+    land(workspace, points, vertex, to);
+    if (isfinite(to[0]) && isfinite(to[1]) && isfinite(to[2]))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d slides to where it is not finite: (%g, %g, %g)", patch->label,
+                   vertex, to[0], to[1], to[2]);
+}
+
+static skinslide_status check_landings(const skinslide_workspace *workspace, const ss_patch *patch, const float *points,
+                                       skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t i = 0; i < patch->free_count && !status; i++) {
+        int32_t vertex = patch->free_vertex[i];
+        for (int32_t k = patch->copy_start[vertex]; k < patch->copy_start[vertex + 1] && !status; k++)
+            status = check_landing(workspace, patch, patch->copy[k], points, error);
     }
-    return SKINSLIDE_OK;
+    return status;
 }
 
 /* All of them or, where a float cannot hold one, none. */
@@ -113,7 +121,7 @@ static skinslide_status write_points(const skinslide_workspace *workspace, const
                                      skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)
-        status = check_landing(workspace, workspace->slider->parts[p].patch, points, error);
+        status = check_landings(workspace, workspace->slider->parts[p].patch, points, error);
     for (int32_t v = 0; v < workspace->slider->vertex_count && !status; v++)
         land(workspace, points, v, slid + 3 * (int64_t)v);
     return status;

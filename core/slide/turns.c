@@ -44,11 +44,11 @@ static void add_targets(const skinslide_workspace *workspace, int32_t p) {
 
 /* Exactly 0 where the vertex did not move. */
 static void turn_vertex(const skinslide_workspace *workspace, int32_t vertex, float out[3]) {
-    const double *displacement = workspace->sum[vertex];
+    int32_t one = ss_welded(workspace->slider, vertex);
+    const double *displacement = workspace->sum[one];
     double turn[3] = {0, 0, 0};
-    ss_normalise(workspace->target[vertex]);
     if (ss_length(displacement) > 0)
-        ss_least_turn(workspace->normal[vertex], workspace->target[vertex], turn);
+        ss_least_turn(workspace->normal[one], workspace->target[one], turn);
     for (int k = 0; k < 3; k++)
         out[k] = (float)turn[k];
 }
@@ -69,6 +69,8 @@ skinslide_status skinslide_workspace_turns(skinslide_workspace *workspace, const
     memset(workspace->target, 0, (size_t)slider->vertex_count * sizeof *workspace->target);
     for (int32_t p = 0; p < slider->part_count; p++)
         add_targets(workspace, p);
+    for (int32_t v = 0; v < slider->vertex_count; v++)
+        ss_normalise(workspace->target[v]);
     for (int32_t v = 0; v < slider->vertex_count; v++)
         turn_vertex(workspace, v, turns + 3 * (int64_t)v);
     return SKINSLIDE_OK;

@@ -11,6 +11,7 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     int32_t edges = part->patch->faces.edge_count, free_count = part->patch->free_count;
     work->lengths = SS_NEW(memory, double, edges);
     work->own_paint = SS_NEW(memory, double, edges);
+    work->edge_paint = SS_NEW(memory, ss_edge_paint, edges);
     work->own_weights = SS_NEW(memory, double, free_count);
     work->own_limits = SS_NEW(memory, double, free_count);
     work->own_holds = SS_NEW(memory, double, part->patch->vertex_count);

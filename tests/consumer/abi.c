@@ -207,9 +207,19 @@ static void take_values(void) {
         printf("%s %g\n", envelope->name, live.envelope);
 }
 
-/* A surface takes the last member of a mesh. */
+static void weld(void) {
+    skinslide_weld_info info = SKINSLIDE_WELD_INFO_DEFAULT;
+    skinslide_weld *weld;
+    int32_t one[VERTICES];
+    if (!said("weld", skinslide_weld_create(&mesh, NULL, 0, 0, &weld, &error)))
+        return;
+    if (said("weld", skinslide_weld_get(weld, one, &info, &error)))
+        printf("welded %d\n", info.welded_points);
+    UNKNOWN(info);
+    skinslide_weld_destroy(weld);
+}
+
 static void refine(void) {
-#ifndef WITHOUT_skinslide_mesh
     skinslide_subdivision subdivision = SKINSLIDE_SUBDIVISION_DEFAULT;
     skinslide_mesh smooth = mesh;
     const skinslide_limit_place middle = {2, 0, 0};
@@ -218,7 +228,6 @@ static void refine(void) {
     smooth.subdivision = &subdivision;
     if (said("limit", skinslide_limit_points(&smooth, points, &middle, 1, out, &error)))
         printf("limit %g\n", out[0]);
-#endif
 }
 
 int main(void) {
@@ -232,5 +241,6 @@ int main(void) {
     find_patches();
     take_values();
     refine();
+    weld();
     return 0;
 }

@@ -85,6 +85,7 @@ typedef struct scene {
     skinslide_controls controls[SETUPS];
     painted paint;
     float *points, *slid, *slide, *turns, *normals, *limits;
+    int32_t *one;
 } scene;
 
 /* Three set-ups, one of them relaxed and one even, of two grids and holes; painted and limited by the frame, with edges. */
@@ -108,12 +109,14 @@ static void make_scene(scene *s) {
     s->slid = malloc(POINT_BYTES(&s->mesh)), s->slide = malloc(POINT_BYTES(&s->mesh));
     s->turns = malloc(POINT_BYTES(&s->mesh));
     s->normals = calloc((size_t)s->mesh.index_count, sizeof(float[3]));
+    s->one = calloc((size_t)s->mesh.vertex_count, sizeof *s->one);
     memcpy(s->slid, s->points, POINT_BYTES(&s->mesh));
     free_mesh(&sheet), free_mesh(&holed);
 }
 
 static void free_scene(scene *s) {
     free(s->faces), free(s->points), free(s->slid), free(s->slide), free(s->turns), free(s->normals), free(s->limits);
+    free(s->one);
     free_painted(&s->paint);
     free_mesh(&s->mesh);
 }
@@ -141,6 +144,25 @@ static void fail_in_turn(skinslide_status (*run)(void *subject, skinslide_error 
             assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
     }
     assert_in_range(n, least, 9999);
+}
+
+static skinslide_status run_weld(void *subject, skinslide_error *error) {
+    scene *s = subject;
+    skinslide_mesh view = view_of(&s->mesh);
+    skinslide_weld *weld = NULL;
+    skinslide_slider *slider = NULL;
+    int32_t *one = s->one;
+    skinslide_status status = skinslide_weld_create(&view, s->setups, SETUPS, 0, &weld, error);
+    if (!status)
+        status = skinslide_weld_show(weld, 1, s->points, error);
+    if (!status)
+        status = skinslide_weld_get(weld, one, NULL, error);
+    view.weld = one;
+    if (!status)
+        status = skinslide_slider_create(&view, s->setups, SETUPS, &slider, error);
+    skinslide_weld_destroy(weld);
+    skinslide_slider_destroy(slider);
+    return status;
 }
 
 static skinslide_status run_all(void *subject, skinslide_error *error) {
@@ -176,6 +198,7 @@ static void each_allocation_fails_in_turn(void **state) {
     scene s;
     make_scene(&s);
     fail_in_turn(run_all, &s, 100);
+    fail_in_turn(run_weld, &s, 20);
     assert_true(memcmp(s.slid, s.points, POINT_BYTES(&s.mesh)) != 0);
     free_scene(&s);
 }
@@ -185,7 +208,7 @@ static skinslide_status run_images(void *subject, skinslide_error *error) {
     enum { SIDE = 40 };
     const skinslide_channel channels[2] = {{sizeof(skinslide_channel), "R", pixels}, {sizeof(skinslide_channel), "G", pixels}};
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL};
     const float st[6] = {0, 0, 1, 0, 1, 1};
     skinslide_bytes *made = NULL;
     skinslide_image *image = NULL;

@@ -140,10 +140,13 @@ typedef struct skinslide_mesh {
     const int32_t *face_indices;              /* [index_count] mesh vertices, face by face */
     const float *rest_points;                 /* [vertex_count][3] the pose in which nothing slides */
     const skinslide_subdivision *subdivision; /* NULL: none */
+    const int32_t *weld; /* [vertex_count] the vertex that each is one with, itself for most: see skinslide_weld_get. NULL: each
+                            is its own. Edges, corners, boundaries and paint are then those of the welded mesh, and the limit
+                            surface that of the faces as they are */
 } skinslide_mesh;
 
 #define SKINSLIDE_MESH_DEFAULT                                                                                                 \
-    { sizeof(skinslide_mesh), 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_mesh), 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* Where the outer boundary of a patch goes (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
 typedef enum skinslide_boundary {
@@ -234,6 +237,66 @@ typedef struct skinslide_patch_setup {
         sizeof(skinslide_patch_setup), 0, 0, 0, 0, SKINSLIDE_BOUNDARY_AUTO, SKINSLIDE_HOLES_PINNED, SKINSLIDE_RULE_UNIT,       \
             SKINSLIDE_INTERPOLATION_AUTO, 0                                                                                    \
     }
+
+/* ---- Points in one place ------------------------------------------------------------------------------------------------- */
+
+/* Which vertices of a mesh are one: meshes from games and exporters have a point for each side of a seam, or for each corner of
+ * a face. Points that are in one place at rest, and in every pose shown, are one vertex where faces of patches meet there edge
+ * to edge: a side of one face and a side of another run between the same places, opposite ways. Points off the patches are one
+ * with those of the patches in their place, where these are. What cannot be one stays as it is: points of a place in which a
+ * face has two corners, or at an edge that would have more than two faces, such as that of a doubled sheet, or faces wound
+ * against each other.
+ *
+ * The answer must be the same for every part of a shot: show all poses that the shot has, not those that are to be slid. */
+typedef struct skinslide_weld skinslide_weld;
+
+/* Looks at rest.
+ *   mesh       in  its weld is not read
+ *   setups     in  [setup_count] of which only faces count; those that the mesh has not are passed over
+ *   tolerance  in  distance within which points are in one place, as are those linked by such; object units, 0 to a thousandth
+ *                  of the diagonal of the rest points' box. 0: where their coordinates are equal
+ *   out        out the caller's to destroy
+ * Fails with BAD_MESH, BAD_POINTS (rest points not finite), BAD_ARGUMENT (the tolerance, too), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_weld_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
+                                                     int32_t setup_count, double tolerance, skinslide_weld **out,
+                                                     skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_weld_destroy(skinslide_weld *weld);
+
+/* Whether there is anything to find out from poses: no, where no point of a patch shares its place at rest. */
+SKINSLIDE_API skinslide_bool skinslide_weld_wants_poses(const skinslide_weld *weld);
+
+/* Shows a pose, in the order of time: points that are apart in it are not one. One thread a weld.
+ *   frame   in  its time, for the answer
+ *   points  in  [vertex_count][3]
+ * Fails with BAD_POINTS (not finite: names the vertex), BAD_ARGUMENT; then the pose was not looked at. */
+SKINSLIDE_API skinslide_status skinslide_weld_show(skinslide_weld *weld, double frame, const float *points,
+                                                   skinslide_error *error);
+
+/* What came of it. Start from SKINSLIDE_WELD_INFO_DEFAULT. */
+typedef struct skinslide_weld_info {
+    size_t size;            /* sizeof(skinslide_weld_info) */
+    int32_t welded_points;  /* that are one with others */
+    int32_t welded_places;  /* vertices that these are */
+    int32_t parted_points;  /* that would be one with others, had they not left them in a pose */
+    int32_t refused_points; /* of patches, in places that cannot be one */
+    int32_t parted_vertex;  /* the first that parts ... */
+    int32_t parted_from;    /* ... from another */
+    double parted_frame;    /* when they do */
+    char refused[160];      /* why the first place cannot: "vertices 3 and 4 are both corners of face 2"; or empty */
+} skinslide_weld_info;
+
+#define SKINSLIDE_WELD_INFO_DEFAULT                                                                                            \
+    { sizeof(skinslide_weld_info), 0, 0, 0, 0, 0, 0, 0, "" }
+
+/* What is one.
+ *   vertices  out [vertex_count] of each the vertex that it is one with, as skinslide_mesh has it: the lowest of a patch;
+ *                 itself for most
+ *   info      out, or NULL
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_weld_get(const skinslide_weld *weld, int32_t *vertices, skinslide_weld_info *info,
+                                                  skinslide_error *error);
 
 /* ---- The slider --------------------------------------------------------------------------------------------------------- */
 

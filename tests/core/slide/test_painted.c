@@ -14,7 +14,8 @@ static void expect_paint(const skinslide_controls *controls, const double expect
     test_mesh mesh = two_triangles();
     ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
     double paint[5];
-    ss_paint(patch, controls, paint);
+    ss_edge_paint edges[5];
+    ss_paint(patch, controls, edges, paint);
     for (int e = 0; e < 5; e++)
         assert_near(paint[e], expected[e], 0);
     ss_patch_destroy(patch);
@@ -61,10 +62,53 @@ static void weights_are_clamped_and_counted(void **state) {
     free_mesh(&mesh);
 }
 
+/* The same two triangles, split along the diagonal: of copies of 0 and 2 each is painted on its own. */
+static void copies_count_as_their_mean(void **state) {
+    (void)state;
+    const float points[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0};
+    const float by_vertex[] = {1, 2, 3, 4, 3, 5}, by_edge[] = {5, 7, 0.5f}, limits[] = {1, 2, 3, 4, 0.5f, 6};
+    const int32_t weld[] = {0, 1, 2, 3, 0, 2}, pairs[] = {2, 0, 4, 5, 5, 3}, faces[] = {0, 1};
+    const float weights[] = {1, 1, 0.25f, 1, 1, -2};
+    test_mesh mesh = copy_mesh(6, 2, (int32_t[]){3, 3}, (int32_t[]){0, 1, 2, 4, 5, 3}, points);
+    skinslide_mesh view = view_of(&mesh);
+    skinslide_patch_setup setup = setup_of(faces, 2);
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    skinslide_error error;
+    ss_patch *patch;
+    ss_edge_paint edges[5];
+    double paint[5], values[4];
+    view.weld = weld;
+    assert_ok(ss_patch_create(&view, &setup, 0, faces, 2, 0, 1, &patch, &error), &error);
+    assert_int_equal(patch->vertex_count, 4);
+    controls.vertex_density = by_vertex; /* 2, 2, 4, 4 */
+    ss_paint(patch, &controls, edges, paint);
+    for (int e = 0; e < 5; e++)
+        assert_near(paint[e], ((double[]){2, 3, 3, 3, 4})[e], 0);
+    controls.vertex_density = NULL, controls.edges = pairs, controls.edge_density = by_edge, controls.edge_count = 3;
+    ss_paint(patch, &controls, edges, paint);
+    for (int e = 0; e < 5; e++)
+        assert_near(paint[e], ((double[]){1, 6, 1, 1, 0.5})[e], 0);
+    controls.hold = by_vertex;
+    ss_control_holds(patch, &controls, values);
+    for (int v = 0; v < 4; v++)
+        assert_near(values[v], ((double[]){2, 2, 4, 4})[v], 0);
+    /* Of a fixed vertex they do not count: free ones are made of it. */
+    patch->free_count = 1, patch->free_vertex[0] = 2;
+    controls.weight = weights, controls.max_distance = limits;
+    assert_int_equal(ss_control_weights(patch, &controls, values), 1);
+    assert_near(values[0], 0.125, 0); /* each within 0 to 1 */
+    patch->free_vertex[0] = 0;
+    assert_true(ss_control_limits(patch, &controls, values));
+    assert_near(values[0], 0.5, 0);
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paint_by_hand),
         cmocka_unit_test(weights_are_clamped_and_counted),
+        cmocka_unit_test(copies_count_as_their_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,8 +64,10 @@ void free_mesh(test_mesh *mesh) {
 }
 
 skinslide_mesh view_of(const test_mesh *mesh) {
-    return (skinslide_mesh){sizeof(skinslide_mesh), mesh->vertex_count, mesh->face_count, mesh->index_count,
-                            mesh->face_counts,      mesh->face_indices, mesh->points,     NULL};
+    skinslide_mesh view = SKINSLIDE_MESH_DEFAULT;
+    view.vertex_count = mesh->vertex_count, view.face_count = mesh->face_count, view.index_count = mesh->index_count;
+    view.face_counts = mesh->face_counts, view.face_indices = mesh->face_indices, view.rest_points = mesh->points;
+    return view;
 }
 
 static void put_point(test_mesh *mesh, int32_t vertex, double x, double y, double z) {
