@@ -17,6 +17,9 @@
  *
  *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D)^-1 (1 - nn')      1/2 the mean of uu' in the plane
  *
+ * Where no vertex is held, as on a closed patch, D'D would let all of them go together: there it has 4 pi / n more of the n vertices'
+ * own, which is the least that a sphere's first waves have of it.
+ *
  * Steps are counted and not watched, so that the time is known and neighbouring frames go the same way. */
 #include "base.h"
 #include "limit.h"
@@ -27,6 +30,7 @@
 
 static const double edge_stiffness = 0.03;      /* s */
 static const double direction_stiffness = 0.05; /* t */
+static const double pi = 3.14159265358979323846;
 enum { GAUSS_NEWTON_STEPS = 2, GRADIENT_STEPS = 5 };
 
 /* An edge that has a free end. */
@@ -82,6 +86,13 @@ static void append_edges(const ss_fit *fit, double weight, ss_rows *rows) {
     }
 }
 
+static void append_vertices(const ss_fit *fit, double weight, ss_rows *rows) {
+    for (int32_t i = 0, end = rows->start[rows->row_count]; i < fit->free_count; i++) {
+        rows->column[end] = i, rows->value[end++] = weight;
+        rows->start[++rows->row_count] = end;
+    }
+}
+
 static void append_samples(const ss_rows *samples, ss_rows *rows) {
     size_t entries = (size_t)samples->start[samples->row_count];
     memcpy(rows->start, samples->start, ((size_t)samples->row_count + 1) * sizeof *rows->start);
@@ -90,10 +101,12 @@ static void append_samples(const ss_rows *samples, ss_rows *rows) {
     rows->row_count = samples->row_count;
 }
 
-/* A'A, of samples, or NULL for none, and of edges so stiff. */
-static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double stiffness, const char *label,
+/* A'A, of samples, or NULL for none, of edges so stiff, and where that is above 0, of vertices so stiff. */
+static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double stiffness, double own, const char *label,
                                ss_least_squares **out, skinslide_error *error) {
     int64_t row_count = fit->edge_count, entries = 2 * row_count;
+    if (own > 0)
+        row_count += fit->free_count, entries += fit->free_count;
     if (samples)
         row_count += samples->row_count, entries += samples->start[samples->row_count];
     if (row_count > INT32_MAX || entries > INT32_MAX)
@@ -108,6 +121,8 @@ static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double
         if (samples)
             append_samples(samples, &rows);
         append_edges(fit, sqrt(stiffness), &rows);
+        if (own > 0)
+            append_vertices(fit, sqrt(own), &rows);
         status = ss_least_squares_create(&rows, label, out, error);
     }
     ss_free(&scratch);
@@ -124,10 +139,12 @@ skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index,
     skinslide_status status = fit->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
         list_edges(patch, free_index, fit);
-        status = factor(fit, samples, edge_stiffness * direction_stiffness, patch->label, &fit->across, error);
+        status = factor(fit, samples, edge_stiffness * direction_stiffness, 0, patch->label, &fit->across, error);
     }
+    double along = edge_stiffness * (0.5 + direction_stiffness);
+    bool is_held = patch->free_count < patch->vertex_count;
     if (!status)
-        status = factor(fit, NULL, edge_stiffness * (0.5 + direction_stiffness), patch->label, &fit->along, error);
+        status = factor(fit, NULL, along, is_held ? 0 : 4 * pi / patch->free_count * along, patch->label, &fit->along, error);
     if (status)
         ss_fit_destroy(fit);
     else

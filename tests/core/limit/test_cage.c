@@ -238,6 +238,21 @@ static void a_coarse_tube_keeps_its_bend(void **state) {
     free_mesh(&mesh);
 }
 
+/* A ring that swells on one side: no vertex of it is held anywhere. */
+static void a_closed_body_keeps_its_surface(void **state) {
+    (void)state;
+    test_mesh mesh = torus(20, 12);
+    float *points = copy_points(&mesh);
+    for (int32_t v = 0; v < mesh.vertex_count; v++) {
+        const float *p = mesh.points + 3 * v;
+        double share = 0.4 * exp(-0.5 * ((p[0] - 3.0) * (p[0] - 3) + p[1] * p[1] + p[2] * p[2]));
+        points[3 * v + 2] = (float)(p[2] * (1 + share) + share);
+    }
+    expect_closer_than_linear(&mesh, &catmull_clark, points, SKINSLIDE_RULE_EVEN, 9, 1.1); /* of little stretch */
+    free(points);
+    free_mesh(&mesh);
+}
+
 /* Vertex (i, j) of the grid is 15 j + i. A semi-sharp crease across the patch, under the flank of the bump, and boundary rules.
  */
 static void creases_and_boundary_rules_are_the_mesh_s_own(void **state) {
@@ -489,6 +504,7 @@ int main(void) {
         cmocka_unit_test(auto_is_limit_where_the_mesh_is_subdivided),
         cmocka_unit_test(the_limit_surface_stays_where_it_was),
         cmocka_unit_test(a_coarse_tube_keeps_its_bend),
+        cmocka_unit_test(a_closed_body_keeps_its_surface),
         cmocka_unit_test(creases_and_boundary_rules_are_the_mesh_s_own),
         cmocka_unit_test(every_fixture_stays_within_the_bound),
         cmocka_unit_test(a_plane_stays_a_plane),
