@@ -40,13 +40,12 @@ std::string frameText(double time) {
     return text;
 }
 
-// float triples where it can be, so that the type is the one the layer declares.
-VtValue asDeclared(const VtValue &value) {
-    if (value.IsEmpty())
+// The cache's own value, indices applied: float triples where it can be, so that the type is the one the layer declares.
+VtValue asDeclared(const Record &record) {
+    if (record.value().IsEmpty())
         return VtValue(SdfValueBlock());
-    Record record("", value);
     VtVec3fArray out(static_cast<size_t>(skinslide_value_length(record)));
-    return skinslide_value_positions(record, floatsOf(&out), nullptr) == SKINSLIDE_OK ? VtValue(out) : value;
+    return skinslide_value_positions(record, floatsOf(&out), nullptr) == SKINSLIDE_OK ? VtValue(out) : record.value();
 }
 
 } // namespace
@@ -191,7 +190,7 @@ Frame LiveMesh::solve(double time) {
         return slide(time);
     } catch (const std::exception &bad) {
         say(time, std::string(bad.what()) + "; the points are those of the cache");
-        VtValue points = asDeclared(_mesh->points.attribute().at(time));
+        VtValue points = asDeclared(_mesh->points.at(time));
         return {points, {}, {}, points.IsArrayValued() ? points.GetArraySize() * sizeof(GfVec3f) : 0};
     }
 }
@@ -229,7 +228,7 @@ VtValue LiveMesh::derived(const Derived &derived, double time) {
         // Normals may move over points that do not.
         frames.push_back(frame(_mesh->times.empty() ? Attribute::defaultTime : times[i]));
         if (frames.back()->cached.empty())
-            return asDeclared(derived.cached.attribute().at(time));
+            return asDeclared(derived.cached.at(time));
         poses.push_back({sizeof(skinslide_stage_pose), times[i], floatsOf(frames.back()->cached),
                          floatsOf(frames.back()->points.UncheckedGet<VtVec3fArray>()), floatsOf(frames.back()->turns)});
     }

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Sdf, Tf, Usd
+from pxr import Sdf, Tf, Usd, UsdGeom, Vt
 
 import skinslide
 from layers import HEAD, make, open_mesh, points, refusal, said, solve_count, write
@@ -291,6 +291,21 @@ def test_a_frame_that_fails_gives_the_cache_and_one_message(tmp_path, value, mes
     assert "the points are those of the cache" in ours[0] and (
         "has 5" in ours[0] or "finite" in ours[0] or message in ours[0]
     )
+
+
+def test_a_frame_that_fails_gives_indexed_values_whole(tmp_path):
+    """Their indices are blocked at all times, and so apply at those that fail, too."""
+
+    def edit(mesh):
+        tangents = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("tangents", Sdf.ValueTypeNames.Vector3fArray, "vertex")
+        tangents.Set(vectors(np.eye(3)))
+        tangents.SetIndices(Vt.IntArray([2, 0] + [1] * 47))
+        mesh.GetPointsAttr().Set(vectors(np.full((49, 3), np.nan)), 1002)
+
+    _stage, mesh = open_mesh(make(tmp_path, edit))
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("tangents")
+    assert not primvar.IsIndexed()
+    assert np.array_equal(primvar.Get(1002), np.eye(3)[[2, 0] + [1] * 47])
 
 
 def test_arguments_may_be_given_by_hand(tmp_path):
