@@ -184,6 +184,54 @@ static void overlapping_patches(void **state) {
     free_mesh(&mesh);
 }
 
+/* The sheet cut in two along its middle column, whose vertices are there twice: the second time at the end. */
+static test_mesh cut(const test_mesh *mesh, int32_t *weld) {
+    enum { COLUMN = SIDE / 2, COUNT = (SIDE + 1) * (SIDE + 1) };
+    float *points = malloc((COUNT + SIDE + 1) * sizeof(float[3]));
+    int32_t *indices = malloc((size_t)mesh->index_count * sizeof *indices);
+    memcpy(points, mesh->points, POINT_BYTES(mesh));
+    for (int32_t v = 0; v < COUNT; v++)
+        weld[v] = v;
+    for (int32_t j = 0; j <= SIDE; j++) {
+        weld[COUNT + j] = j * (SIDE + 1) + COLUMN;
+        memcpy(points + 3 * (COUNT + j), mesh->points + 3 * weld[COUNT + j], sizeof(float[3]));
+    }
+    for (int32_t c = 0; c < mesh->index_count; c++) {
+        int32_t v = mesh->face_indices[c], column = c / 4 % SIDE;
+        indices[c] = v % (SIDE + 1) == COLUMN && column >= COLUMN ? COUNT + v / (SIDE + 1) : v;
+    }
+    test_mesh made = copy_mesh(COUNT + SIDE + 1, mesh->face_count, mesh->face_counts, indices, points);
+    free(points), free(indices);
+    return made;
+}
+
+/* Points that are one turn as one, as the vertex of the uncut sheet does. */
+static void welded_points_turn_as_one(void **state) {
+    (void)state;
+    test_mesh whole = quad_grid(SIDE, SIDE);
+    int32_t weld[(SIDE + 1) * (SIDE + 2)];
+    test_mesh halves = cut(&whole, weld);
+    float *points = bulging(&whole), *same = bulging(&halves), *slid = malloc(POINT_BYTES(&halves));
+    int32_t *faces = all_faces(&halves);
+    skinslide_patch_setup setup = setup_of(faces, halves.face_count);
+    skinslide_mesh view = view_of(&halves);
+    view.weld = weld;
+    rig one = rig_of_setups(&whole, &setup, 1), welded;
+    assert_ok(skinslide_slider_create(&view, &setup, 1, &welded.slider, &error), &error);
+    assert_ok(skinslide_workspace_create(welded.slider, NULL, &welded.workspace, &error), &error);
+    assert_ok(skinslide_slide(welded.workspace, same, NULL, slid, NULL, &error), &error);
+    free(slide_with(&one, &whole, points, NULL, NULL));
+    float *expected = turns_of(&one, &whole, points), *turns = turns_of(&welded, &halves, same);
+    assert_near(largest_difference(turns, expected, 3 * whole.vertex_count), 0, 1e-7);
+    for (int32_t v = whole.vertex_count; v < halves.vertex_count; v++) {
+        assert_same_bytes(turns + 3 * v, turns + 3 * weld[v], sizeof(float[3]));
+        assert_true(is_nothing(turns + 3 * v) == (v == whole.vertex_count || v == halves.vertex_count - 1));
+    }
+    free(points), free(same), free(slid), free(faces), free(expected), free(turns);
+    free_rig(&one), free_rig(&welded);
+    free_mesh(&whole), free_mesh(&halves);
+}
+
 static void arguments_that_are_none(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(3, 3);
@@ -206,7 +254,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_slid_turns_nothing),    cmocka_unit_test(carried_where_normals_are_known),
         cmocka_unit_test(a_tiny_slide_turns_a_tiny_bit), cmocka_unit_test(overlapping_patches),
-        cmocka_unit_test(arguments_that_are_none),
+        cmocka_unit_test(welded_points_turn_as_one),     cmocka_unit_test(arguments_that_are_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
