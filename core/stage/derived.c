@@ -185,8 +185,8 @@ static void warn(skinslide_stage_derived *derived, const char *text) {
 /* Of one pose on points of many. */
 static void warn_of_static(skinslide_stage_derived *derived, const char *name) {
     skinslide_error said;
-    ss_fail(&said, SKINSLIDE_BAD_POINTS, SS_NAMED " has no samples, but points has: it belongs to another pose than they do",
-            SS_NAME(name));
+    ss_fail(&said, SKINSLIDE_BAD_POINTS,
+            SS_NAMED " has one value for all frames, but points moves: it belongs to one pose alone", SS_NAME(name));
     warn(derived, said.message);
 }
 
@@ -320,7 +320,7 @@ skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
     for (derivation *own = status ? NULL : derived->first; own; own = own->next) {
         if (own->input != of || !own->output.pose_count || !check_shape(derived->mesh, &record, own->layout, &why))
             continue;
-        own->output.pose_count = 0;
+        own->output.pose_count = 0, own->output.is_carried = false;
         own->output.reason = ss_copy_text(&derived->memory, why.message);
         if (own->output.hidden)
             block_hidden(derived);

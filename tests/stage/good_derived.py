@@ -67,13 +67,13 @@ DERIVED = [
     ),
     Good("normals: constant, which are left", normals("constant", 1)),
     Good("normals: interpolation of the fallback", normals(None, 49)),
-    Good("normals: without samples", normals("vertex", 49, [None]), warns="normals has no samples, but points has"),
+    Good("normals: without samples", normals("vertex", 49, [None]), warns="normals has one value for all frames"),
     Good("normals: samples of their own", normals("vertex", 49, [1001, 1001.5])),
     Good("normals: over points without samples", all_of(still, normals("vertex", 49))),
     Good(
         "normals: a primvar",
         put("normals", Types.Normal3fArray, "vertex", [(0, 0, 1)] * 49),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "normals: an indexed primvar",
@@ -81,7 +81,7 @@ DERIVED = [
             put("normals", Types.Normal3fArray, "faceVarying", [(0, 0, 1), (0, 1, 0)]), indexed("normals", [0, 1] * 72)
         ),
         blocked=("primvars:normals:indices",),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good("normals: a constant primvar, which is left", put("normals", Types.Normal3fArray, "constant", [(0, 0, 1)])),
     Good(
@@ -100,17 +100,17 @@ DERIVED = [
     Good(
         "normals: the primvar wins",
         all_of(normals("uniform", 36), put("normals", Types.Normal3fArray, "vertex", [(0, 0, 1)] * 49)),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "normals: double",
         all_of(retyped("normals", Types.Normal3dArray, Vt.Vec3dArray([(0, 0, 1)] * 49))),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "normals: half",
         all_of(retyped("normals", Types.Normal3hArray, Vt.Vec3hArray([Gf.Vec3h(0, 0, 1)] * 49))),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "normals: an indexed primvar over time",
@@ -124,12 +124,12 @@ DERIVED = [
     Good(
         "normals: a primvar of doubles",
         put("normals", Types.Normal3dArray, "vertex", [(0, 0, 1)] * 49),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "normals: a primvar of another kind",
         put("normals", Types.Float3Array, "vertex", [(0, 0, 1)] * 49),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "normals: indexed badly",
@@ -175,7 +175,11 @@ DERIVED = [
         blocked=("primvars:tangents:indices",),
     ),
     Good("carried: over points without samples", all_of(still, directions("tangents"))),
-    Good("carried: of one pose", directions("tangents", times=[None]), warns="primvars:tangents has no samples"),
+    Good(
+        "carried: of one pose",
+        directions("tangents", times=[None]),
+        warns="primvars:tangents has one value for all frames",
+    ),
     Good(
         "carried: of a wrong length",
         directions("tangents", count=3),
@@ -297,12 +301,12 @@ DERIVED = [
         "everything that varies",
         everything_that_varies,
         blocked=("primvars:normals:indices",),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
     Good(
         "everything that varies, relaxed",
         relaxed,
         blocked=("primvars:normals:indices",),
-        warns="has no samples, but points has",
+        warns="has one value for all frames",
     ),
 ]

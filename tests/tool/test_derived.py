@@ -62,7 +62,7 @@ def test_normals_are_carried_at_their_interpolation(shot, out, interpolation, co
     assert np.array(mesh.GetNormalsAttr().Get(OFFSET + 2)).tobytes() == expected.tobytes()
     assert not mesh.GetNormalsAttr().HasMetadata("interpolation")
     assert [problem.message for problem in report.problems] == (
-        [] if animated else ["normals has no samples, but points has: it belongs to another pose than they do"]
+        [] if animated else ["normals has one value for all frames, but points moves: it belongs to one pose alone"]
     )
     assert skinslide.check(shot.path).problems == report.problems
 
