@@ -309,7 +309,8 @@ typedef struct skinslide_slider skinslide_slider;
  * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of
  * repeated vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an
  * edge with three faces, faces wound against each other, a boundary that touches itself, faces that meet in a vertex alone, a
- * handle; EVEN needs no boundary, takes handles, and lets vertices at which faces meet in a point stay), BAD_CONTROL (a density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
+ * handle; EVEN needs no boundary, takes handles, and lets vertices at which faces meet in a point stay), BAD_CONTROL (a
+ * density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
  * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice),
  * SINGULAR, UNSUPPORTED (FREE_ALL by another rule than EVEN), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
