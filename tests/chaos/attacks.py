@@ -8,7 +8,7 @@ import shutil
 import signal
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,8 +22,6 @@ from chaos.verdict import Files, faults
 _FAILURES = (errno.EIO, errno.ENOSPC)
 _FILE_CALLS = {"open", "write", "sync", "rename", "close", "mkdir"}
 _SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
-# It writes where it was given no memory, and is ended by an exception where it was given no thread.
-_DEATHS_OF_USD = (-signal.SIGSEGV, -signal.SIGABRT)
 
 
 @dataclass(frozen=True)
@@ -118,8 +116,8 @@ class Attack:
     def unhurt(self) -> Unhurt:
         return self.ground.unhurt(self.command, self.fresh)
 
-    def verdict(self, ended: Ended, folder: Path, deaths: tuple[int, ...] = ()) -> list[str]:
-        return list(faults(self.command, ended, folder, self.unhurt.before, self.unhurt.whole, deaths))
+    def verdict(self, ended: Ended, folder: Path, others: bool = False) -> list[str]:
+        return list(faults(self.command, ended, folder, self.unhurt.before, self.unhurt.whole, others))
 
 
 # ---- Kills ----
@@ -157,17 +155,22 @@ def failing_allocation(attack: Attack) -> list[str]:
     return _strike(attack, ["ours"] if attack.unhurt.calls["ours"] else _file_calls(attack), [errno.ENOMEM])
 
 
+def failing_allocation_of_anybody(attack: Attack) -> list[str]:
+    """Of Python or USD for the most part, once skinslide has computed."""
+    return _strike(attack, ["any"] if attack.unhurt.calls["any"] else _file_calls(attack), [errno.ENOMEM], others=True)
+
+
 def _file_calls(attack: Attack) -> list[str]:
     return [call for call, count in attack.unhurt.calls.items() if count and call in _FILE_CALLS]
 
 
-def _strike(attack: Attack, calls: list[str], values: list[int] | tuple[int, ...]) -> list[str]:
+def _strike(attack: Attack, calls: list[str], values: Sequence[int], others: bool = False) -> list[str]:
     call, value = attack.chance.choice(calls), attack.chance.choice(values)
     number = attack.chance.randint(1, attack.unhurt.calls[call])
     with attack.ground.folder(attack.name, attack.command, attack.fresh) as folder:
         strike = attack.ground.preloaded(folder, f"{call} {number} {value}")
         ended = Run(attack.command, folder, strike).ended()
-        found = attack.verdict(ended, folder)
+        found = attack.verdict(ended, folder, others)
     return [f"{attack.command.words[0]}, {call} {number} {value}: {each}" for each in found]
 
 
@@ -185,13 +188,13 @@ def limited_open_files(attack: Attack) -> list[str]:
 def limited_memory(attack: Attack) -> list[str]:
     """A little less than it takes, or a little more: with much less, USD and Python do not load."""
     most = round(attack.unhurt.calls["memory"] * 1024 * attack.chance.uniform(0.8, 1.05))
-    return _limited(attack, resource.RLIMIT_AS, most, _DEATHS_OF_USD)
+    return _limited(attack, resource.RLIMIT_AS, most, others=True)
 
 
-def _limited(attack: Attack, kind: int, most: int, deaths: tuple[int, ...] = ()) -> list[str]:
+def _limited(attack: Attack, kind: int, most: int, others: bool = False) -> list[str]:
     with attack.ground.folder(attack.name, attack.command, attack.fresh) as folder:
         ended = Run(attack.command, folder, limits=((kind, most),)).ended()
-        found = attack.verdict(ended, folder, deaths)
+        found = attack.verdict(ended, folder, others)
     return [f"{attack.command.words[0]}, at most {most}: {each}" for each in found]
 
 
@@ -244,6 +247,7 @@ KINDS: dict[str, Callable[[Attack], list[str]]] = {
         kill_at_a_call,
         failing_call,
         failing_allocation,
+        failing_allocation_of_anybody,
         limited_file_size,
         limited_open_files,
         limited_memory,

@@ -14,24 +14,28 @@ _PARTIAL = re.compile(r"\.[^/]+\.[0-9a-f]{8}\.[a-z.]+\w*")
 _CODES = {0, 1, 2, 3, 129, 130, 143}
 _AT_ONCE = {-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT}  # a signal that is not answered any more, or not yet
 
+# It writes where it was given no memory, and is ended by an exception where it was given no thread.
+_DEATHS_OF_USD = {-signal.SIGSEGV, -signal.SIGABRT}
+
 
 def faults(
-    command: Command, ended: Ended, folder: Path, before: Files, whole: Files, deaths: tuple[int, ...] = ()
+    command: Command, ended: Ended, folder: Path, before: Files, whole: Files, others: bool = False
 ) -> Iterator[str]:
-    """Sentences of what does not hold. deaths: signals, below 0, by which what is not ours may end the process."""
+    """Sentences of what does not hold. others: USD and Python are hurt too, and may say what they like or end it."""
     after = snapshot(folder)
-    killed = ended.code in {-signal.SIGKILL, *deaths}
+    at_once = _AT_ONCE | _DEATHS_OF_USD if others else _AT_ONCE
+    killed = ended.code in at_once - {-signal.SIGTERM, -signal.SIGINT}
     if ended.code is None:
         yield "hung"
-    if ended.code is not None and ended.code not in {*_CODES, *_AT_ONCE, *deaths}:
+    elif ended.code not in _CODES | at_once:
         yield f"ended with {ended.code}: {ended.err[-300:]!r}"
     for name in sorted(before.keys() | after.keys()):
-        yield from _fault_of(name, command, after.get(name), (before.get(name), whole.get(name)), killed)
+        yield from _fault_of(name, after.get(name), (before.get(name), whole.get(name)), killed)
     if ended.code == 0:
         yield from (
             f"exit code 0 and no new {name}" for name in _outputs(command, whole) if after.get(name) != whole[name]
         )
-    elif ended.code is not None and ended.code > 0:
+    elif ended.code is not None and ended.code > 0 and not others:
         yield from _faults_of_words(ended)
         yield from _lies(command, ended, before, after)
 
@@ -40,14 +44,13 @@ def _outputs(command: Command, files: Files) -> list[str]:
     return [name for name in files if name.split("/")[0] in command.outputs]
 
 
-def _fault_of(name: str, command: Command, now: str | bytes | None, allowed: tuple, killed: bool) -> Iterator[str]:
-    base = name.rsplit("/", 1)[-1]
+def _fault_of(name: str, now: str | bytes | None, allowed: tuple, killed: bool) -> Iterator[str]:
     if now is not None and now in allowed:
         return
     if now is None and allowed[0] is None:
         return
     if now is not None and allowed == (None, None):
-        if not (killed and _PARTIAL.fullmatch(base)):
+        if not (killed and _PARTIAL.fullmatch(name.rsplit("/", 1)[-1])):
             yield f"{name} is left behind"
     elif now is None:
         yield f"{name} is gone"

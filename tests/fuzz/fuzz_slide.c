@@ -52,6 +52,14 @@ static skinslide_patch_setup take_setup(input *in, stream *s) {
     return setup;
 }
 
+/* Those of the default, unless there are others. */
+static void take_responses(skinslide_controls *controls, stream *s) {
+    if (take_below(s, 2)) {
+        take(s, &controls->stretch_response, sizeof controls->stretch_response);
+        take(s, &controls->compression_response, sizeof controls->compression_response);
+    }
+}
+
 static void slide(const skinslide_slider *slider, int32_t vertex_count, stream *s) {
     skinslide_workspace_options options = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
     skinslide_workspace *workspace = NULL;
@@ -63,11 +71,14 @@ static void slide(const skinslide_slider *slider, int32_t vertex_count, stream *
         float *points = take_new(s, size), *slid = malloc(size);
         skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
         take(s, &controls.envelope, sizeof controls.envelope);
+        take_responses(&controls, s);
+        float *hold = take_below(s, 2) ? take_new(s, (size_t)vertex_count * sizeof *hold) : NULL;
+        controls.hold = hold;
         skinslide_status status = skinslide_slide(workspace, points, &controls, slid, NULL, &error);
         for (int32_t i = 0; !status && i < 3 * vertex_count; i++)
             require(isfinite(slid[i]));
         require(!status || (error.message[0] && !strchr(error.message, '\n')));
-        free(points), free(slid);
+        free(points), free(slid), free(hold);
     }
     skinslide_workspace_destroy(workspace);
 }
