@@ -538,6 +538,65 @@ static void wild_poses_stay_finite(void **state) {
     free_mesh(&mesh);
 }
 
+/* All that can be painted, each value e^5 of another or none at all. */
+typedef struct wild_paint {
+    skinslide_controls controls;
+    float *density, *hold, *weight, *distance;
+} wild_paint;
+
+static wild_paint paint_wildly(const test_mesh *mesh, uint64_t seed) {
+    dice d = {seed};
+    wild_paint w = {SKINSLIDE_CONTROLS_DEFAULT, filled(mesh->vertex_count, 1), filled(mesh->vertex_count, 1),
+                    filled(mesh->vertex_count, 1), filled(mesh->vertex_count, INFINITY)};
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        w.density[v] = (float)exp(roll_between(&d, -5, 5)), w.hold[v] = (float)exp(roll_between(&d, -5, 5));
+        w.weight[v] = (float)roll_between(&d, -0.2, 1.2);
+        if (roll_below(&d, 4) == 0)
+            w.distance[v] = (float)roll_between(&d, 0, 0.5);
+    }
+    w.controls.vertex_density = w.density, w.controls.hold = w.hold, w.controls.weight = w.weight;
+    w.controls.max_distance = w.distance;
+    return w;
+}
+
+static void free_wild_paint(wild_paint *w) {
+    free(w->density), free(w->hold), free(w->weight), free(w->distance);
+}
+
+/* Rest keeps its bits, any pose, near or far, is finite, and what is painted in a frame is what is painted in the set-up. */
+static void expect_wild_paint(const test_mesh *mesh, uint64_t seed) {
+    wild_paint paint = paint_wildly(mesh, seed);
+    skinslide_patch_setup choices = even();
+    choices.controls = &paint.controls;
+    rig r = rig_of(mesh, even()), set_up = rig_of(mesh, choices);
+    float *rest = slide_with(&r, mesh, mesh->points, &paint.controls, NULL);
+    assert_same_bytes(rest, mesh->points, POINT_BYTES(mesh));
+    for (int32_t away = 0; away <= 1000; away += 500) {
+        float *pose = shaken(mesh, seed, 0.4);
+        for (int32_t k = 0; k < 3 * mesh->vertex_count; k++)
+            pose[k] += (float)away;
+        float *slid = slide_with(&r, mesh, pose, &paint.controls, NULL), *same = slide_with(&set_up, mesh, pose, NULL, NULL);
+        assert_true(all_finite(slid, 3 * mesh->vertex_count));
+        assert_true(memcmp(slid, pose, POINT_BYTES(mesh)) != 0);
+        assert_same_bytes(slid, same, POINT_BYTES(mesh));
+        free(pose), free(slid), free(same);
+    }
+    free(rest);
+    free_rig(&r), free_rig(&set_up);
+    free_wild_paint(&paint);
+}
+
+static void wild_paint_stays_finite(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        test_mesh meshes[3] = {sphere(4), quad_grid(9, 7), torus(9, 8)};
+        for (int k = 0; k < 3; k++) {
+            expect_wild_paint(&meshes[k], seed);
+            free_mesh(&meshes[k]);
+        }
+    }
+}
+
 /* Every patch that has nothing to slide, or next to nothing. */
 static void nothing_free_is_nothing_slid(void **state) {
     (void)state;
@@ -718,6 +777,7 @@ int main(void) {
         cmocka_unit_test(mean_values_are_of_faces_at_rest),
         cmocka_unit_test(degenerate_rest_stays_finite),
         cmocka_unit_test(wild_poses_stay_finite),
+        cmocka_unit_test(wild_paint_stays_finite),
         cmocka_unit_test(nothing_free_is_nothing_slid),
         cmocka_unit_test(split_vertices_stay),
         cmocka_unit_test(free_loops_slide_along_themselves),
