@@ -66,7 +66,7 @@ ss_place search_all(const ss_patch *patch, const double (*uv)[2], const double p
 void assert_same_place(const ss_place *a, const ss_place *b);
 
 /* Every way to set up a fixture: boundaries x holes x rules x interpolations. Some are no way for the fixture: false. */
-enum { WAY_COUNT = 24 };
+enum { WAY_COUNT = 32 };
 bool choose_way(const fixture *f, int32_t way, skinslide_patch_setup *choices);
 
 /* Random controls for a whole mesh, which own their arrays. */
