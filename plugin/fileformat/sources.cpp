@@ -2,6 +2,7 @@
 
 #include "cycle.h"
 #include "fault.h"
+#include "names.h"
 #include "params.h"
 #include "values.h"
 
@@ -9,10 +10,13 @@
 #include "pxr/base/tf/fileUtils.h"
 #include "pxr/base/tf/pathUtils.h"
 #include "pxr/base/tf/stringUtils.h"
+#include "pxr/base/vt/array.h"
+#include "pxr/base/vt/dictionary.h"
 #include "pxr/usd/ar/asset.h"
 #include "pxr/usd/ar/packageUtils.h"
 #include "pxr/usd/ar/resolvedPath.h"
 #include "pxr/usd/ar/resolver.h"
+#include "pxr/usd/sdf/assetPath.h"
 #include "pxr/usd/sdf/fileFormat.h"
 #include "pxr/usd/sdf/layerUtils.h"
 #include "pxr/usd/sdf/schema.h"
@@ -74,14 +78,52 @@ bool isIrregular(const std::string &resolvedPath) {
     return TfPathExists(file, true) && !TfIsFile(file, true) && !TfIsDir(file, true);
 }
 
-SdfLayerRefPtr openLayer(const std::string &identifier) {
+namespace {
+
+// The resolved path of what can be opened without waiting. Throws Fault.
+std::string openable(const std::string &identifier) {
     std::string path;
     SdfLayer::FileFormatArguments arguments;
     SdfLayer::SplitIdentifier(identifier, &path, &arguments);
     path = ArGetResolver().Resolve(path).GetPathString();
-    Reading::refuse(path);
     if (isIrregular(path))
         throw fault("leads to %s, which %s", path.c_str(), skinslide_stage_say(SKINSLIDE_SAYING_IRREGULAR));
+    return path;
+}
+
+// The files of a set of value clips, as identifiers.
+std::vector<std::string> clipFiles(const SdfLayerRefPtr &layer, const VtDictionary &set) {
+    std::vector<std::string> files;
+    for (const SdfAssetPath &asset :
+         VtDictionaryGet<VtArray<SdfAssetPath>>(set, "assetPaths", VtDefault = VtArray<SdfAssetPath>()))
+        files.push_back(SdfComputeAssetPathRelativeToLayer(layer, asset.GetAssetPath()));
+    std::string pattern = VtDictionaryGet<std::string>(set, "templateAssetPath", VtDefault = "");
+    std::replace(pattern.begin(), pattern.end(), '#', '*');
+    if (!pattern.empty())
+        for (const std::string &file : TfGlob(SdfComputeAssetPathRelativeToLayer(layer, pattern), 0))
+            files.push_back(file);
+    return files;
+}
+
+// Value clips are not read here, but by the stage, as soon as it has the prim.
+void lookAtClips(const SdfLayerRefPtr &layer) {
+    layer->Traverse(SdfPath::AbsoluteRootPath(), [&](const SdfPath &path) {
+        VtDictionary sets;
+        if (!path.IsPrimOrPrimVariantSelectionPath() || !layer->HasField(path, names().clips, &sets))
+            return;
+        for (const auto &[name, set] : sets) {
+            if (!set.IsHolding<VtDictionary>())
+                continue;
+            for (const std::string &file : clipFiles(layer, set.UncheckedGet<VtDictionary>()))
+                openable(file);
+        }
+    });
+}
+
+} // namespace
+
+SdfLayerRefPtr openLayer(const std::string &identifier) {
+    Reading::refuse(openable(identifier));
     TfErrorMark mark;
     SdfLayerRefPtr layer = SdfLayer::FindOrOpen(identifier);
     mark.Clear();
@@ -104,6 +146,7 @@ class Walk {
         while (!_waiting.empty()) {
             Place place = _waiting.front();
             _waiting.pop_front();
+            lookAtClips(place.layer);
             for (const std::string &asset : place.layer->GetCompositionAssetDependencies())
                 follow(place, asset);
         }

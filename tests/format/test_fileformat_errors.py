@@ -155,13 +155,41 @@ def pipe_as_manifest(folder: Path, pipe: Path) -> Path:
     return make(folder, with_clips)
 
 
-@pytest.mark.parametrize("lay", [pipe_as_sublayer, pipe_below_a_source, pipe_in_a_variant, pipe_as_manifest])
+def pipe_as_clip(folder: Path, pipe: Path) -> Path:
+    (folder / "x.skinslide").write_text(
+        '#usda 1.0\ndef "World" (clips = {\ndictionary default = {\n'
+        f'asset[] assetPaths = [@{pipe}@]\nstring primPath = "/World"\n}}\n}}) {{\n}}'
+    )
+    return folder / "x.skinslide"
+
+
+def pipe_as_clip_of_a_template_below(folder: Path, pipe: Path) -> Path:
+    os.link(pipe, folder / "clip.1.5.usda")
+    (folder / "a.usda").write_text(
+        '#usda 1.0\ndef "World" (clips = {\ndictionary default = {\n'
+        'string templateAssetPath = "./clip.##.#.usda"\n}\n}) {\n}'
+    )
+    return write(folder / "x.skinslide", cache="./a.usda")
+
+
+PIPED = [
+    pipe_as_sublayer,
+    pipe_below_a_source,
+    pipe_in_a_variant,
+    pipe_as_manifest,
+    pipe_as_clip,
+    pipe_as_clip_of_a_template_below,
+]
+
+
+@pytest.mark.parametrize("lay", PIPED)
 def test_a_file_that_leads_to_a_pipe_is_refused(tmp_path, lay):
     """To open one is to wait for somebody who writes into it."""
     pipe = tmp_path / "pipe.usda"
     os.mkfifo(pipe)
     done = run_python(f"import skinslide; from pxr import Sdf; Sdf.Layer.FindOrOpen({str(lay(tmp_path, pipe))!r})")
-    assert done.returncode == 1 and f"x.skinslide leads to {pipe}, which is not a regular file" in done.stderr
+    name = tmp_path / "clip.1.5.usda" if lay is pipe_as_clip_of_a_template_below else pipe
+    assert done.returncode == 1 and f"x.skinslide leads to {name}, which is not a regular file" in done.stderr
 
 
 def test_a_pipe_is_refused(tmp_path):

@@ -156,23 +156,59 @@ def test_pipes(shot, tmp_path):
         bake_to_file(tmp_path / "pipe.usda", tmp_path / "out.usda")
 
 
-@pytest.mark.parametrize("arc", ["sublayer", "sublayer of a sublayer", "references", "payload"])
+def sublayer(file):
+    return f"#usda 1.0\n(\n    subLayers = [@./{file}@]\n)\n"
+
+
+def prim(metadata):
+    return f'#usda 1.0\n(\n    defaultPrim = "World"\n)\ndef "World" (\n{metadata}\n)\n{{\n}}\n'
+
+
+def with_clips(files):
+    return prim(f'clips = {{\ndictionary default = {{\n{files}\nstring primPath = "/World"\n}}\n}}')
+
+
+PIPE = "pipe.1.usda"
+VARIANT = f'{{\n"a" {{\n}}\n"b" (\nreferences = @./{PIPE}@\n) {{\n}}\n}}'
+# What a stage names, and what is below.usda.
+NAMED = {
+    "sublayer": (sublayer(PIPE), ""),
+    "sublayer of a sublayer": (sublayer("below.usda"), sublayer(PIPE)),
+    "reference": (prim(f"references = @./{PIPE}@"), ""),
+    "payload": (prim(f"payload = @./{PIPE}@"), ""),
+    "sublayer of a payload": (prim("payload = @./below.usda@"), sublayer(PIPE)),
+    "payload of a reference": (prim("references = @./below.usda@"), prim(f"payload = @./{PIPE}@")),
+    "reference in a variant": (
+        prim('variants = {\nstring v = "a"\n}\nadd variantSets = "v"').replace(
+            "{\n}\n", f'{{\nvariantSet "v" = {VARIANT}\n}}\n'
+        ),
+        "",
+    ),
+    "expression": (
+        '#usda 1.0\n(\nexpressionVariables = {\nstring X = "1"\n}\nsubLayers = [@`"./pipe.${X}.usda"`@]\n)\n',
+        "",
+    ),
+    "clip": (with_clips(f"asset[] assetPaths = [@./{PIPE}@]\ndouble2[] active = [(0, 0)]"), ""),
+    "clip of a reference": (prim("references = @./below.usda@"), with_clips(f"asset[] assetPaths = [@./{PIPE}@]")),
+    "clip of a template": (with_clips('string templateAssetPath = "./pipe.#.usda"'), ""),
+    "manifest": (with_clips(f"asset manifestAssetPath = @./{PIPE}@"), ""),
+}
+
+
+@pytest.mark.parametrize("arc", NAMED)
 @pytest.mark.parametrize("extension", ["usda", "skinslide"])
-def test_pipes_that_a_stage_names(arc, extension, tmp_path):
+def test_pipes_that_a_stage_leads_to(arc, extension, tmp_path):
     """Opening one would wait for ever, so another process looks."""
-    os.mkfifo(tmp_path / "pipe.usda")
-    named = {
-        "sublayer": "#usda 1.0\n(\n    subLayers = [@./pipe.usda@]\n)\n",
-        "sublayer of a sublayer": "#usda 1.0\n(\n    subLayers = [@./below.usda@]\n)\n",
-    }
-    (tmp_path / "below.usda").write_text(named["sublayer"])
+    os.mkfifo(tmp_path / PIPE)
     top = tmp_path / f"top.{extension}"
-    top.write_text(named.get(arc, f'#usda 1.0\ndef "World" (\n    {arc} = @./pipe.usda@\n)\n{{\n}}\n'))
+    text, below = NAMED[arc]
+    top.write_text(text)
+    (tmp_path / "below.usda").write_text(below)
     command = [sys.executable, "-m", "skinslide", "check", str(top)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=20)
-    named_by = "below.usda" if arc == "sublayer of a sublayer" else top.name
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    named_by = "below.usda" if below else top.name
     assert done.returncode == 1
-    assert done.stderr.startswith(f"error: cannot open {tmp_path / 'pipe.usda'}, which ")
+    assert done.stderr.startswith(f"error: cannot open {tmp_path / PIPE}, which ")
     assert done.stderr.endswith(f"{named_by} names: it is not a regular file\n")
 
 

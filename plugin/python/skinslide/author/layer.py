@@ -13,7 +13,8 @@ from pxr import Sdf, Tf, Usd
 
 from skinslide.problems import StageError, UsageError
 from skinslide.stage.given import StageLike, StrPath, given_file, given_stage
-from skinslide.stage.opening import EXTENSION, read_text_layer
+from skinslide.stage.opening import read_text_layer
+from skinslide.stage.sources import EXTENSION
 from skinslide.write.place import (
     Changed,
     State,

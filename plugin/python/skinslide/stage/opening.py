@@ -6,7 +6,6 @@ import errno
 import math
 import os
 import posixpath
-from contextlib import suppress
 from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd, UsdUtils
@@ -14,10 +13,7 @@ from pxr import Ar, Sdf, Tf, Usd, UsdUtils
 from skinslide.arrays.meaning import check_text, say
 from skinslide.problems import PATH_TOO_LONG, Fault, StageError, usd_message
 from skinslide.registration import registered
-
-EXTENSION = ".skinslide"
-# Has the file format read the text of a `.skinslide` file and compute nothing.
-_TEXT_ONLY = {"live": "0"}
+from skinslide.stage.sources import EXTENSION, TEXT_ONLY, is_irregular, open_sources
 
 
 def open_stage(path: str | Path) -> Usd.Stage:
@@ -28,18 +24,14 @@ def open_stage(path: str | Path) -> Usd.Stage:
             raise StageError(f"cannot open {path}: it {say('irregular')}")
         with Ar.ResolverContextBinder(Ar.GetResolver().CreateDefaultContextForAsset(path)):
             text = _text_of(Path(path)) if path.endswith(EXTENSION) else None
-            held = _sublayers(text or Sdf.Layer.FindOrOpen(path), path)  # until the stage has them: each is read once
+            root = text or Sdf.Layer.FindOrOpen(path)
+            held = open_sources(root, path) if root else []  # until the stage has them
         stage = Usd.Stage.Open(_text_in_stage(text, path) if text else path)
         del held
         check_clocks(stage)
         return stage
     except (Tf.ErrorException, OSError, ValueError) as error:
         raise StageError(f"cannot open {path}: {why_not_opened(path, error)}") from error
-
-
-def is_irregular(path: str) -> bool:
-    """Whether a path is of a pipe, a socket or a device, which may be waited for without end once it is opened."""
-    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
 def _text_of(path: Path) -> Sdf.Layer:
@@ -51,26 +43,7 @@ def _text_of(path: Path) -> Sdf.Layer:
 
 def _text_in_stage(text: Sdf.Layer, path: str) -> Sdf.Layer:
     """The text as the layer of its file; where USD has no format for it, as it is."""
-    return Sdf.Layer.FindOrOpen(path, _TEXT_ONLY) if registered() else text
-
-
-def _sublayers(root: Sdf.Layer | None, path: str) -> list[Sdf.Layer]:
-    """The root layer at a path, and those below it.
-
-    Raises StageError for what one of them names that is there and is no regular file.
-    """
-    found = [root] if root else []
-    for layer in found:
-        name = path if layer == root else layer.identifier
-        for asset in layer.GetCompositionAssetDependencies():
-            file = Ar.GetResolver().Resolve(Sdf.ComputeAssetPathRelativeToLayer(layer, asset)).GetPathString()
-            if is_irregular(file):
-                raise StageError(f"cannot open {file}, which {name} names: it {say('irregular')}")
-        for asset in layer.subLayerPaths:
-            with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
-                below = Sdf.Layer.FindOrOpenRelativeToLayer(layer, asset)
-                found += [below] if below and below not in found else []
-    return found
+    return Sdf.Layer.FindOrOpen(path, TEXT_ONLY) if registered() else text
 
 
 def check_clocks(stage: Usd.Stage) -> None:
