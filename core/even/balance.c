@@ -167,7 +167,7 @@ bool ss_take_step(ss_evener *evener) {
 /* All steps from home, by weights [vertex_count]. */
 static skinslide_status slide_by(ss_evener *evener, const ss_frame *frame, const double *weight, int32_t *cut,
                                  skinslide_error *error) {
-    skinslide_status status = ss_need_stiffness(evener, frame->paint, weight, evener->next_hold, error);
+    skinslide_status status = ss_need_stiffness(evener, frame, weight, evener->next_hold, error);
     for (int step = 0; step < STEPS && !status && !ss_is_set(frame->stop); step++) {
         if (step > 0)
             ss_measure_stretch(evener);

@@ -109,8 +109,9 @@ void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places);
 
 /* ---- stiffness.c ---- */
 
-/* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR. */
-skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const double *weight, const double *hold,
+/* Makes K that of the frame's paint and of weights and holds [vertex_count], where it is not. Fails with SINGULAR, also where the
+ * frame is not wanted any more. */
+skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, const double *weight, const double *hold,
                                    skinslide_error *error);
 /* Of an edge, over eta: k / l^2 times what is painted. */
 double ss_hold_of(const ss_evener *evener, const ss_spring *spring);

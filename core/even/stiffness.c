@@ -82,17 +82,17 @@ static bool take(double *own, const double *values, int32_t count) {
     return !same;
 }
 
-skinslide_status ss_need_stiffness(ss_evener *evener, const double *paint, const double *weight, const double *hold,
+skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, const double *weight, const double *hold,
                                    skinslide_error *error) {
     const ss_patch *patch = evener->sheet->patch;
-    bool changed = take(evener->paint, paint, patch->faces.edge_count);
+    bool changed = take(evener->paint, frame->paint, patch->faces.edge_count);
     changed |= take(evener->weight, weight, patch->vertex_count);
     changed |= take(evener->hold, hold, patch->vertex_count);
     if (evener->factored && !changed)
         return SKINSLIDE_OK;
     evener->factored = false;
     add_stiffness(evener);
-    if (!ss_blocks_factor(evener->K))
+    if (!ss_blocks_factor(evener->K, frame->stop))
         return ss_fail(error, SKINSLIDE_SINGULAR, "%s: force densities, holds and weights are too far apart to slide with",
                        patch->label);
     evener->factored = true;

@@ -309,8 +309,7 @@ int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, const ss_slide *
     list_targets(work, frame, slide);
     if (ss_is_set(frame->stop))
         return 0;
-    ss_fit_samples(work->fit, frame->points, (const double(*)[3])work->residual, (const double(*)[3])work->normal,
-                   work->solution);
+    ss_fit_samples(work->fit, frame, (const double(*)[3])work->residual, (const double(*)[3])work->normal, work->solution);
     for (int32_t i = 0; i < count; i++)
         damped += take_damped(work->solution[i], bound(work->cage, frame->lengths, &slide->places[i], i), displacement[i]);
     return damped;

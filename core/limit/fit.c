@@ -51,6 +51,7 @@ struct ss_fit_work {
     ss_memory memory;
     const ss_fit *fit;
     ss_least_squares_work *across, *along;
+    const int *stop;           /* a flag: the frame is not wanted any more */
     const double (*normal)[3]; /* [sample count] n */
     double (*residual)[3];     /* [sample count] r */
     double (*linear)[3];       /* [edge_count] e0 */
@@ -330,7 +331,7 @@ static void improve(ss_fit_work *work) {
     measure_edges(work);
     list_gradient(work);
     memset(work->search, 0, (size_t)n * sizeof *work->search);
-    for (int k = 0; k < GRADIENT_STEPS; k++) {
+    for (int k = 0; k < GRADIENT_STEPS && !ss_is_set(work->stop); k++) {
         precondition(work);
         double now = product(n, work->gradient, work->scaled);
         if (!(now > 0))
@@ -367,10 +368,10 @@ static void start_linear(ss_fit_work *work, const float *points, const double (*
     memset(work->offset, 0, (size_t)fit->free_count * sizeof *work->offset);
 }
 
-void ss_fit_samples(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*normal)[3],
+void ss_fit_samples(ss_fit_work *work, const ss_frame *frame, const double (*residual)[3], const double (*normal)[3],
                     double (*displacement)[3]) {
-    work->normal = normal;
-    start_linear(work, points, residual, (const double(*)[3])displacement);
+    work->normal = normal, work->stop = frame->stop;
+    start_linear(work, frame->points, residual, (const double(*)[3])displacement);
     for (int k = 0; k < GAUSS_NEWTON_STEPS; k++)
         improve(work);
     for (int32_t i = 0; i < work->fit->free_count; i++)

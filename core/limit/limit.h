@@ -70,8 +70,8 @@ void ss_fit_destroy(ss_fit *fit);
 skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinslide_error *error);
 void ss_fit_work_destroy(ss_fit_work *work);
 /* displacement [free_count]: in the linear one, out the one that brings each sample nearer to where it is to move by residual,
- * along normal: unit, or 0 for in every direction. Both are [row_count]. points is the whole mesh's. */
-void ss_fit_samples(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*normal)[3],
+ * along normal: unit, or 0 for in every direction. Both are [row_count]. */
+void ss_fit_samples(ss_fit_work *work, const ss_frame *frame, const double (*residual)[3], const double (*normal)[3],
                     double (*displacement)[3]);
 
 /* ---- middle.c: where the middles of faces are looked up ---- */

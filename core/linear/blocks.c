@@ -144,12 +144,14 @@ static bool finish_column(ss_blocks *blocks, int k) {
     return good;
 }
 
-bool ss_blocks_factor(ss_blocks *blocks) {
+bool ss_blocks_factor(ss_blocks *blocks, const int *stop) {
     const ss_system *system = blocks->system;
     bool good = true;
     for (int k = 0; k < system->n; k++)
         blocks->first[k] = -1;
     for (int run = 0; run < system->block_count; run++) {
+        if (ss_is_set(stop))
+            return false;
         for (int k = system->block[run]; k < system->block[run + 1]; k++) {
             gather_own(blocks, system->block[run], k);
             gather_others(blocks, k);

@@ -82,8 +82,8 @@ int32_t ss_blocks_unknown(const ss_blocks *blocks, int32_t vertex);
 double *ss_blocks_own(ss_blocks *blocks, int32_t unknown);
 /* The block between the ends of an edge, neither fixed, and whether its rows are the first end's. */
 double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *first_is_row);
-/* Factors; false where the matrix is not positive definite. */
-bool ss_blocks_factor(ss_blocks *blocks);
+/* Factors; false where the matrix is not positive definite, or work is left because of the flag. */
+bool ss_blocks_factor(ss_blocks *blocks, const int *stop);
 /* right becomes the solution. */
 void ss_blocks_solve(ss_blocks *blocks);
 

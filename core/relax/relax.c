@@ -150,14 +150,14 @@ static double solve(ss_relaxer *relaxer, ss_blocks *blocks) {
 }
 
 /* The first step: its matrix is the same in every frame with the same paint. */
-static double solve_rest(ss_relaxer *relaxer) {
+static double solve_rest(ss_relaxer *relaxer, const int *stop) {
     const ss_patch *patch = relaxer->chart->patch;
     size_t bytes = (size_t)patch->faces.edge_count * sizeof *relaxer->rest_paint;
     if (memcmp(relaxer->rest_paint, relaxer->paint, bytes) != 0) {
         memset(relaxer->rest_paint, 0, bytes);
         clear(relaxer, relaxer->rest);
         ss_rest_stiffness(relaxer);
-        if (!ss_blocks_factor(relaxer->rest))
+        if (!ss_blocks_factor(relaxer->rest, stop))
             return 0;
         memcpy(relaxer->rest_paint, relaxer->paint, bytes);
     }
@@ -166,11 +166,11 @@ static double solve_rest(ss_relaxer *relaxer) {
     return solve(relaxer, relaxer->rest);
 }
 
-static double solve_now(ss_relaxer *relaxer) {
+static double solve_now(ss_relaxer *relaxer, const int *stop) {
     clear(relaxer, relaxer->blocks);
     ss_stretch_model(relaxer);
     ss_fold_model(relaxer);
-    return ss_blocks_factor(relaxer->blocks) ? solve(relaxer, relaxer->blocks) : 0;
+    return ss_blocks_factor(relaxer->blocks, stop) ? solve(relaxer, relaxer->blocks) : 0;
 }
 
 static void walk(ss_relaxer *relaxer, int32_t vertex) {
@@ -258,7 +258,7 @@ int32_t ss_relax(ss_relaxer *relaxer, const ss_frame *frame, ss_place *places) {
     for (; first > 0 && steps < MOST_STEPS && !ss_is_set(frame->stop); steps++) {
         for (int32_t i = 0; i < patch->free_count; i++)
             set_axes(relaxer, patch->free_vertex[i]);
-        double lowers = (steps == 0 ? solve_rest : solve_now)(relaxer) / first;
+        double lowers = (steps == 0 ? solve_rest : solve_now)(relaxer, frame->stop) / first;
         part *= ease(lowers / TOLERANCE);
         if (part < LEAST_PART)
             break;

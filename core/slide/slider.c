@@ -150,9 +150,10 @@ static double stretch(const ss_patch *patch, const double *lengths) {
 
 /* ---- One frame ---- */
 
-/* Whether the frame goes on: status, or that another thread wants no more of it. Once it is said, the next one may. */
+/* Whether the frame goes on: status, or that another thread wants no more of it, for which a stage may have failed. Once it is
+ * said, the next one may. */
 static skinslide_status go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error) {
-    if (status || !ss_is_set(&workspace->stop))
+    if (!ss_is_set(&workspace->stop))
         return status;
     ss_set(&workspace->stop, 0);
     return ss_fail(error, SKINSLIDE_INTERRUPTED, "the frame was interrupted");

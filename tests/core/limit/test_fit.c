@@ -63,8 +63,13 @@ static void fill_problem(problem *p, int32_t columns, int32_t rows, uint64_t see
     free(faces);
 }
 
+static void fit_until(const problem *p, int stop, double (*displacement)[3]) {
+    ss_frame frame = {.points = p->points, .stop = &stop};
+    ss_fit_samples(p->work, &frame, p->residual, p->normal, displacement);
+}
+
 static void fit(const problem *p, double (*displacement)[3]) {
-    ss_fit_samples(p->work, p->points, p->residual, p->normal, displacement);
+    fit_until(p, 0, displacement);
 }
 
 static void free_problem(problem *p) {
@@ -235,12 +240,25 @@ static void samples_without_a_normal_come_nearer(void **state) {
     free_problem(&p);
 }
 
+static void a_frame_that_is_not_wanted_is_not_fitted(void **state) {
+    (void)state;
+    problem p;
+    double left[MOST_FREE][3];
+    fill_problem(&p, 4, 4, 5);
+    size_t size = (size_t)p.patch->free_count * sizeof *left;
+    memcpy(left, p.linear, size);
+    fit_until(&p, 1, left);
+    assert_same_bytes(left, p.linear, size);
+    free_problem(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_vertex_goes_where_gauss_and_newton_send_it),
         cmocka_unit_test(the_energy_comes_near_its_least),
         cmocka_unit_test(samples_in_their_planes_stay),
         cmocka_unit_test(samples_without_a_normal_come_nearer),
+        cmocka_unit_test(a_frame_that_is_not_wanted_is_not_fitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
