@@ -15,6 +15,7 @@ import pytest
 from pxr import Plug, Usd
 
 import skinslide
+import stages
 from repository import ROOT
 
 PACKAGE = Path(skinslide.__file__).parent
@@ -132,6 +133,27 @@ def test_an_interruption_while_the_command_is_loaded(tmp_path):
     command = [sys.executable, "-c", textwrap.dedent(code), "check", tmp_path / "shot.usda"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
+
+
+def test_an_interruption_while_a_patch_is_set_up(tmp_path):
+    """Which may take minutes, within one call of the library."""
+    code = """
+        import os, signal, sys, threading
+        from skinslide.arrays import slider
+        from skinslide.command.start import main
+
+        def create(*_arguments):
+            os.kill(os.getpid(), signal.SIGINT)
+            threading.Event().wait()
+
+        slider._create = create
+        sys.exit(main())
+    """
+    shot, out = stages.save(stages.patched_stage()[0], tmp_path / "shot.usda"), tmp_path / "out.usda"
+    command = [sys.executable, "-c", textwrap.dedent(code), "bake", shot, "-o", out]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (130, "error: interrupted; nothing was written\n")
+    assert list(tmp_path.iterdir()) == [shot]
 
 
 def test_the_headers_are_the_manual():

@@ -1,6 +1,8 @@
 """`skinslide.Slider` on numpy arrays: that they cross to the core and back unharmed. The rest is tested in C."""
 
 import gc
+import os
+import signal
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
@@ -11,6 +13,7 @@ import skinslide
 import stages
 from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.arrays import slider
+from skinslide.arrays.apart import apart, goes_on
 from skinslide.shot.workers import pool_of
 
 SIZE = 12  # quads a side
@@ -236,6 +239,28 @@ def test_a_signal_stops_the_frames_of_a_pool(own_sheet, rest):
         frames = [pool.submit(slid_until_stopped, own_sheet, bumped(rest)) for _ in range(9)]
         raise KeyboardInterrupt
     assert all(frame.cancelled() or frame.result() == "INTERRUPTED" for frame in frames)
+
+
+def test_a_signal_is_answered_while_a_call_goes_on():
+    ended = threading.Event()
+
+    def call(number):
+        os.kill(os.getpid(), number)
+        ended.wait()
+
+    with pytest.raises(KeyboardInterrupt):
+        apart(call, signal.SIGINT)
+    assert goes_on()
+    (left,) = [thread for thread in threading.enumerate() if thread.daemon and "skinslide" in thread.name]
+    ended.set()
+    left.join()
+    assert not goes_on()
+
+
+def test_what_a_call_apart_gives():
+    assert apart(divmod, 7, 2) == (3, 1)
+    with pytest.raises(ZeroDivisionError):
+        apart(divmod, 7, 0)
 
 
 def test_workspaces_go_before_their_slider(counts, indices, rest):

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skinslide._core import ffi, lib
+from skinslide.arrays.apart import apart
 from skinslide.arrays.native import (
     Arguments,
     Controls,
@@ -131,11 +132,9 @@ class Slider:
         setups = new_array("patch_setup", len(patches))
         for setup, patch in zip(setups, patches, strict=True):
             native.fill_setup(setup, patch, self._sizes)
-        out = ffi.new("skinslide_slider **")
-        call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, len(patches), out)
-        self._slider = Handle(out[0], lib.skinslide_slider_destroy)
+        self._slider = apart(_create, native, mesh, setups, len(patches))
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider.pointer)))
-        self._idle, self._busy = [self._new_workspace()], list[Handle]()
+        self._idle, self._busy = [apart(self._new_workspace)], list[Handle]()
         self._stopped = False
         self._lock = threading.Lock()
 
@@ -323,6 +322,13 @@ class Slider:
         with self._lock:
             self._busy.remove(workspace)
             self._idle.append(workspace)
+
+
+def _create(_native: Arguments, mesh: Any, setups: Any, count: int) -> Handle:
+    """A slider of structs that point into memory of arguments."""
+    out = ffi.new("skinslide_slider **")
+    call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, count, out)
+    return Handle(out[0], lib.skinslide_slider_destroy)
 
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
