@@ -68,6 +68,13 @@ def test_json_is_json_whatever_the_numbers(capsys):
     assert read == {"stretch": None, "frames": [1.5, None, [None, 2]], "name": "nan"}
 
 
+@pytest.mark.parametrize("word", ["--json", "--jso", "--js", "--json=1"])
+def test_arguments_that_cannot_be_used_are_told_in_json_where_it_is_asked_for(word, capfd):
+    assert cli.main(["bake", "shot.usda", word, "--frobnicate"]) == 2
+    (problem,) = json.loads(capfd.readouterr().out)["problems"]
+    assert problem["severity"] == "error"
+
+
 FORGED = "\x1b[2J\nerror: forged\r\x9b1m\u202e\u2028"
 
 

@@ -28,7 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         given = parse(words)
     except UsageError as bad:
-        return failed(bad, json="--json" in words)
+        return failed(bad, json=any(map(_is_json, words)))
     except SystemExit as done:  # after --help and --version
         return done.code if isinstance(done.code, int) else DONE
     run, home, name = _COMMANDS[given.pop("command")]
@@ -39,6 +39,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         return say(*run(function, **given))
     except expected() as error:
         return failed(error, given.get("json", False), _outcome(given, before))
+
+
+def _is_json(word: str) -> bool:
+    """Whether a word asks for JSON, as the parser takes it, or would if it took a value."""
+    return word.startswith("--js") and "--json".startswith(word.partition("=")[0])
 
 
 # ---- What a command left behind ----
