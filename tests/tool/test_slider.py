@@ -13,7 +13,7 @@ import skinslide
 import stages
 from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.arrays import slider
-from skinslide.arrays.apart import apart, goes_on
+from skinslide.arrays.apart import APART, apart, goes_on
 from skinslide.shot.workers import pool_of
 
 SIZE = 12  # quads a side
@@ -241,6 +241,26 @@ def test_a_signal_stops_the_frames_of_a_pool(own_sheet, rest):
     assert all(frame.cancelled() or frame.result() == "INTERRUPTED" for frame in frames)
 
 
+def end_all(ended):
+    """Has what a signal left at work end."""
+    ended.set()
+    for thread in threading.enumerate():
+        if thread is not threading.main_thread() and thread.name.startswith(APART):
+            thread.join()
+    assert not goes_on()
+
+
+def test_a_signal_does_not_wait_for_a_picture(own_sheet):
+    begun, ended = threading.Event(), threading.Event()
+    with pytest.raises(KeyboardInterrupt), pool_of(1, 9, [own_sheet]) as pool:
+        pictures = [pool.submit(lambda: begun.set() or ended.wait()) for _ in range(2)]
+        begun.wait()
+        raise KeyboardInterrupt
+    assert goes_on() and not pictures[0].done() and pictures[1].cancelled()
+    end_all(ended)
+    assert pictures[0].result()
+
+
 def test_a_signal_is_answered_while_a_call_goes_on():
     ended = threading.Event()
 
@@ -251,10 +271,7 @@ def test_a_signal_is_answered_while_a_call_goes_on():
     with pytest.raises(KeyboardInterrupt):
         apart(call, signal.SIGINT)
     assert goes_on()
-    (left,) = [thread for thread in threading.enumerate() if thread.daemon and "skinslide" in thread.name]
-    ended.set()
-    left.join()
-    assert not goes_on()
+    end_all(ended)
 
 
 def test_what_a_call_apart_gives():

@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 T = TypeVar("T")
-_NAME = "skinslide, apart"
+APART = "skinslide"  # what the names of threads begin with that a signal leaves at work
 
 
 def apart(make: Callable[..., T], *arguments: Any) -> T:
@@ -28,12 +28,12 @@ def apart(make: Callable[..., T], *arguments: Any) -> T:
     if threading.current_thread() is not threading.main_thread():
         return make(*arguments)
     try:
-        threading.Thread(target=run, name=_NAME, daemon=True).start()
+        threading.Thread(target=run, name=APART, daemon=True).start()
     except RuntimeError:  # the machine gives no more threads
         return make(*arguments)
     return future.result()
 
 
 def goes_on() -> bool:
-    """Whether a call goes on that nobody waits for."""
-    return any(thread.name == _NAME for thread in threading.enumerate())
+    """Whether something goes on that nobody waits for."""
+    return any(thread.name.startswith(APART) for thread in threading.enumerate())

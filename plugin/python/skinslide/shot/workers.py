@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from pxr import Usd
 
+from skinslide.arrays.apart import APART
 from skinslide.arrays.slider import Slider
 from skinslide.problems import FrameProblem, SliderError, StageError, core_problem
 from skinslide.shot.plan import frame_of
@@ -23,17 +24,17 @@ Progress = Callable[[int, int], None]  # frames done, frames in all
 def pool_of(jobs: int, frame_count: int, sliders: Sequence[Slider]) -> Iterator[ThreadPoolExecutor]:
     """Threads for frames of sliders; when the block ends, those that have not begun never do.
 
-    When it fails, those that have begun are left.
+    When it fails, those that have begun are left; a signal does not wait for them, of which nothing is written here.
     """
-    pool = ThreadPoolExecutor(min(jobs, frame_count), "skinslide")
+    pool = ThreadPoolExecutor(min(jobs, frame_count), APART)
     try:
         yield pool
-    except BaseException:
+    except BaseException as error:
         for slider in sliders:
             slider.stop()
+        pool.shutdown(wait=isinstance(error, Exception), cancel_futures=True)
         raise
-    finally:
-        pool.shutdown(cancel_futures=True)
+    pool.shutdown()
 
 
 def work_ahead(
