@@ -1,21 +1,28 @@
-/* Reads OpenEXR files in memory by OpenEXR's own C library, which only this file and exrwrite.c know. Headers are untrusted:
- * what they claim is held against limits and against the size of the file before memory is taken. */
+/* Reads OpenEXR files, in memory or open, by OpenEXR's own C library, which only this file and exrwrite.c know. Headers are
+ * untrusted: what they claim is held against limits and against the size of the file before memory is taken. */
+#define _POSIX_C_SOURCE 200809L /* pread */
 #include "base.h"
 #include "paint.h"
 
+#include <errno.h>
 #include <math.h>
 #include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#define LARGEST_SIDE  16384
-#define LARGEST_CHUNK ((uint64_t)1 << 30)
+#define LARGEST_SIDE   16384
+#define LARGEST_CHUNK  ((uint64_t)1 << 30)
+#define LARGEST_HEADER ((int64_t)1 << 26)
+#define MOST_CHUNKS    (1 << 22)
 
 /* What OpenEXR reads, and the first thing it says when it fails. It would print to stderr by itself. */
 typedef struct source {
-    const uint8_t *bytes;
-    int64_t size;
+    const uint8_t *bytes; /* NULL: of the descriptor, from offset on */
+    int32_t descriptor;
+    int64_t offset, size;
+    int64_t readable; /* as much of it as may be read by now */
     bool out_of_memory;
     char said[256];
 } source;
@@ -61,16 +68,31 @@ static void hear(exr_const_context_t context, exr_result_t code, const char *mes
     }
 }
 
+/* Returns how many bytes could be read. */
+static uint64_t read_open(const source *from, uint8_t *buffer, uint64_t count, uint64_t offset) {
+    uint64_t done = 0;
+    while (done < count) {
+        ssize_t more = pread(from->descriptor, buffer + done, count - done, (off_t)((uint64_t)from->offset + offset + done));
+        if (more == 0 || (more < 0 && errno != EINTR))
+            break;
+        done += more > 0 ? (uint64_t)more : 0;
+    }
+    return done;
+}
+
 /* Hands out no more than there is, as pread does. */
 static int64_t read_bytes(exr_const_context_t context, void *data, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t fail) {
     const source *from = data;
-    uint64_t left = offset < (uint64_t)from->size ? (uint64_t)from->size - offset : 0;
+    uint64_t left = offset < (uint64_t)from->readable ? (uint64_t)from->readable - offset : 0;
     uint64_t count = size < left ? size : left;
-    if (count)
+    if (count && from->bytes)
         memcpy(buffer, from->bytes + offset, count);
-    else if (size)
-        fail(context, EXR_ERR_READ_IO, "the file ends at byte %lld", (long long)from->size);
+    else if (count)
+        count = read_open(from, buffer, count, offset);
+    if (size && !count)
+        fail(context, EXR_ERR_READ_IO, "%s byte %lld",
+             from->readable < from->size ? "the header goes on after" : "the file ends at", (long long)from->readable);
     return (int64_t)count;
 }
 
@@ -236,6 +258,8 @@ static skinslide_status check_chunks(exr_const_context_t file, int part, const s
         return ss_fail(error, SKINSLIDE_BAD_IMAGE,
                        "truncated: the header promises %d chunks of texels, the file has %lld bytes", count,
                        (long long)from->size);
+    if (count > MOST_CHUNKS)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%d chunks of texels; more than %d are refused", count, MOST_CHUNKS);
     if (unpacked > LARGEST_CHUNK)
         return ss_fail(error, SKINSLIDE_UNSUPPORTED, "chunks of %llu bytes; more than %llu are refused",
                        (unsigned long long)unpacked, (unsigned long long)LARGEST_CHUNK);
@@ -450,34 +474,49 @@ static skinslide_status decode_selection(exr_const_context_t file, const selecti
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const char *channel, skinslide_image **out,
-                                      skinslide_error *error) {
-    if (!out || size < 0 || (size && !bytes))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no bytes, or no place for the image");
-    source from = {.bytes = bytes, .size = size};
+static skinslide_status decode(source *from, const char *channel, skinslide_image **out, skinslide_error *error) {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = hear;
     setup.alloc_fn = allocate;
     setup.free_fn = free;
-    setup.user_data = &from;
+    setup.user_data = from;
     setup.read_fn = read_bytes;
     setup.size_fn = tell_size;
     setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     exr_context_t file = NULL;
-    bool opened = succeeds(&from, exr_start_read(&file, "image", &setup));
+    from->readable = least(from->size, LARGEST_HEADER);
+    bool opened = succeeds(from, exr_start_read(&file, "image", &setup));
+    from->readable = from->size;
     selection chosen = {.channel = -1};
     skinslide_status status;
-    if (from.out_of_memory)
+    if (from->out_of_memory)
         status = ss_out_of_memory(error);
     else if (!opened)
         status = ss_fail(error, SKINSLIDE_BAD_IMAGE, "not an OpenEXR file, or a truncated or corrupt one%s%s",
-                         from.said[0] ? ": " : "", from.said);
+                         from->said[0] ? ": " : "", from->said);
     else
         status = choose_channel(file, channel ? channel : "", &chosen, error);
     if (!status)
-        status = decode_selection(file, &chosen, &from, out, error);
+        status = decode_selection(file, &chosen, from, out, error);
     exr_finish(&file);
     return status;
+}
+
+skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const char *channel, skinslide_image **out,
+                                      skinslide_error *error) {
+    static const uint8_t nothing = 0;
+    if (!out || size < 0 || (size && !bytes))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no bytes, or no place for the image");
+    source from = {.bytes = bytes ? bytes : &nothing, .size = size};
+    return decode(&from, channel, out, error);
+}
+
+skinslide_status skinslide_exr_read(int32_t descriptor, int64_t offset, int64_t size, const char *channel,
+                                    skinslide_image **out, skinslide_error *error) {
+    if (!out || offset < 0 || size < 0 || size > INT64_MAX - offset)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no bytes, or no place for the image");
+    source from = {.descriptor = descriptor, .offset = offset, .size = size};
+    return decode(&from, channel, out, error);
 }
 
 void skinslide_image_destroy(skinslide_image *image) {

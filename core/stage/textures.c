@@ -257,10 +257,12 @@ static skinslide_status decode(const ss_texture *texture, const skinslide_stage_
     if (file->byte_count > largest_file)
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": has %lld bytes; more than %lld are refused",
                        SS_NAME(texture->name), SS_FILE(file->path), (long long)file->byte_count, (long long)largest_file);
-    if (!file->bytes)
+    if (!file->bytes && !file->descriptor)
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": cannot be read%s%.160s", SS_NAME(texture->name),
                        SS_FILE(file->path), file->reason ? ": " : "", file->reason ? file->reason : "");
-    skinslide_status status = skinslide_exr_decode(file->bytes, file->byte_count, channel, image, &inner);
+    skinslide_status status =
+        file->bytes ? skinslide_exr_decode(file->bytes, file->byte_count, channel, image, &inner)
+                    : skinslide_exr_read(*file->descriptor, file->offset, file->byte_count, channel, image, &inner);
     return status ? of_map(texture, file->path, status, &inner, error) : SKINSLIDE_OK;
 }
 

@@ -8,6 +8,9 @@
 #include "pxr/usd/sdf/assetPath.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
 
 namespace skinslide {
 
@@ -15,17 +18,36 @@ namespace skinslide {
 
 namespace {
 
-// The bytes of a resolved file; false where it cannot be read. Those of one that is too large are not read.
-bool readBytes(const ArResolvedPath &path, int64_t largest, std::vector<uint8_t> *bytes, int64_t *size) {
-    std::shared_ptr<ArAsset> asset = isIrregular(path) ? nullptr : ArGetResolver().OpenAsset(path);
-    if (!asset)
-        return false;
-    *size = static_cast<int64_t>(asset->GetSize());
-    if (*size > largest)
-        return false;
-    bytes->resize(asset->GetSize());
-    return bytes->empty() || asset->Read(bytes->data(), bytes->size(), 0) == bytes->size();
-}
+// A resolved file, open where it can be read.
+class Content {
+  public:
+    // Of one that is larger, nothing is read.
+    Content(const ArResolvedPath &path, int64_t largest)
+        : _asset(isIrregular(path) ? nullptr : ArGetResolver().OpenAsset(path)) {
+        size_t size = _asset ? _asset->GetSize() : 0;
+        _size = static_cast<int64_t>(size);
+        if (!_asset || _size > largest)
+            return;
+        auto [file, offset] = _asset->GetFileUnsafe();
+        _offset = static_cast<int64_t>(offset);
+        if (file)
+            _descriptor = fileno(file);
+        else if (_bytes.resize(size + 1); _asset->Read(_bytes.data(), size, 0) != size)
+            _bytes.clear();
+    }
+
+    void describe(skinslide_stage_file *file) const {
+        file->byte_count = _size, file->offset = _offset;
+        file->bytes = _bytes.empty() ? nullptr : _bytes.data();
+        file->descriptor = _descriptor < 0 ? nullptr : &_descriptor;
+    }
+
+  private:
+    std::shared_ptr<ArAsset> _asset;
+    std::vector<uint8_t> _bytes; // and one more, so that there are some
+    int32_t _descriptor = -1;
+    int64_t _size = 0, _offset = 0;
+};
 
 // Gives every file that is asked for, and adds its path, resolved, to `files`, which may be null. Throws Fault.
 void giveFiles(skinslide_stage_controls *controls, std::set<std::string> *files) {
@@ -34,14 +56,14 @@ void giveFiles(skinslide_stage_controls *controls, std::set<std::string> *files)
         ArResolvedPath resolved = ArGetResolver().Resolve(need->path);
         if (files)
             files->insert(pathFor(need->path));
-        std::vector<uint8_t> bytes;
-        static const uint8_t nothing = 0;
+        std::optional<Content> content;
         std::string path = resolved.GetPathString();
         skinslide_stage_file file = SKINSLIDE_STAGE_FILE_DEFAULT;
         file.path = resolved ? path.c_str() : nullptr;
-        if (resolved && !skinslide_stage_controls_holds(controls, path.c_str()) &&
-            readBytes(resolved, need->largest, &bytes, &file.byte_count))
-            file.bytes = bytes.empty() ? &nothing : bytes.data();
+        if (resolved && !skinslide_stage_controls_holds(controls, path.c_str())) {
+            content.emplace(resolved, need->largest);
+            content->describe(&file);
+        }
         call(skinslide_stage_controls_give, controls, &file);
     }
 }

@@ -43,9 +43,17 @@ typedef struct skinslide_image {
  *   out      out, the caller's to destroy
  * Fails with BAD_IMAGE (not OpenEXR, truncated, corrupt, empty, deep, no such channel: names those there are), UNSUPPORTED (a
  * channel of whole numbers or of fewer texels than the image, another compression, more than 16384 * 16384 texels,
- * chunks of more than 1 GiB), OUT_OF_MEMORY. Nothing is allocated for texels before the header is known to fit the file. */
+ * chunks of more than 1 GiB or more than 4194304 of them), OUT_OF_MEMORY. Nothing is allocated for texels before the header is
+ * known to fit the file. */
 SKINSLIDE_API skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const char *channel,
                                                     skinslide_image **out, skinslide_error *error);
+
+/* The same of a file that lies open, of which no more is read, and is in memory at a time, than is needed.
+ *   descriptor  in  that of the file, which is read by pread(): its own place in the file stays
+ *   offset      in  where the OpenEXR file begins in it: above 0 in a package
+ *   size        in  bytes of the OpenEXR file; where there are fewer by now, it is a truncated one */
+SKINSLIDE_API skinslide_status skinslide_exr_read(int32_t descriptor, int64_t offset, int64_t size, const char *channel,
+                                                  skinslide_image **out, skinslide_error *error);
 
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_image_destroy(skinslide_image *image);

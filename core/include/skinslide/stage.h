@@ -396,13 +396,15 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_need(skinslide_stage_con
 typedef struct skinslide_stage_file {
     size_t size;          /* sizeof(skinslide_stage_file) */
     const char *path;     /* as it was resolved; NULL: there is no such file */
-    const uint8_t *bytes; /* [byte_count] all of it; NULL: it cannot be read, is too large, or its image is held already */
+    const uint8_t *bytes; /* [byte_count] all of it; NULL: it is open, cannot be read, is too large, or its image is held */
     int64_t byte_count;
-    const char *reason; /* why it cannot be read; NULL: nobody knows, or it was read */
+    const char *reason;        /* why it cannot be read; NULL: nobody knows, or it was read */
+    const int32_t *descriptor; /* of an open file that has the bytes, as for skinslide_exr_read; NULL: there is none */
+    int64_t offset;            /* where they begin in it */
 } skinslide_stage_file;
 
 #define SKINSLIDE_STAGE_FILE_DEFAULT                                                                                           \
-    { sizeof(skinslide_stage_file), 0, 0, 0, 0 }
+    { sizeof(skinslide_stage_file), 0, 0, 0, 0, 0, 0 }
 
 /* Whether the image of a file is held from the time before, for the texture that is asked for: its bytes are then not
  * needed. */

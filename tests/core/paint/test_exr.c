@@ -1,25 +1,57 @@
 /* OpenEXR files in and out of memory: every kind against the texels it was made of, and every bad one refused. */
+#define _XOPEN_SOURCE 700 /* ftruncate, getrusage */
 #include "exrfiles.h"
 #include "skinslide/paint.h"
 #include "support.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 static skinslide_error error;
 
+enum { BEFORE = 7 }; /* bytes of something else, in front of a file that lies in another */
+
+/* The file, in one that lies open, and goes on in zeros to its size. */
+static skinslide_status read_open(exr_file file, int64_t size, const char *channel, skinslide_image **image,
+                                  skinslide_error *said) {
+    FILE *open = tmpfile();
+    assert_non_null(open);
+    assert_int_equal(fwrite("before", 1, BEFORE, open), BEFORE);
+    assert_int_equal(fwrite(file.bytes, 1, (size_t)file.size, open), (size_t)file.size);
+    assert_int_equal(fflush(open), 0);
+    if (size > file.size)
+        assert_int_equal(ftruncate(fileno(open), (off_t)(BEFORE + size)), 0);
+    skinslide_status status = skinslide_exr_read(fileno(open), BEFORE, size, channel, image, said);
+    assert_int_equal(lseek(fileno(open), 0, SEEK_CUR), BEFORE + file.size);
+    fclose(open);
+    return status;
+}
+
 static skinslide_image *read_channel(exr_file file, const char *channel) {
-    skinslide_image *image = NULL;
+    skinslide_image *image = NULL, *same = NULL;
     assert_ok(skinslide_exr_decode(file.bytes, file.size, channel, &image, &error), &error);
+    assert_ok(read_open(file, file.size, channel, &same, &error), &error);
+    assert_int_equal(same->width, image->width);
+    assert_int_equal(same->height, image->height);
+    assert_same_bytes(same->pixels, image->pixels, (size_t)image->width * (size_t)image->height * sizeof *image->pixels);
+    skinslide_image_destroy(same);
     return image;
 }
 
 static skinslide_status status_of(exr_file file, const char *channel) {
-    skinslide_image *image = NULL;
+    skinslide_image *image = NULL, *same = NULL;
+    skinslide_error other;
     skinslide_status status = skinslide_exr_decode(file.bytes, file.size, channel, &image, &error);
     assert_int_equal(image == NULL, status != SKINSLIDE_OK);
+    assert_int_equal(read_open(file, file.size, channel, &same, &other), status);
+    if (status)
+        assert_string_equal(other.message, error.message);
     skinslide_image_destroy(image);
+    skinslide_image_destroy(same);
     return status;
 }
 
@@ -256,6 +288,45 @@ static void windows_that_cannot_be(void **state) {
                           "truncated or corrupt: row 0 of 37 cannot be decoded...");
 }
 
+/* 4 GB without a block on the disk, of which the header alone is read. */
+static void assert_large_refused(const int32_t box[4], skinslide_status expected, const char *text) {
+    exr_part part = plain;
+    exr_file file = write_exr(&part, 1);
+    skinslide_image *image = NULL;
+    memcpy(attribute(file, "dataWindow", "box2i"), box, 16);
+    memcpy(attribute(file, "displayWindow", "box2i"), box, 16);
+    memset(file.bytes + file.size - 21 * 37 * 16, 0, 21 * 37 * 16);
+    assert_fails(read_open(file, (int64_t)4 << 30, "", &image, &error), &error, expected, text);
+    assert_null(image);
+    free(file.bytes);
+}
+
+static void large_files_of_nothing(void **state) {
+    (void)state;
+    struct rusage before, after;
+    getrusage(RUSAGE_SELF, &before);
+    assert_large_refused((int32_t[4]){0, 0, 16383, 16383}, SKINSLIDE_BAD_IMAGE, "truncated or corrupt: row 0 of 16384...");
+    assert_large_refused((int32_t[4]){0, 0, 0, (1 << 28) - 1}, SKINSLIDE_UNSUPPORTED,
+                         "268435456 chunks of texels; more than 4194304 are refused");
+    getrusage(RUSAGE_SELF, &after);
+    assert_true(after.ru_maxrss - before.ru_maxrss <
+                512 << 10); /* kilobytes; AddressSanitizer notes an eighth of what is freed */
+}
+
+/* An attribute that says it is longer than the most of a header. */
+static void a_header_that_does_not_end(void **state) {
+    (void)state;
+    exr_part part = plain;
+    skinslide_image *image = NULL;
+    part.wrapmodes = "black";
+    exr_file file = write_exr(&part, 1);
+    const int32_t size = 1 << 27;
+    memcpy(attribute(file, "wrapmodes", "string") - 4, &size, sizeof size);
+    assert_fails(read_open(file, (int64_t)3 << 30, "", &image, &error), &error, SKINSLIDE_BAD_IMAGE,
+                 "not an OpenEXR file, or a truncated or corrupt one...");
+    free(file.bytes);
+}
+
 /* Cut anywhere, a file is refused; the message says so. */
 static void assert_needs_every_byte(exr_part part) {
     exr_file file = write_exr(&part, 1);
@@ -292,6 +363,10 @@ static void bad_arguments(void **state) {
     assert_int_equal(skinslide_exr_decode(&byte, -1, "", &image, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_exr_decode(&byte, 1, "", NULL, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_exr_decode(&byte, 1, NULL, &image, NULL), SKINSLIDE_BAD_IMAGE);
+    assert_int_equal(skinslide_exr_read(0, -1, 1, "", &image, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_exr_read(0, 1, INT64_MAX, "", &image, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_exr_read(0, 0, 1, "", NULL, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_exr_read(-1, 0, 1, "", &image, &error), SKINSLIDE_BAD_IMAGE);
     skinslide_image_destroy(NULL);
     skinslide_bytes_destroy(NULL);
 }
@@ -378,6 +453,8 @@ int main(void) {
         cmocka_unit_test(wraps_are_read),
         cmocka_unit_test(kinds_that_are_no_map),
         cmocka_unit_test(windows_that_cannot_be),
+        cmocka_unit_test(large_files_of_nothing),
+        cmocka_unit_test(a_header_that_does_not_end),
         cmocka_unit_test(truncated_files),
         cmocka_unit_test(bad_arguments),
         cmocka_unit_test(what_is_written_is_read_back),

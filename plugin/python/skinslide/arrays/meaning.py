@@ -385,6 +385,7 @@ class File(NamedTuple):
     content: bytes | None = None
     size: int = 0
     reason: str | None = None
+    descriptor: int | None = None  # of an open file that has the content
 
 
 class Texture(NamedTuple):
@@ -597,6 +598,8 @@ class _Native:
         struct = self._sized("stage_file", path=file.path, reason=file.reason, byte_count=file.size)
         if file.content is not None:
             struct.bytes = self._keep(ffi.from_buffer("uint8_t[]", file.content))
+        if file.descriptor is not None:
+            struct.descriptor = self._keep(ffi.new("int32_t *", file.descriptor))
         return struct
 
     def _facts(self, facts: PrimFacts) -> Any:

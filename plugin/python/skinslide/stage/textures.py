@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 
 from pxr import Ar, Sdf, Tf, Usd, UsdShade
 
+from skinslide.arrays.apart import apart
 from skinslide.arrays.meaning import ControlsMeaning, File, inputs, is_texture
 from skinslide.stage.values import FIRST, Source, layer_of
-
-_MAGIC = b"\x76\x2f\x31\x01"  # of OpenEXR
-_START = 8  # bytes that tell OpenEXR whether a file is one: the magic number and the version
 
 
 def give_files(controls: ControlsMeaning) -> None:
     """Gives every file that is asked for. Raises Fault."""
     while need := controls.need():
-        controls.give(_file(controls, Ar.GetResolver().Resolve(need.path).GetPathString(), need.largest))
+        resolved = Ar.GetResolver().Resolve(need.path).GetPathString()
+        with _file(controls, resolved, need.largest) as file:
+            apart(controls.give, file)
 
 
 def texture_files(prim: Usd.Prim, patch: str) -> Iterator[str]:
@@ -37,21 +38,29 @@ def _all_files(attribute: Usd.Attribute, time: Usd.TimeCode, asset: Sdf.AssetPat
         yield asset.resolvedPath
 
 
-def _file(controls: ControlsMeaning, path: str, largest: int) -> File:
+@contextmanager
+def _file(controls: ControlsMeaning, path: str, largest: int) -> Iterator[File]:
     """A resolved file, which may lie in a package."""
+    with ExitStack() as closing:
+        try:
+            file = _opened(controls, path, largest, closing)
+        except (OSError, RuntimeError, Tf.ErrorException) as error:
+            file = File(path, reason=" ".join(str(error).split()))
+        yield file
+
+
+def _opened(controls: ControlsMeaning, path: str, largest: int, closing: ExitStack) -> File:
     if not path or controls.holds(path):
         return File(path or None)
-    if os.path.exists(path) and not os.path.isfile(path):
+    if os.path.isfile(path):
+        descriptor = os.open(path, os.O_RDONLY)
+        closing.callback(os.close, descriptor)
+        return File(path, size=os.fstat(descriptor).st_size, descriptor=descriptor)
+    if os.path.exists(path):
         return File(path)  # opening a pipe would wait for ever
-    try:
-        asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
-        size = asset.GetSize() if asset else 0
-        if not asset or size > largest:
-            return File(path, size=size)
-        with asset as opened:
-            start = opened.Read(min(_START, size), 0) if size else b""
-            # What is no image may be large, and is told by its start alone.
-            content = opened.GetBuffer() or b"" if start.startswith(_MAGIC) else start
-            return File(path, content, len(content))
-    except (OSError, RuntimeError, Tf.ErrorException) as error:
-        return File(path, reason=" ".join(str(error).split()))
+    asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
+    size = asset.GetSize() if asset else 0
+    if not asset or size > largest:
+        return File(path, size=size)
+    with asset as opened:
+        return File(path, opened.GetBuffer() or b"", size)
