@@ -59,8 +59,7 @@ void ss_measure_stretch(ss_evener *evener) {
     }
 }
 
-/* Every vertex is where it was, and so is the stretch. Places are those of vertices that have slid. */
-static void go_home(ss_evener *evener) {
+void ss_go_home(ss_evener *evener) {
     const ss_patch *patch = evener->sheet->patch;
     memcpy(evener->at, evener->pose.point, (size_t)patch->vertex_count * sizeof *evener->at);
     memset(evener->slide, 0, (size_t)patch->vertex_count * sizeof *evener->slide);
@@ -164,9 +163,15 @@ bool ss_take_step(ss_evener *evener) {
     return cut;
 }
 
-/* All steps from home, by weights [vertex_count]. */
-static skinslide_status slide_by(ss_evener *evener, const ss_frame *frame, const double *weight, int32_t *cut,
-                                 skinslide_error *error) {
+void ss_set_out(ss_evener *evener, const ss_frame *frame) {
+    ss_posed_set(&evener->pose, frame->points);
+    ss_go_home(evener);
+    evener->scale = find_scale(evener, frame->paint);
+    ss_stiffen_holds(evener, frame->holds);
+}
+
+skinslide_status ss_slide_by(ss_evener *evener, const ss_frame *frame, const double *weight, int32_t *cut,
+                             skinslide_error *error) {
     skinslide_status status = ss_need_stiffness(evener, frame, weight, evener->next_hold, error);
     for (int step = 0; step < STEPS && !status && !ss_is_set(frame->stop); step++) {
         if (step > 0)
@@ -177,8 +182,13 @@ static skinslide_status slide_by(ss_evener *evener, const ss_frame *frame, const
     return status;
 }
 
-/* What the largest of the weights leaves of the slide. */
-static void scale_slide(ss_evener *evener) {
+void ss_keep_whole(ss_evener *evener) {
+    memcpy(evener->whole, evener->slide, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
+}
+
+void ss_scale_slide(ss_evener *evener) {
+    if (evener->most_weight == 1)
+        return;
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         for (int j = 0; j < 2; j++)
             evener->slide[v][j] *= evener->most_weight, evener->step[v][j] = 0;
@@ -187,18 +197,15 @@ static void scale_slide(ss_evener *evener) {
 
 skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
-    ss_posed_set(&evener->pose, frame->points);
-    go_home(evener);
-    evener->scale = find_scale(evener, frame->paint);
-    ss_stiffen_holds(evener, frame->holds);
+    ss_set_out(evener, frame);
     if (ss_share_weights(evener, frame)) {
-        status = slide_by(evener, frame, evener->sheet->slides, cut, error);
-        memcpy(evener->whole, evener->slide, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
-        go_home(evener);
+        status = ss_slide_by(evener, frame, evener->sheet->slides, cut, error);
+        ss_keep_whole(evener);
+        ss_go_home(evener);
     }
     if (!status)
-        status = slide_by(evener, frame, evener->next_weight, cut, error);
-    if (!status && evener->most_weight < 1)
-        scale_slide(evener);
+        status = ss_slide_by(evener, frame, evener->next_weight, cut, error);
+    if (!status)
+        ss_scale_slide(evener);
     return status;
 }

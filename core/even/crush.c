@@ -40,14 +40,10 @@ static void spread(ss_evener *evener) {
         crush[v] = 0.5 * sum[v];
 }
 
-void ss_measure_crush(ss_evener *evener) {
+void ss_stiffen_holds(ss_evener *evener, const double *holds) {
     measure(evener);
     for (int i = 0; i < SPREADS; i++)
         spread(evener);
-}
-
-void ss_stiffen_holds(ss_evener *evener, const double *holds) {
-    ss_measure_crush(evener);
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++) {
         double x = STEEPNESS * evener->crush[v];
         evener->next_hold[v] = holds[v] * (1 + evener->temper.most_stiffened * x / (1 + x));

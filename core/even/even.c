@@ -40,7 +40,18 @@ static skinslide_status create(const ss_patch *patch, const float *rest_points, 
     return SKINSLIDE_OK;
 }
 
+const ss_sheet *ss_sheet_of(const ss_rest *rest) {
+    return ((const even_rest *)rest)->sheet;
+}
+
 /* ---- Once a thread ---- */
+
+skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error) {
+    slide->rest = rest;
+    slide->flat = (ss_flat){.corner = (const double(*)[2])ss_sheet_of(rest)->flat};
+    slide->places = SS_NEW(memory, ss_place, rest->patch->free_count);
+    return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+}
 
 static void close_slide(ss_slide *slide) {
     even_slide *own = (even_slide *)slide;
@@ -55,12 +66,9 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
     even_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
-    const ss_sheet *sheet = ((const even_rest *)rest)->sheet;
-    own->head.rest = rest, own->head.flat.corner = (const double(*)[2])sheet->flat;
-    own->head.places = SS_NEW(&own->memory, ss_place, rest->patch->free_count);
-    skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
     if (!status)
-        status = ss_evener_create(sheet, temper, &own->evener, error);
+        status = ss_evener_create(ss_sheet_of(rest), temper, &own->evener, error);
     if (status)
         close_slide(&own->head);
     else
@@ -70,24 +78,25 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
 
 /* ---- In every frame ---- */
 
-static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    ss_evener *evener = ((even_slide *)slide)->evener;
+void ss_end_slide(ss_evener *evener, const ss_frame *frame, ss_slide *slide, skinslide_patch_result *result) {
     double time = ss_now();
-    skinslide_status status = ss_even_out(evener, frame, &result->cut_steps, error);
-    if (!status)
-        ss_write_places(evener, slide->places);
+    ss_write_places(evener, slide->places);
+    if (frame->limits)
+        ss_limit_ways(evener, frame, slide->places);
+    result->folded_faces = ss_count_turned_over(evener->sheet, slide->places, evener->at, evener->up);
+    ss_lap(&time, &result->relax_seconds);
+}
+
+static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
+    double time = ss_now();
+    skinslide_status status = ss_even_out(((even_slide *)slide)->evener, frame, &result->cut_steps, error);
     ss_lap(&time, &result->relax_seconds);
     return status;
 }
 
 static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
     (void)error;
-    ss_evener *evener = ((even_slide *)slide)->evener;
-    double time = ss_now();
-    if (frame->limits)
-        ss_limit_ways(evener, frame, slide->places);
-    result->folded_faces = ss_count_turned_over(evener->sheet, slide->places, evener->at, evener->up);
-    ss_lap(&time, &result->relax_seconds);
+    ss_end_slide(((even_slide *)slide)->evener, frame, slide, result);
     return SKINSLIDE_OK;
 }
 

@@ -93,6 +93,18 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_ev
 void ss_evener_destroy(ss_evener *evener);
 /* Slides every vertex from its own place. Adds to *cut how many of the steps were cut short by a face. Fails with SINGULAR. */
 skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error);
+
+/* What that is made of. To begin a frame: every vertex at its own place, the scale, and how the frame crushes and holds. */
+void ss_set_out(ss_evener *evener, const ss_frame *frame);
+/* Every vertex back at its own place. */
+void ss_go_home(ss_evener *evener);
+/* The steps from there, by weights [vertex_count]. */
+skinslide_status ss_slide_by(ss_evener *evener, const ss_frame *frame, const double *weight, int32_t *cut,
+                             skinslide_error *error);
+/* Keeps the slide for what shares are of. */
+void ss_keep_whole(ss_evener *evener);
+/* In the end: leaves of the slide what the largest of the weights does. */
+void ss_scale_slide(ss_evener *evener);
 /* Measures the stretch where vertices are. */
 void ss_measure_stretch(ss_evener *evener);
 /* s(z), z over the scale, and how fast that changes with z. */
@@ -127,9 +139,8 @@ void ss_pull_to_shares(ss_evener *evener, const double (*whole)[2], double (*rig
 
 /* ---- crush.c ---- */
 
-/* How much the cache, whose stretch and scale the evener has, crushes skin. */
-void ss_measure_crush(ss_evener *evener);
-/* Measures it, and makes next_hold of holds [vertex_count]: stiffer there. */
+/* Finds how much the cache, whose stretch and scale the evener has, crushes skin, and makes next_hold of holds [vertex_count]:
+ * stiffer there. */
 void ss_stiffen_holds(ss_evener *evener, const double *holds);
 
 /* ---- scale.c ---- */
@@ -150,7 +161,13 @@ bool ss_is_turned(const ss_patch *patch, int32_t face, const double (*at)[3], co
 /* Faces that places [free_count] turn over on the rest surface. normal is scratch [vertex_count]. */
 int32_t ss_count_turned_over(const ss_sheet *sheet, const ss_place *places, double (*at)[3], double (*normal)[3]);
 
-/* ---- even.c ---- */
+/* ---- even.c: what rules that even out share, and the plain one ---- */
+
+const ss_sheet *ss_sheet_of(const ss_rest *rest);
+/* Fills what every slide begins with. */
+skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error);
+/* Writes where the evener has vertices, no farther than the frame lets them be, and counts what turned over. */
+void ss_end_slide(ss_evener *evener, const ss_frame *frame, ss_slide *slide, skinslide_patch_result *result);
 
 extern const ss_rule ss_even_rule;
 

@@ -182,6 +182,11 @@ typedef struct ss_patch {
     ss_triangles triangles;
 } ss_patch;
 
+/* The paper's rules lay patches out in the plane; the others slide on the rest surface. */
+static inline bool ss_has_plane(skinslide_rule rule) {
+    return rule == SKINSLIDE_RULE_UNIT || rule == SKINSLIDE_RULE_FAST;
+}
+
 /* The mesh's weld must outlive the patch. */
 skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,
                                  const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,

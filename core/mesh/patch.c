@@ -25,7 +25,7 @@ int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex) {
 
 /* Of the rules, those of the plane need a surface whose vertices have each one fan of faces. */
 static bool splits_vertices(const ss_patch *patch) {
-    return patch->setup->rule == SKINSLIDE_RULE_EVEN;
+    return !ss_has_plane(patch->setup->rule);
 }
 
 /* Corners hold mesh vertices before, patch vertices after; edges keep their numbers, since the order of vertices is kept. */

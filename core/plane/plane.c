@@ -206,8 +206,7 @@ static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide
         return status;
     locate(own, result);
     if (frame->limits) {
-        result->clamped_vertices +=
-            ss_travel(own->traveller, frame->points, slide->flat.uv, (ss_allowance){NULL, frame->limits}, slide->places);
+        result->clamped_vertices += ss_travel(own->traveller, frame->points, slide->flat.uv, frame->limits, slide->places);
         ss_ask_where_found(slide);
     }
     ss_lap(&time, &result->locate_seconds);

@@ -1,48 +1,26 @@
-/* The relaxed rule: the patch laid out in the plane once, at rest, and each vertex slid in it until the deformed surface is as
- * little stretched as it can be. */
+/* The rule `relaxed`: its functions, as every rule has them. What is made of a patch at rest is what `even` makes of it. */
 #include "relax.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-typedef struct relaxed_rest {
-    ss_rest head;
-    ss_chart *chart;
-    ss_system *system; /* of what the blocks of a step join */
-} relaxed_rest;
 
 typedef struct relaxed_slide {
     ss_slide head;
     ss_memory memory;
     ss_relaxer *relaxer;
-    ss_traveller *traveller; /* NULL before the first way that is cut short */
 } relaxed_slide;
 
 /* ---- Once a shot ---- */
 
-static void destroy(ss_rest *rest) {
-    relaxed_rest *own = (relaxed_rest *)rest;
-    ss_chart_destroy(own->chart);
-    ss_system_destroy(own->system);
-    free(own);
-}
-
 static skinslide_status create(const ss_patch *patch, const float *rest_points, const double *paint, ss_rest **out,
                                skinslide_error *error) {
-    relaxed_rest *own = calloc(1, sizeof *own);
-    if (!own)
-        return ss_out_of_memory(error);
-    ss_net net = ss_net_of(patch, patch->fixed);
-    skinslide_status status = ss_chart_create(patch, rest_points, &own->chart, error);
+    skinslide_status status = ss_even_rule.create(patch, rest_points, paint, out, error);
     if (!status)
-        status = ss_system_create(&net, patch->label, &own->system, error);
-    if (status) {
-        destroy(&own->head);
-        return status;
-    }
-    own->head = (ss_rest){.rule = &ss_relaxed_rule, .patch = patch, .paint = paint, .uv = own->chart->uv};
-    *out = &own->head;
-    return SKINSLIDE_OK;
+        (*out)->rule = &ss_relaxed_rule;
+    return status;
+}
+
+static void destroy(ss_rest *rest) {
+    ss_even_rule.destroy(rest);
 }
 
 /* ---- Once a thread ---- */
@@ -50,7 +28,6 @@ static skinslide_status create(const ss_patch *patch, const float *rest_points, 
 static void close_slide(ss_slide *slide) {
     relaxed_slide *own = (relaxed_slide *)slide;
     ss_relaxer_destroy(own->relaxer);
-    ss_traveller_destroy(own->traveller);
     ss_free(&own->memory);
     free(own);
 }
@@ -58,16 +35,12 @@ static void close_slide(ss_slide *slide) {
 static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
                                    skinslide_error *error) {
     (void)idbuffer, (void)number; /* nothing is looked up */
-    const relaxed_rest *of = (const relaxed_rest *)rest;
     relaxed_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
-    own->head.rest = rest, own->head.flat.uv = rest->uv;
-    own->head.asked = ss_new(&own->memory, rest->patch->free_count, sizeof *own->head.asked);
-    own->head.places = SS_NEW(&own->memory, ss_place, rest->patch->free_count);
-    skinslide_status status = own->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
     if (!status)
-        status = ss_relaxer_create(of->chart, of->system, &own->relaxer, error);
+        status = ss_relaxer_create(ss_sheet_of(rest), &own->relaxer, error);
     if (status)
         close_slide(&own->head);
     else
@@ -78,34 +51,16 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
 /* ---- In every frame ---- */
 
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    (void)error;
+    ss_relaxer *relaxer = ((relaxed_slide *)slide)->relaxer;
     double time = ss_now();
-    result->relax_steps = ss_relax(((relaxed_slide *)slide)->relaxer, frame, slide->places);
+    skinslide_status status = ss_relax(relaxer, frame, &result->relax_steps, &result->cut_steps, error);
     ss_lap(&time, &result->relax_seconds);
-    return SKINSLIDE_OK;
+    return status;
 }
 
-static bool slides_fully(const ss_patch *patch, const ss_frame *frame) {
-    for (int32_t i = 0; i < patch->free_count; i++)
-        if (frame->weights[i] != 1)
-            return false;
-    return !frame->limits;
-}
-
-/* Cuts the ways short that the artist does not want whole. */
 static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    relaxed_slide *own = (relaxed_slide *)slide;
-    double time = ss_now();
-    if (!slides_fully(slide->rest->patch, frame)) {
-        skinslide_status status = ss_traveller_need(slide->rest->patch, &own->traveller, error);
-        if (status)
-            return status;
-        result->clamped_vertices = ss_travel(own->traveller, frame->points, slide->flat.uv,
-                                             (ss_allowance){frame->weights, frame->limits}, slide->places);
-    }
-    result->folded_faces = ss_count_turned(own->relaxer, slide->places);
-    ss_ask_where_found(slide);
-    ss_lap(&time, &result->relax_seconds);
+    (void)error;
+    ss_end_slide(((relaxed_slide *)slide)->relaxer->evener, frame, slide, result);
     return SKINSLIDE_OK;
 }
 

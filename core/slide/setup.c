@@ -13,9 +13,9 @@ static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslid
     if (setup->interpolation == SKINSLIDE_INTERPOLATION_LIMIT && !ss_is_subdivided(mesh))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: interpolation limit needs a mesh that is subdivided",
                        setup->name);
-    if (setup->holes == SKINSLIDE_HOLES_FREE_ALL && setup->rule != SKINSLIDE_RULE_EVEN)
+    if (setup->holes == SKINSLIDE_HOLES_FREE_ALL && ss_has_plane(setup->rule))
         return ss_fail(error, SKINSLIDE_UNSUPPORTED,
-                       "patch %s: holes freeAll, which frees the outer boundary too, needs rule even", setup->name);
+                       "patch %s: holes freeAll, which frees the outer boundary too, needs rule relaxed or even", setup->name);
     return SKINSLIDE_OK;
 }
 

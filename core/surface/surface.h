@@ -97,9 +97,7 @@ double ss_measure(ss_meter *meter, int32_t triangle, const double rates[3], doub
 
 /* ---- walk.c: triangle and weights change, uv does not until the place settles ---- */
 
-/* Walks straight in the plane to uv, or to the border. */
-void ss_walk(const ss_posed *plane, ss_place *place, const double uv[2]);
-/* The same, but no farther than limit measured in the pose. Returns how far. */
+/* Walks straight in the plane to uv, or to the border, no farther than limit measured in the pose. Returns how far. */
 double ss_walk_measured(const ss_posed *plane, const ss_posed *pose, ss_place *place, const double uv[2], double limit);
 /* For a place on the border: the direction in which faces go round it there, and a walk along it that far. */
 void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]);
@@ -129,6 +127,9 @@ bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *gro
 void ss_ground_set(ss_ground *ground, const float *points);
 /* The unit normal at a place. */
 void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out[3]);
+/* A vector tangent at a unit normal, turned by the least rotation that takes this to another; false where they are nearly
+ * opposite. */
+bool ss_turn(const double from[3], const double to[3], const double vector[3], double out[3]);
 
 /* ---- turned.c ---- */
 
@@ -142,19 +143,13 @@ void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place 
 
 typedef struct ss_traveller ss_traveller; /* memory of one thread for one patch */
 
-/* How far along its way from its own place each free vertex goes, in their order. */
-typedef struct ss_allowance {
-    const double *shares; /* [free_count] of the way, NULL: all of it */
-    const double *limits; /* [free_count] at most, along the surface; NULL: no limit */
-} ss_allowance;
-
 /* Makes one where there is none yet. */
 skinslide_status ss_traveller_need(const ss_patch *patch, ss_traveller **traveller, skinslide_error *error);
 void ss_traveller_destroy(ss_traveller *traveller);
 /* Cuts the ways short. Each leads from the vertex's own place straight through the embedding uv [vertex_count][2], or along its
- * free loop, to its place [free_count]. points is the whole mesh's. Returns how many ways a hole is in: those end at it. */
-int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*uv)[2], ss_allowance allowance,
-                  ss_place *places);
+ * free loop, to its place [free_count], and no farther than its limit [free_count] along the surface, which may be infinite. points
+ * is the whole mesh's. Returns how many ways a hole is in: those end at it. */
+int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*uv)[2], const double *limits, ss_place *places);
 
 /* ---- Rules: what each makes of a patch once a shot, once a thread and in every frame. Each is a room with a table of its
  * functions; a set-up's is chosen once, and nothing after that asks which it is. ---- */

@@ -1,5 +1,4 @@
-/* How far each vertex goes along its way: a share of it, and no farther than the artist lets it, both measured along the deformed
- * surface. The way is the straight line in the embedding from the vertex's own place to where it belongs. */
+/* How far each vertex goes along its way: no farther than the artist lets it, measured along the deformed surface. The way is the straight line in the embedding from the vertex's own place to where it belongs. */
 #include "surface.h"
 
 #include <stdlib.h>
@@ -35,17 +34,13 @@ void ss_traveller_destroy(ss_traveller *traveller) {
 /* Where a vertex may go, and what became of it. */
 typedef struct journey {
     int32_t vertex;
-    double share, limit; /* of the way, and along it */
-    ss_place place;      /* where it leads, then where it ends */
+    double limit;   /* along the way */
+    ss_place place; /* where it leads, then where it ends */
     bool cut, at_hole;
 } journey;
 
-static double allowed(const journey *j, double length) {
-    return fmin(j->share * length, j->limit);
-}
-
 static void go_along_loop(const ss_traveller *traveller, const ss_place *own, journey *j) {
-    double distance = ss_border_distance(&traveller->pose, j->vertex, &j->place), goal = allowed(j, fabs(distance));
+    double distance = ss_border_distance(&traveller->pose, j->vertex, &j->place), goal = fmin(fabs(distance), j->limit);
     j->cut = goal < fabs(distance);
     if (!j->cut)
         return;
@@ -66,7 +61,7 @@ static void go_through_plane(const ss_traveller *traveller, const ss_place *own,
     ss_place end = *own, cut = *own;
     const double *uv = j->place.uv;
     double length = ss_walk_measured(&traveller->plane, &traveller->pose, &end, uv, INFINITY);
-    double missing = rest_of_way(traveller, &end, &j->place), goal = allowed(j, length + missing);
+    double missing = rest_of_way(traveller, &end, &j->place), goal = fmin(length + missing, j->limit);
     j->cut = goal < length + missing;
     if (!j->cut)
         return;
@@ -75,24 +70,20 @@ static void go_through_plane(const ss_traveller *traveller, const ss_place *own,
     j->at_hole = goal > length && missing > 1e-6 * (length + missing); /* rounding leaves less */
 }
 
-int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*uv)[2], ss_allowance allowance,
-                  ss_place *places) {
+int32_t ss_travel(ss_traveller *traveller, const float *points, const double (*uv)[2], const double *limits, ss_place *places) {
     const ss_patch *patch = traveller->patch;
     int32_t at_holes = 0;
     ss_posed_set(&traveller->pose, points);
     ss_posed_set_plane(&traveller->plane, uv);
     for (int32_t i = 0; i < patch->free_count; i++) {
-        journey j = {.vertex = patch->free_vertex[i],
-                     .share = allowance.shares ? allowance.shares[i] : 1,
-                     .limit = allowance.limits ? allowance.limits[i] : INFINITY,
-                     .place = places[i]};
-        if (places[i].triangle == SS_STAYS || (j.share == 1 && isinf(j.limit)))
+        journey j = {.vertex = patch->free_vertex[i], .limit = limits[i], .place = places[i]};
+        if (places[i].triangle == SS_STAYS || isinf(j.limit))
             continue;
         ss_place own = ss_place_of_vertex(patch, uv, j.vertex);
         (patch->vertex_loop[j.vertex] >= 0 ? go_along_loop : go_through_plane)(traveller, &own, &j);
         if (j.cut)
             ss_place_settle(patch, uv, &j.place);
-        places[i] = j.share == 0 || j.limit == 0 ? ss_place_staying(uv[j.vertex]) : j.place;
+        places[i] = j.limit == 0 ? ss_place_staying(uv[j.vertex]) : j.place;
         at_holes += j.at_hole;
     }
     return at_holes;

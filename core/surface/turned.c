@@ -6,8 +6,7 @@
 
 #define MOST_CROSSED     1000
 #define MOST_TURNED_BACK 100
-#define LEAST_SLANT      0.1  /* cosine between the normals of place and triangle, that carrying takes for less */
-#define LEAST_TURN       1e-3 /* 1 + cosine of a turn; none is least about half a circle */
+#define LEAST_SLANT      0.1 /* cosine between the normals of place and triangle, that carrying takes for less */
 
 typedef struct walker {
     const ss_ground *ground;
@@ -17,14 +16,6 @@ typedef struct walker {
     double rates[3];       /* of the weights of its place, to its end */
     int came, turned_back; /* corner opposite the side that it came over, or -1; how often the direction led back over one */
 } walker;
-
-/* Turns the heading to a unit normal; false where that is nearly opposite. */
-static bool turn(const walker *w, const double normal[3], double out[3]) {
-    double whole = 1 + ss_dot(w->up, normal), share = ss_dot(normal, w->heading) / whole;
-    for (int k = 0; k < 3; k++)
-        out[k] = w->heading[k] - share * (w->up[k] + normal[k]);
-    return whole > LEAST_TURN;
-}
 
 /* Sets the rates in a triangle for a direction tangent at a unit normal; false where it has none there. */
 static bool aim(walker *w, const ss_facet *facet, const double normal[3], const double direction[3]) {
@@ -95,7 +86,7 @@ static bool go_over(walker *w, ss_place *place, int corner) {
         return false;
     w->came = ss_cross_side(pose->patch, place, corner);
     ss_ground_normal(w->ground, place, normal);
-    if (!turn(w, normal, direction) || !aim(w, &pose->facet[there], normal, direction))
+    if (!ss_turn(w->up, normal, w->heading, direction) || !aim(w, &pose->facet[there], normal, direction))
         return false;
     return w->rates[w->came] >= 0 || go_along_side(w, there);
 }

@@ -70,8 +70,7 @@ static void walk(const ss_posed *plane, ss_place *place, const double step[3], s
     leave(plane, place, step, rates);
     for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
         int corner;
-        double whole = ss_reach(place, rates, -1, &corner),
-               part = meter ? ss_measure(meter, place->triangle, rates, whole) : whole;
+        double whole = ss_reach(place, rates, -1, &corner), part = ss_measure(meter, place->triangle, rates, whole);
         ss_advance(place, rates, part, part < whole ? -1 : corner);
         if (corner < 0 || part < whole)
             return;
@@ -86,12 +85,6 @@ static void step_to(const ss_posed *plane, const ss_place *place, const double u
     double here[3];
     ss_place_point(plane, place, here);
     step[0] = uv[0] - here[0], step[1] = uv[1] - here[1], step[2] = 0;
-}
-
-void ss_walk(const ss_posed *plane, ss_place *place, const double uv[2]) {
-    double step[3];
-    step_to(plane, place, uv, step);
-    walk(plane, place, step, NULL);
 }
 
 double ss_walk_measured(const ss_posed *plane, const ss_posed *pose, ss_place *place, const double uv[2], double limit) {

@@ -160,23 +160,22 @@ typedef enum skinslide_boundary {
 typedef enum skinslide_holes {
     SKINSLIDE_HOLES_PINNED,  /* each where it falls at rest with the holes capped: embeddings rarely fold, and it is counted */
     SKINSLIDE_HOLES_FREE,    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
-    SKINSLIDE_HOLES_FREE_ALL /* nothing, and the outer boundary slides along itself, too: of EVEN alone */
+    SKINSLIDE_HOLES_FREE_ALL /* nothing, and the outer boundary slides along itself, too: of RELAXED and EVEN alone */
 } skinslide_holes;
 
-/* Where skin slides to. The first two are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
- * plane. RELAXED goes farther, in a plane that is laid out once. These three need a patch that is a disk with holes. EVEN
- * slides on the rest surface itself, and takes a patch with any number of handles and boundaries, or none. */
+/* Where skin slides to. UNIT and FAST are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
+ * plane; they need a patch that is a disk with holes. RELAXED and EVEN slide on the rest surface itself, and take a patch with any
+ * number of handles and boundaries, or none: corners and boundary count for nothing, and there is no embedding. */
 typedef enum skinslide_rule {
-    SKINSLIDE_RULE_UNIT,    /* 1/l */
-    SKINSLIDE_RULE_FAST,    /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
-    SKINSLIDE_RULE_RELAXED, /* to where every edge is as near its rest length as the deformed surface allows: towards a minimum
-                              of the sum of k log^2(l / rest l), k the painted force density; no face turns over. Every step
-                              there is continuous in the pose, so a slide does not jump from one minimum to another, but may
-                              go there fast. The patch is always laid out in the circle, holes pinned, and that at rest:
-                              corners and boundary count for nothing */
+    SKINSLIDE_RULE_UNIT, /* 1/l */
+    SKINSLIDE_RULE_FAST, /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
+    SKINSLIDE_RULE_RELAXED, /* to where every edge is as near its rest length as the deformed surface allows: from where EVEN leaves
+                              skin, held more, three steps on the pose itself towards a minimum of the sum of k log^2(l / rest l),
+                              k the painted force density, with compressed edges bounded as there; skin that a pose crushes stays
+                              nearer to where it was left. Smooth in the pose, as EVEN is, which is why it is no minimum */
     SKINSLIDE_RULE_EVEN /* to where the logarithms of edge lengths over rest lengths are in balance, less their median, which
-                           is the character's scale, and those of compressed edges bounded: smooth in the pose, and so in
-                           time. Corners and boundary count for nothing. There is no embedding */
+                              is the character's scale, and those of compressed edges bounded: smooth in the pose, and so in
+                              time */
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
@@ -206,11 +205,11 @@ typedef struct skinslide_controls {
     float envelope;      /* scales every weight, 0..1 (clamped, and counted once) */
     const float *weight; /* [mesh vertex_count] or NULL: 1; how far each vertex slides, 0..1 (clamped, and counted). Under LIMIT
                             a vertex of weight 0 still moves as its neighbours slide, so that its limit point stays */
-    const float *max_distance;  /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
+    const float *max_distance; /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
                                   object units; measured on the triangles that `linear` interpolates in */
-    const float *hold;          /* [mesh vertex_count] or NULL: 1; of EVEN: how much a vertex keeps to how its neighbours
+    const float *hold; /* [mesh vertex_count] or NULL: 1; of RELAXED and EVEN: how much a vertex keeps to how its neighbours
                                    slide, finite and > 0: low where surplus skin is to come from, high where it must not */
-    float stretch_response;     /* of EVEN: how much of stretch is evened out, 0..1 */
+    float stretch_response;     /* of RELAXED and EVEN: how much of stretch is evened out, 0..1 */
     float compression_response; /* and of compression */
 } skinslide_controls;
 
@@ -312,7 +311,7 @@ typedef struct skinslide_slider skinslide_slider;
  * handle; EVEN needs no boundary, takes handles, and lets vertices at which faces meet in a point stay), BAD_CONTROL (a
  * density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
  * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice),
- * SINGULAR, UNSUPPORTED (FREE_ALL by another rule than EVEN), OUT_OF_MEMORY.
+ * SINGULAR, UNSUPPORTED (FREE_ALL by UNIT or FAST), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
  * edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a hole of
  * the surface), BAD_CONTROL (the mesh is not subdivided), UNSUPPORTED (also a vertex with more than 256 faces, or a face with
@@ -467,16 +466,14 @@ typedef struct skinslide_patch_result {
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
     int32_t damped_vertices;   /* LIMIT only: brought back towards their place under LINEAR */
     int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes. Of the
-                                  relaxed rule: in the slid patch; none but by weights or largest distances that differ. Of the
-                                  even rule: on the rest surface where its corners come from */
+                                  relaxed and the even rule: on the rest surface where its corners come from */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t found_in_centre;   /* vertices in the face of their own texel of the texture */
     int32_t found_in_3x3;      /* in another face of the texels around it */
     int32_t walked_vertices;   /* found by walking */
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
     int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was walked for */
-    int32_t relax_steps;       /* of the relaxed rule: each solves for all vertices at once. 13 at most; done when one more
-                                  would lower the sum by less than 0.0003 of what it is in the cache */
+    int32_t relax_steps;       /* of the relaxed rule: those on the pose itself. 3; fewer where the next could not be solved */
     int64_t walk_steps;        /* faces entered by walking, in all */
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
@@ -487,7 +484,7 @@ typedef struct skinslide_patch_result {
     double relax_seconds;       /* of the relaxed and the even rule, in place of embedding and locating */
     double locate_seconds;      /* looking rest vertices up in the embedding */
     double interpolate_seconds; /* their places on the deformed surface; of LIMIT, the faces fitted to them, too */
-    int32_t cut_steps;          /* of the even rule: those of its four steps that faces would not have stood whole */
+    int32_t cut_steps; /* of the relaxed and the even rule: those of their steps that faces would not have stood whole */
 } skinslide_patch_result;
 
 #define SKINSLIDE_PATCH_RESULT_DEFAULT                                                                                         \

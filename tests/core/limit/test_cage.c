@@ -32,9 +32,9 @@ static skinslide_patch_setup chosen(skinslide_interpolation interpolation) {
     return setup;
 }
 
-/* One with a plane, one without. */
-enum { RULE_COUNT = 2 };
-static const skinslide_rule rules[RULE_COUNT] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_EVEN};
+/* One with a plane, two without. */
+enum { RULE_COUNT = 3 };
+static const skinslide_rule rules[RULE_COUNT] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_EVEN, SKINSLIDE_RULE_RELAXED};
 
 static skinslide_patch_setup by_rule(skinslide_rule rule, skinslide_interpolation interpolation) {
     skinslide_patch_setup setup = chosen(interpolation);

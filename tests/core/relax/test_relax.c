@@ -1,4 +1,4 @@
-/* The relaxed rule, and the largest distances of every rule. */
+/* The rule `relaxed`, where it promises more than `even`: whose own tests it passes, too. And the largest distances of every rule. */
 #include "distance.h"
 
 #include <math.h>
@@ -7,10 +7,14 @@
 
 static const float FLOAT_EPSILON = 0x1p-23f;
 
-static skinslide_patch_setup relaxed(void) {
+static skinslide_patch_setup by_rule(skinslide_rule rule) {
     skinslide_patch_setup choices = setup_of(NULL, 0);
-    choices.rule = SKINSLIDE_RULE_RELAXED;
+    choices.rule = rule, choices.interpolation = SKINSLIDE_INTERPOLATION_LINEAR;
     return choices;
+}
+
+static skinslide_patch_setup relaxed(void) {
+    return by_rule(SKINSLIDE_RULE_RELAXED);
 }
 
 static double distance(const float *a, const float *b) {
@@ -18,160 +22,112 @@ static double distance(const float *a, const float *b) {
     return sqrt(x * x + y * y + z * z);
 }
 
-/* ---- The solver ---- */
+/* ---- Parts of a step ---- */
 
-static void fill_blocks(ss_blocks *blocks, const ss_patch *patch, dice *d) {
-    ss_blocks_clear(blocks);
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        double *own = ss_blocks_own(blocks, i);
-        own[0] = 20 + roll_share(d), own[3] = 20 + roll_share(d), own[1] = own[2] = roll_share(d);
-        blocks->right[i][0] = roll_share(d), blocks->right[i][1] = roll_share(d);
-    }
-    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-        bool first_is_row;
-        if (patch->fixed[patch->edge_vertex[e][0]] || patch->fixed[patch->edge_vertex[e][1]])
-            continue;
-        double *between = ss_blocks_between(blocks, e, &first_is_row);
-        for (int k = 0; k < 4; k++)
-            between[k] = roll_between(d, -1, 1);
-    }
-}
-
-/* residual -= A x, A the filled blocks. */
-static void take_product(ss_blocks *blocks, const ss_patch *patch, const double (*x)[2], double (*residual)[2]) {
-    for (int32_t i = 0; i < patch->free_count; i++)
-        for (int j = 0; j < 2; j++)
-            for (int k = 0; k < 2; k++)
-                residual[i][j] -= ss_blocks_own(blocks, i)[2 * j + k] * x[i][k];
-    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-        int32_t a = ss_blocks_unknown(blocks, patch->edge_vertex[e][0]),
-                b = ss_blocks_unknown(blocks, patch->edge_vertex[e][1]);
-        bool first_is_row;
-        if (a < 0 || b < 0)
-            continue;
-        const double *between = ss_blocks_between(blocks, e, &first_is_row);
-        int32_t row = first_is_row ? a : b, column = first_is_row ? b : a;
-        for (int j = 0; j < 2; j++)
-            for (int k = 0; k < 2; k++) {
-                residual[row][j] -= between[2 * j + k] * x[column][k];
-                residual[column][k] -= between[2 * j + k] * x[row][j];
-            }
-    }
-}
-
-/* Rows of twenty on the diagonal and at most sixteen ones beside it: well conditioned, so a residual of rounding. */
-static void blocks_are_solved(void **state) {
+/* A sheet whose pose is a linear map of it has that map for its gradient everywhere, and its tangents mapped for axes wherever a
+ * vertex is; a vertex of no weight has none. */
+static void axes_of_a_linear_map(void **state) {
     (void)state;
-    const int going_on = 0, stop = 1;
-    test_mesh mesh = triangle_grid(9, 7);
-    ss_patch *patch = patch_of(&mesh, relaxed());
-    ss_net net = ss_net_of(patch, patch->fixed);
-    skinslide_error error;
-    ss_system *system;
-    ss_blocks *blocks;
-    assert_ok(ss_system_create(&net, "grid", &system, &error), &error);
-    assert_ok(ss_blocks_create(system, &blocks, &error), &error);
-    size_t bytes = (size_t)patch->free_count * sizeof(double[2]);
-    double(*x)[2] = malloc(bytes);
-    for (uint64_t seed = 0; seed < 2; seed++) { /* the second on what the first left */
-        dice d = {seed}, again = {seed};
-        fill_blocks(blocks, patch, &d);
-        assert_true(ss_blocks_factor(blocks, &going_on));
-        ss_blocks_solve(blocks);
-        memcpy(x, blocks->right, bytes);
-        fill_blocks(blocks, patch, &again); /* the factor is where the matrix was */
-        take_product(blocks, patch, (const double(*)[2])x, blocks->right);
-        for (int32_t i = 0; i < patch->free_count; i++)
-            assert_near(fabs(blocks->right[i][0]) + fabs(blocks->right[i][1]), 0, 1e-14);
-    }
-    assert_false(ss_blocks_factor(blocks, &stop));
-    ss_blocks_own(blocks, 3)[0] = -1;
-    assert_false(ss_blocks_factor(blocks, &going_on));
-    free(x);
-    ss_blocks_destroy(blocks);
-    ss_system_destroy(system);
-    ss_patch_destroy(patch);
-    free_mesh(&mesh);
-}
-
-/* ---- The chart ---- */
-
-/* A pose that is a linear map of the chart has that map for its gradient everywhere: shares sum to 1. */
-static void gradients_of_a_linear_map(void **state) {
-    (void)state;
-    static const double map[2][3] = {{2, -1, 0.5}, {0.25, 3, -4}};
-    test_mesh mesh = grid_with_holes(false);
-    ss_patch *patch = patch_of(&mesh, relaxed());
-    ss_chart *chart = NULL;
-    skinslide_error error;
-    assert_ok(ss_chart_create(patch, mesh.points, &chart, &error), &error);
-    int32_t count = patch->vertex_count;
-    double(*points)[3] = malloc((size_t)count * sizeof *points), (*gradient)[2][3] = malloc((size_t)count * sizeof *gradient);
-    for (int32_t v = 0; v < count; v++)
+    static const double map[3][2] = {{2, 0.25}, {-1, 3}, {0.5, -4}};
+    test_mesh mesh = grid_with_holes(true);
+    float *points = copy_points(&mesh);
+    for (int32_t v = 0; v < mesh.vertex_count; v++)
         for (int k = 0; k < 3; k++)
-            points[v][k] = chart->uv[v][0] * map[0][k] + chart->uv[v][1] * map[1][k];
-    ss_chart_gradient(chart, (const double(*)[3])points, gradient);
-    for (int32_t v = 0; v < count; v++)
-        for (int i = 0; i < 6; i++)
-            assert_near(gradient[v][i / 3][i % 3], map[i / 3][i % 3], 1e-12);
-    free(points), free(gradient);
-    ss_chart_destroy(chart);
+            points[3 * v + k] = (float)(map[k][0] * mesh.points[3 * v] + map[k][1] * mesh.points[3 * v + 1]);
+    ss_patch *patch = patch_of(&mesh, relaxed());
+    ss_sheet *sheet;
+    ss_relaxer *relaxer;
+    skinslide_error error;
+    assert_ok(ss_sheet_create(patch, mesh.points, &sheet, &error), &error);
+    assert_ok(ss_relaxer_create(sheet, &relaxer, &error), &error);
+    ss_evener *evener = relaxer->evener;
+    ss_posed_set(&evener->pose, points);
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        evener->weight[v] = !sheet->held[v];
+        evener->place[v] = ss_place_of_vertex(patch, NULL, v);
+        if (v % 2) /* anywhere in its triangle */
+            ss_place_put(&evener->place[v], evener->place[v].triangle, (double[3]){0.5, 0.2, 0.3});
+    }
+    ss_find_gradients(relaxer);
+    ss_find_axes(relaxer);
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        for (int i = 0; i < 6; i++) {
+            const double *way = sheet->tangent[v][i / 3];
+            double mapped = map[i % 3][0] * way[0] + map[i % 3][1] * way[1];
+            assert_near(relaxer->axis[v][i / 3][i % 3], sheet->held[v] ? 0 : mapped, 1e-6); /* points are floats */
+        }
+    free(points);
+    ss_relaxer_destroy(relaxer);
+    ss_sheet_destroy(sheet);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
 }
 
 /* ---- The answer ---- */
 
-/* Four quads whose right column is three wide. The middle vertex slides along its row, to x, between 0 and 4; all four of its
- * edges are 1 at rest: the lowest E is that of a search over x, a third of which is seen in the chart. What a thousandth of E
- * can change leaves x open to about its root, 0.03. */
-static double energy_of_row(double x) {
-    double up = sqrt(1 + (x - 1) * (x - 1)), hold = 4 * 0.003 * (x - 1) * (x - 1) / 9;
-    return log(x) * log(x) + log(4 - x) * log(4 - x) + 2 * log(up) * log(up) + hold;
+/* Four quads whose right column is three wide: edges that were 1 are 1 and 3 long. The middle vertex slides along its row, to x
+ * between 0 and 4; where two of its four edges are compressed their stretch is bounded at a half, and edges shorter than three
+ * tenths pull no harder for it. The balance of forces less the hold of a uniform scale: log 1, the median. */
+static double pull(double dx, double dy) {
+    double square = dx * dx + dy * dy, z = 0.5 * log(square), force = z < 0 ? z / sqrt(1 + 4 * z * z) : z;
+    return force * dx / (square + 0.09);
+}
+
+static double force_of_row(double x) {
+    double d = x < 1 ? x - 1 : (x - 1) / 3; /* in rest, a third of the way in the wide column */
+    double slope = x < 1 ? 1 : 3;
+    return slope * (pull(x, 0) - pull(4 - x, 0) + pull(x - 1, 1) + pull(x - 1, 1)) + 4 * 0.03 * d;
 }
 
 static void a_slide_by_hand(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(2, 2);
     float *points = copy_points(&mesh);
-    double best = 1;
-    for (double x = 1; x < 3; x += 1e-4)
-        best = energy_of_row(x) < energy_of_row(best) ? x : best;
+    double least = 1, most = 3;
+    for (int i = 0; i < 60; i++) {
+        double middle = 0.5 * (least + most);
+        *(force_of_row(middle) < 0 ? &least : &most) = middle;
+    }
     for (int32_t v = 0; v < mesh.vertex_count; v++)
         points[3 * v] = v % 3 == 2 ? 4 : (float)(v % 3);
     rig r = rig_of(&mesh, relaxed());
     skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
     float *slid = slide_with(&r, &mesh, points, NULL, &result);
-    assert_near(slid[3 * 4], best, 0.03);
+    assert_near(slid[3 * 4], least, 0.03);
     assert_near(slid[3 * 4 + 1], 1, 0.03); /* the fans of the faces are not symmetric */
-    assert_true(result.relax_steps > 0 && result.folded_faces == 0);
+    assert_true(result.relax_steps == 3 && result.folded_faces == 0);
     free(points), free(slid);
     free_rig(&r);
     free_mesh(&mesh);
 }
 
-/* Never above the paper's rule on a bump, and on the surface to the rounding of points to float. */
-static void stretch_is_less_than_by_force_density(void **state) {
+/* Less than by the paper's rule, and than where it sets out from, on a bump; on the surface to the rounding of points to float. */
+static void stretch_is_less_than_by_other_rules(void **state) {
     (void)state;
     for (int triangles = 0; triangles < 2; triangles++) {
         test_mesh mesh = triangles ? triangle_grid(20, 20) : quad_grid(20, 20);
         float *points = bumped(&mesh, 9, 11, 4, 5);
-        rig relax = rig_of(&mesh, relaxed()), unit = rig_of(&mesh, setup_of(NULL, 0));
-        skinslide_patch_result relax_result = SKINSLIDE_PATCH_RESULT_DEFAULT, unit_result = SKINSLIDE_PATCH_RESULT_DEFAULT;
-        float *slid = slide_with(&relax, &mesh, points, NULL, &relax_result);
-        free(slide_with(&unit, &mesh, points, NULL, &unit_result));
-        assert_true(relax_result.stretch_after < 0.99 * unit_result.stretch_after);
-        assert_int_equal(relax_result.folded_faces, 0);
+        rig relax = rig_of(&mesh, relaxed());
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+        float *slid = slide_with(&relax, &mesh, points, NULL, &result);
+        for (int32_t rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_EVEN; rule++) {
+            rig other = rig_of(&mesh, by_rule((skinslide_rule)rule));
+            skinslide_patch_result own = SKINSLIDE_PATCH_RESULT_DEFAULT;
+            free(slide_with(&other, &mesh, points, NULL, &own));
+            assert_true(rule == SKINSLIDE_RULE_RELAXED || result.stretch_after < 0.99 * own.stretch_after);
+            free_rig(&other);
+        }
+        assert_int_equal(result.folded_faces, 0);
         double size = extent_of(points, mesh.vertex_count);
         for (int32_t v = 0; v < mesh.vertex_count; v++)
             assert_near(distance_to_mesh(&mesh, points, slid + 3 * v), 0, FLOAT_EPSILON * size);
         free(points), free(slid);
-        free_rig(&relax), free_rig(&unit);
+        free_rig(&relax);
         free_mesh(&mesh);
     }
 }
 
-/* On every fixture, in poses that shear, bump and shake it: on the surface whatever the weights, nothing folded without. */
+/* On every fixture, in poses that shear, bump and shake it: on the surface whatever the weights. */
 static void slides_stay_on_the_surface(void **state) {
     (void)state;
     for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
@@ -182,18 +138,38 @@ static void slides_stay_on_the_surface(void **state) {
         painted paint = paint_at_random(&f.mesh, 3);
         for (uint64_t seed = 0; seed < 4; seed++) {
             float *points = random_pose(&f.mesh, seed);
-            skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
-            float *slid = slide_with(&r, &f.mesh, points, seed % 2 ? &paint.controls : NULL, &result);
+            float *slid = slide_with(&r, &f.mesh, points, seed % 2 ? &paint.controls : NULL, NULL);
             double size = extent_of(points, f.mesh.vertex_count);
             for (int32_t c = 0; c < f.mesh.index_count; c++)
                 assert_near(distance_to_mesh(&f.mesh, points, slid + 3 * f.mesh.face_indices[c]), 0, 2 * FLOAT_EPSILON * size);
-            assert_true(seed % 2 || result.folded_faces == 0);
             free(points), free(slid);
         }
         free_painted(&paint);
         free_rig(&r);
         free_mesh(&f.mesh);
     }
+}
+
+/* In none of these poses, which are a sample, unpainted. Disks at random are left out, whose points have no shape: rest is
+ * crumpled there, and what it turns over is counted. */
+static void nothing_turns_over(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++)
+        for (int32_t holes = SKINSLIDE_HOLES_PINNED; holes <= SKINSLIDE_HOLES_FREE; holes++) {
+            fixture f = make_fixture(i);
+            skinslide_patch_setup choices = relaxed();
+            choices.holes = (skinslide_holes)holes;
+            rig r = rig_of(&f.mesh, choices);
+            for (uint64_t seed = 0; seed < 40 && !strstr(f.name, "random"); seed++) {
+                float *points = random_pose(&f.mesh, seed);
+                skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+                free(slide_with(&r, &f.mesh, points, NULL, &result));
+                assert_int_equal(result.folded_faces, 0);
+                free(points);
+            }
+            free_rig(&r);
+            free_mesh(&f.mesh);
+        }
 }
 
 /* ---- In time ---- */
@@ -284,32 +260,13 @@ static void no_slide_jumps(void **state) {
 
 /* ---- How far ---- */
 
-/* In a plane the way is nearly straight, a little bent from triangle to triangle, so half of it is half the distance to a
- * thousandth. */
-static void half_a_slide_is_half_as_long(void **state) {
-    (void)state;
-    test_mesh mesh = quad_grid(10, 10);
-    float *points = copy_points(&mesh);
-    for (int32_t v = 0; v < mesh.vertex_count; v++)
-        points[3 * v] += 0.15f * points[3 * v] * (10 - points[3 * v]) * 0.4f;
-    rig r = rig_of(&mesh, relaxed());
-    skinslide_controls half = SKINSLIDE_CONTROLS_DEFAULT;
-    half.envelope = 0.5f;
-    float *whole = slide_with(&r, &mesh, points, NULL, NULL), *slid = slide_with(&r, &mesh, points, &half, NULL);
-    for (int32_t v = 0; v < mesh.vertex_count; v++)
-        assert_near(distance(slid + 3 * v, points + 3 * v), 0.5 * distance(whole + 3 * v, points + 3 * v), 1e-3);
-    free(points), free(whole), free(slid);
-    free_rig(&r);
-    free_mesh(&mesh);
-}
-
 /* By every rule: none goes farther, one that did not want to keeps its bits, and none at all where the limit is zero. The chord
  * is no longer than the way, and 1e-6 is rounding. */
 static void largest_distances_are_kept(void **state) {
     (void)state;
     test_mesh mesh = grid_with_holes(false);
     float *points = bumped(&mesh, 4, 6, 3, 3), *limit = calloc((size_t)mesh.vertex_count, sizeof *limit);
-    for (int32_t rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_RELAXED; rule++)
+    for (int32_t rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_EVEN; rule++)
         for (int32_t holes = SKINSLIDE_HOLES_PINNED; holes <= SKINSLIDE_HOLES_FREE; holes++) {
             skinslide_patch_setup choices = setup_of(NULL, 0);
             choices.rule = (skinslide_rule)rule, choices.holes = (skinslide_holes)holes;
@@ -357,50 +314,17 @@ static void largest_distances_are_checked(void **state) {
     free_mesh(&mesh);
 }
 
-/* ---- Loops ---- */
-
-/* A vertex of a free loop ends on a side of that loop, one of a pinned loop where it was. */
-static void free_loops_slide_along_themselves(void **state) {
-    (void)state;
-    test_mesh mesh = annulus(12, 4);
-    float *points = bumped(&mesh, 1, 0, 1, 1);
-    skinslide_patch_setup choices = relaxed();
-    choices.holes = SKINSLIDE_HOLES_FREE;
-    rig r = rig_of(&mesh, choices);
-    const ss_patch *patch = r.slider->parts[0].patch;
-    float *slid = slide_with(&r, &mesh, points, NULL, NULL);
-    int32_t moved = 0;
-    for (int32_t i = patch->loop_start[1]; i < patch->loop_start[2]; i++) {
-        const float *p = slid + 3 * patch->mesh_vertex[patch->loop_vertex[i]];
-        double here[3] = {p[0], p[1], p[2]}, nearest = INFINITY;
-        for (int32_t k = patch->loop_start[1]; k < patch->loop_start[2]; k++) {
-            int32_t next = k + 1 < patch->loop_start[2] ? k + 1 : patch->loop_start[1];
-            const float *a = points + 3 * patch->mesh_vertex[patch->loop_vertex[k]];
-            const float *b = points + 3 * patch->mesh_vertex[patch->loop_vertex[next]];
-            nearest = fmin(nearest, distance_to_triangle(here, a, b, b));
-        }
-        assert_near(nearest, 0, 1e-6);
-        moved += distance(p, points + 3 * patch->mesh_vertex[patch->loop_vertex[i]]) > 1e-3;
-    }
-    assert_true(moved > 3);
-    free(points), free(slid);
-    free_rig(&r);
-    free_mesh(&mesh);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blocks_are_solved),
-        cmocka_unit_test(gradients_of_a_linear_map),
+        cmocka_unit_test(axes_of_a_linear_map),
         cmocka_unit_test(a_slide_by_hand),
-        cmocka_unit_test(stretch_is_less_than_by_force_density),
+        cmocka_unit_test(stretch_is_less_than_by_other_rules),
         cmocka_unit_test(slides_stay_on_the_surface),
+        cmocka_unit_test(nothing_turns_over),
         cmocka_unit_test(slides_are_smooth_in_time),
         cmocka_unit_test(no_slide_jumps),
-        cmocka_unit_test(half_a_slide_is_half_as_long),
         cmocka_unit_test(largest_distances_are_kept),
         cmocka_unit_test(largest_distances_are_checked),
-        cmocka_unit_test(free_loops_slide_along_themselves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

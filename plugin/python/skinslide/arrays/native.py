@@ -32,9 +32,9 @@ class Controls:
         weight: How far each vertex slides (V,), 0 to 1; None: 1.
         envelope: Scales the slide of the whole patch, 0 to 1.
         max_distance: How far each vertex may slide along the surface (V,), in the mesh's units; None: no limit.
-        hold: How much a vertex keeps to its neighbours' slide (V,), above 0; None: 1. Of the rule even.
-        stretch_response: How much of stretch is evened out, 0 to 1. Of the rule even.
-        compression_response: How much of compression is. Of the rule even.
+        hold: How much a vertex keeps to its neighbours' slide (V,), above 0; None: 1. Of relaxed and even.
+        stretch_response: How much of stretch is evened out, 0 to 1. Of relaxed and even.
+        compression_response: How much of compression is. Of relaxed and even.
     """
 
     vertex_density: np.ndarray | None = None

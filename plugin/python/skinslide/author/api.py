@@ -153,8 +153,8 @@ class SkinSlideAPI(AppliedPatch):
 
         unit and fast balance the pull of edges in a flat layout of the patch; an edge of length l pulls with 1/l, or
         with the largest l*l of the patch less l*l. relaxed: to where every edge is as near its rest length as the
-        deformed surface allows; force density is then how much an edge counts, and corners and boundary count for
-        nothing.
+        deformed surface allows, on a patch of any shape, open or closed; force density is then how much an edge
+        counts, and corners and boundary count for nothing.
 
         Returns:
             The attribute skinSlide:NAME:forceDensityRule, token, uniform; not valid where there is none.

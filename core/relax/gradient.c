@@ -1,0 +1,81 @@
+/* How points of the pose move as their places slide over rest: of a triangle a linear map; at a vertex the mean of its
+ * triangles', by their area at rest; between vertices blended by weights. That is continuous over edges, where the triangles'
+ * own is not: what it moves does not jump as a vertex comes over one. */
+#include "relax.h"
+
+#include <string.h>
+
+/* p g' + q h', times the area at rest: p and q are sides of the pose, g and h what is dual to those of rest. */
+static void weigh_triangle(const ss_facet *rest, const double p[3], const double q[3], double area, double out[3][3]) {
+    for (int k = 0; k < 3; k++) {
+        double g = rest->gram[0] * rest->first[k] + rest->gram[1] * rest->second[k];
+        double h = rest->gram[1] * rest->first[k] + rest->gram[2] * rest->second[k];
+        for (int j = 0; j < 3; j++)
+            out[j][k] = area * (p[j] * g + q[j] * h);
+    }
+}
+
+static double area_of(const ss_facet *facet) {
+    double product[3];
+    ss_cross(facet->first, facet->second, product);
+    return ss_length(product);
+}
+
+void ss_find_gradients(ss_relaxer *relaxer) {
+    const ss_sheet *sheet = relaxer->evener->sheet;
+    const ss_triangles *triangles = &sheet->patch->triangles;
+    int32_t vertices = sheet->patch->vertex_count;
+    const double(*point)[3] = (const double(*)[3])relaxer->evener->pose.point;
+    double *sum = relaxer->evener->part;
+    memset(relaxer->gradient, 0, (size_t)vertices * sizeof *relaxer->gradient);
+    memset(sum, 0, (size_t)vertices * sizeof *sum);
+    for (int32_t t = 0; t < triangles->count; t++) {
+        const ss_facet *rest = &sheet->ground.pose.facet[t];
+        const int32_t *v = triangles->vertex[t];
+        double first[3], second[3], own[3][3], area;
+        if (!rest->has_area)
+            continue;
+        area = area_of(rest);
+        ss_subtract(point[v[1]], point[v[0]], first);
+        ss_subtract(point[v[2]], point[v[0]], second);
+        weigh_triangle(rest, first, second, area, own);
+        for (int k = 0; k < 3; k++) {
+            sum[v[k]] += area;
+            for (int j = 0; j < 3; j++)
+                ss_add(1, own[j], relaxer->gradient[v[k]][j]);
+        }
+    }
+    for (int32_t v = 0; v < vertices; v++)
+        for (int k = 0; k < 9 && sum[v] > 0; k++)
+            relaxer->gradient[v][k / 3][k % 3] /= sum[v];
+}
+
+static void blend(const ss_relaxer *relaxer, const ss_place *place, double out[3][3]) {
+    const int32_t *v = relaxer->evener->sheet->patch->triangles.vertex[place->triangle];
+    for (int k = 0; k < 9; k++) {
+        out[k / 3][k % 3] = 0;
+        for (int j = 0; j < 3; j++)
+            out[k / 3][k % 3] += place->weight[j] * relaxer->gradient[v[j]][k / 3][k % 3];
+    }
+}
+
+/* The tangents of the vertex, turned to the normal where it is, and from there into the pose. */
+static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
+    const ss_sheet *sheet = relaxer->evener->sheet;
+    const ss_place *place = &relaxer->evener->place[vertex];
+    double normal[3], gradient[3][3], way[3];
+    ss_ground_normal(&sheet->ground, place, normal);
+    blend(relaxer, place, gradient);
+    for (int j = 0; j < 2; j++) {
+        double *axis = relaxer->axis[vertex][j];
+        bool turns = ss_turn(sheet->ground.normal[vertex], normal, sheet->tangent[vertex][j], way);
+        for (int k = 0; k < 3; k++)
+            axis[k] = turns ? ss_dot(gradient[k], way) : 0;
+    }
+}
+
+void ss_find_axes(ss_relaxer *relaxer) {
+    for (int32_t v = 0; v < relaxer->evener->sheet->patch->vertex_count; v++)
+        if (relaxer->evener->weight[v] > 0)
+            set_axes(relaxer, v);
+}

@@ -1,0 +1,87 @@
+/* Systems of two by two blocks: what is solved is what was filled in. */
+#include "distance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void fill_blocks(ss_blocks *blocks, const ss_patch *patch, dice *d) {
+    ss_blocks_clear(blocks);
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        double *own = ss_blocks_own(blocks, i);
+        own[0] = 20 + roll_share(d), own[3] = 20 + roll_share(d), own[1] = own[2] = roll_share(d);
+        blocks->right[i][0] = roll_share(d), blocks->right[i][1] = roll_share(d);
+    }
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        bool first_is_row;
+        if (patch->fixed[patch->edge_vertex[e][0]] || patch->fixed[patch->edge_vertex[e][1]])
+            continue;
+        double *between = ss_blocks_between(blocks, e, &first_is_row);
+        for (int k = 0; k < 4; k++)
+            between[k] = roll_between(d, -1, 1);
+    }
+}
+
+/* residual -= A x, A the filled blocks. */
+static void take_product(ss_blocks *blocks, const ss_patch *patch, const double (*x)[2], double (*residual)[2]) {
+    for (int32_t i = 0; i < patch->free_count; i++)
+        for (int j = 0; j < 2; j++)
+            for (int k = 0; k < 2; k++)
+                residual[i][j] -= ss_blocks_own(blocks, i)[2 * j + k] * x[i][k];
+    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
+        int32_t a = ss_blocks_unknown(blocks, patch->edge_vertex[e][0]),
+                b = ss_blocks_unknown(blocks, patch->edge_vertex[e][1]);
+        bool first_is_row;
+        if (a < 0 || b < 0)
+            continue;
+        const double *between = ss_blocks_between(blocks, e, &first_is_row);
+        int32_t row = first_is_row ? a : b, column = first_is_row ? b : a;
+        for (int j = 0; j < 2; j++)
+            for (int k = 0; k < 2; k++) {
+                residual[row][j] -= between[2 * j + k] * x[column][k];
+                residual[column][k] -= between[2 * j + k] * x[row][j];
+            }
+    }
+}
+
+/* Rows of twenty on the diagonal and at most sixteen ones beside it: well conditioned, so a residual of rounding. */
+static void blocks_are_solved(void **state) {
+    (void)state;
+    const int going_on = 0, stop = 1;
+    test_mesh mesh = triangle_grid(9, 7);
+    ss_patch *patch = patch_of(&mesh, setup_of(NULL, 0));
+    ss_net net = ss_net_of(patch, patch->fixed);
+    skinslide_error error;
+    ss_system *system;
+    ss_blocks *blocks;
+    assert_ok(ss_system_create(&net, "grid", &system, &error), &error);
+    assert_ok(ss_blocks_create(system, &blocks, &error), &error);
+    size_t bytes = (size_t)patch->free_count * sizeof(double[2]);
+    double(*x)[2] = malloc(bytes);
+    for (uint64_t seed = 0; seed < 2; seed++) { /* the second on what the first left */
+        dice d = {seed}, again = {seed};
+        fill_blocks(blocks, patch, &d);
+        assert_true(ss_blocks_factor(blocks, &going_on));
+        ss_blocks_solve(blocks);
+        memcpy(x, blocks->right, bytes);
+        fill_blocks(blocks, patch, &again); /* the factor is where the matrix was */
+        take_product(blocks, patch, (const double(*)[2])x, blocks->right);
+        for (int32_t i = 0; i < patch->free_count; i++)
+            assert_near(fabs(blocks->right[i][0]) + fabs(blocks->right[i][1]), 0, 1e-14);
+    }
+    assert_false(ss_blocks_factor(blocks, &stop));
+    ss_blocks_own(blocks, 3)[0] = -1;
+    assert_false(ss_blocks_factor(blocks, &going_on));
+    free(x);
+    ss_blocks_destroy(blocks);
+    ss_system_destroy(system);
+    ss_patch_destroy(patch);
+    free_mesh(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(blocks_are_solved),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
