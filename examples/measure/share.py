@@ -2,7 +2,7 @@
 
 usage: share.py STAGE...        (needs libigl)
 Stretch is the RMS over the patch's edges of log(length / rest length). `best` is the least that a search finds which
-may put every free vertex anywhere on the deformed patch, from the cache and from the relaxed result; faces may turn
+may put every free vertex anywhere on the deformed patch, from the cache and from what each rule gives; faces may turn
 over in it. A share is (cache - slid) / (cache - best): 1 leaves nothing to gain, below 0 sliding adds stretch. What is
 measured is the rule itself: interpolation linear, slide weights and largest distances left out. `off` is how far the
 relaxed result is from the deformed patch, as a share of the patch's size, beyond what points in float allow.
@@ -20,7 +20,7 @@ from pxr import Usd
 
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
-RULES = ("unit", "fast", "even", "relaxed")  # the search begins at the last, too
+RULES = ("unit", "fast", "even", "relaxed")
 HEADINGS = ("example", "frame", "cache", "best", *RULES, "steps", "off", "folded")
 MOST_STEPS = 400
 LEAST_GAIN = 1e-9  # of the energy, by one step of the search
@@ -120,7 +120,7 @@ def rows(path: Path) -> list[list[str]]:
         deformed = cached[skin.vertices].astype(float)
         slid = [frame.points[skin.vertices].astype(float) for frame in frames]
         cache, result = skin.stretch(deformed), frames[-1].patches[0]
-        best = min(search.lowest(start, deformed) for start in (deformed, slid[-1])) if cache else 0.0
+        best = min(search.lowest(start, deformed) for start in (deformed, *slid)) if cache else 0.0
         shares = [f"{(cache - skin.stretch(points)) / (cache - best):.3f}" if best < cache else "-" for points in slid]
         where = [path.parent.name, f"{time:g}", f"{cache:.4f}", f"{best:.4f}"]
         quality = [str(result.relax_steps), f"{skin.off(slid[-1], deformed):.0e}", str(result.folded_faces)]
