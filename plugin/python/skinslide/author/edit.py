@@ -10,13 +10,13 @@ from functools import cached_property
 from pxr import Usd, UsdGeom
 
 from skinslide.arrays.meaning import MeshMeaning, say
+from skinslide.arrays.topology import Topology
 from skinslide.problems import NO_SUCH_PRIM, Fault, Problem, StageProblems, errors
 from skinslide.shot.check import CheckReport, check
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, given_path
 from skinslide.stage.marks import has_values
 from skinslide.stage.mesh import read_faces_of_mesh
-from skinslide.stage.topology import Topology
 from skinslide.write.earlier import without_earlier_bake
 from skinslide.write.target import check_target, whole_or_not_at_all
 

@@ -13,6 +13,7 @@ from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.geometry import Curves, edges_near
 from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positions
+from skinslide.arrays.topology import Topology
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import author_layer
@@ -21,7 +22,6 @@ from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path, given_primvar, given_subset
 from skinslide.stage.patch import read_edges, read_faces, read_pairs
-from skinslide.stage.topology import Topology
 from skinslide.stage.values import FIRST, read_value
 
 DIRECTIONS = ("any", "along", "across")

@@ -11,10 +11,10 @@ from pxr import Usd, UsdGeom
 from skinslide.arrays.meaning import MeshMeaning, inputs, merge_times
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
+from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem
 from skinslide.stage.finding import find_meshes
 from skinslide.stage.patch import Animation, read_patch
-from skinslide.stage.topology import Topology
 from skinslide.stage.values import Source, Span, read_value, take
 
 
