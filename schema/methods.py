@@ -82,7 +82,7 @@ PRIMVAR = '''
         """
         return self._create_primvar("{name}", "{type_name}", interpolation, defaultValue)
 '''
-PYTHON_TYPES = {"float": "float", "token": "str", "asset": "Sdf.AssetPath | str | os.PathLike[str]"}
+PYTHON_TYPES = {"bool": "bool", "float": "float", "token": "str", "asset": "Sdf.AssetPath | str | os.PathLike[str]"}
 # What a schema says of a primvar, which it cannot declare. Authored is the first of its types and interpolations.
 PAINTED = re.compile(r"^- primvars:(\S+):(\w+): (.*)$", re.MULTILINE)
 

@@ -37,7 +37,7 @@ def _section(layer: Sdf.Layer, schema: str, prefix: str, space: str) -> str:
 def _macro(attribute: Sdf.AttributeSpec, prefix: str, name: str) -> str:
     macro = prefix + "_" + re.sub("([A-Z])", r"_\1", name).upper()
     value, fallback = attribute.default, _fallback(attribute)
-    number = f"#define {macro}_NUMBER {value:g}\n" if isinstance(value, float) else ""
+    number = f"#define {macro}_NUMBER {value:g}\n" if isinstance(value, bool | float) else ""
     return f'#define {macro} "{name}", "{attribute.typeName}", {fallback}, {_tokens(attribute)}\n{number}'
 
 

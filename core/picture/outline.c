@@ -35,7 +35,7 @@ static void list_segments(skinslide_outline *own, const uint8_t *border) {
 
 /* border [corner_count]: sides of faces inside with no other of them beyond. count is scratch [edge_count], of zeros. */
 static void find_border(const skinslide_outline *own, int32_t *count, uint8_t *border) {
-    const ss_faces *faces = &own->tessellation->faces;
+    const ss_faces *faces = &own->tessellation->skin;
     for (int32_t c = 0; c < faces->corner_count; c++)
         count[faces->corner_edge[c]] += own->inside[faces->corner_face[c]];
     for (int32_t c = 0; c < faces->corner_count; c++)
@@ -58,7 +58,7 @@ static int64_t most_segments(const skinslide_outline *own) {
 static bool fill(skinslide_outline *own, const int32_t *chosen, int32_t count) {
     const skinslide_tessellation *mesh = own->tessellation;
     ss_memory scratch = {0};
-    int32_t *uses = SS_NEW(&scratch, int32_t, mesh->faces.edge_count);
+    int32_t *uses = SS_NEW(&scratch, int32_t, mesh->skin.edge_count);
     uint8_t *border = SS_NEW(&scratch, uint8_t, mesh->faces.corner_count);
     own->inside = SS_NEW(&own->memory, uint8_t, mesh->mesh_face_count);
     for (int32_t i = 0; i < count && own->inside; i++)

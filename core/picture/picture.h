@@ -49,6 +49,7 @@ struct skinslide_tessellation {
     int32_t *face_start;    /* [mesh_face_count + 1] */
     int32_t *corner_vertex; /* [mesh index_count] mesh vertices */
     ss_faces faces;         /* the same, with faces and edges of corners */
+    ss_faces skin;          /* the same, of the welded mesh */
     bool in_space;          /* coordinates are places at rest */
     int32_t grid_count, vertex_count, triangle_count, flat_faces;
     ss_grid *grids;    /* [grid_count] */

@@ -294,10 +294,22 @@ static bool connect_faces(skinslide_tessellation *own) {
     return ss_number_edges(faces);
 }
 
+/* The same of the welded mesh, whose patches have no borders at its seams. False where memory is short. */
+static bool connect_skin(skinslide_tessellation *own, const skinslide_mesh *mesh) {
+    own->skin = own->faces;
+    if (!mesh->weld)
+        return true;
+    own->skin.corner_vertex = SS_NEW(&own->memory, int32_t, mesh->index_count);
+    own->skin.corner_edge = SS_NEW(&own->memory, int32_t, mesh->index_count);
+    for (int32_t c = 0; c < mesh->index_count && !own->memory.failed; c++)
+        own->skin.corner_vertex[c] = ss_one(mesh, mesh->face_indices[c]);
+    return !own->memory.failed && ss_number_edges(&own->skin);
+}
+
 static skinslide_status build(skinslide_tessellation *own, const skinslide_mesh *mesh, const float *st, const int32_t *faces,
                               int32_t face_count, blueprint *plan, skinslide_error *error) {
     own->in_space = !st;
-    if (!copy_faces(own, mesh) || !connect_faces(own))
+    if (!copy_faces(own, mesh) || !connect_faces(own) || !connect_skin(own, mesh))
         return ss_out_of_memory(error);
     for (int32_t i = 0; i < face_count; i++)
         plan->inside[faces[i]] = 1;

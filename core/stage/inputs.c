@@ -18,6 +18,7 @@
 #define USD(name, type, tokens, group, when) .shown = {name, type, NULL, tokens, group, "", when, 0, 0}
 #define OF_MESH(name, type, when)            USD(name, type, NULL, SKINSLIDE_STAGE_MESH, when)
 #define OF_SUBDIVISION(name, type)           USD(name, type, NULL, SKINSLIDE_STAGE_SUBDIVISION, SKINSLIDE_STAGE_STILL)
+#define MESH_SETTING(declared)               .shown = {declared, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0}
 #define REST_PRIMVAR(name)                                                                                                     \
     .kind = SS_KIND_REST,                                                                                                      \
     .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, "primvars:", SKINSLIDE_STAGE_FIRST, 1, 0}
@@ -27,13 +28,15 @@ static const ss_input mesh_inputs[SS_MESH_ROWS] = {
     [SS_ROW_FACE_COUNTS] = {OF_MESH("faceVertexCounts", "int[]", SKINSLIDE_STAGE_STILL), .kind = SS_KIND_FACE_COUNTS},
     [SS_ROW_FACE_INDICES] = {OF_MESH("faceVertexIndices", "int[]", SKINSLIDE_STAGE_STILL), .kind = SS_KIND_FACE_INDICES},
     [SS_ROW_ORIENTATION] = {OF_MESH("orientation", "token", SKINSLIDE_STAGE_DEFAULT_TIME), .kind = SS_KIND_ORIENTATION},
-    [SS_ROW_REST_POINTS] = {.shown = {SS_MESH_REST_POINTS, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0},
-                            .kind = SS_KIND_REST},
+    [SS_ROW_REST_POINTS] = {MESH_SETTING(SS_MESH_REST_POINTS), .kind = SS_KIND_REST},
     [SS_ROW_REST] = {REST_PRIMVAR("rest")},
     [SS_ROW_PREF] = {REST_PRIMVAR("pref")},
     [SS_ROW_CAPITAL_PREF] = {REST_PRIMVAR("Pref")},
     [SS_ROW_PRIVATE_PREF] = {REST_PRIMVAR("__Pref")},
     [SS_ROW_DEFAULT_POINTS] = {OF_MESH("points", "point3f[]", SKINSLIDE_STAGE_DEFAULT_TIME), .kind = SS_KIND_REST},
+    [SS_ROW_WELD] = {MESH_SETTING(SS_MESH_WELD), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_WELD_NUMBER},
+    [SS_ROW_WELD_TOLERANCE] = {MESH_SETTING(SS_MESH_WELD_TOLERANCE), .kind = SS_KIND_NUMBER, .range = SS_RANGE_NOT_NEGATIVE,
+                               .wanted = "0 or more", .fallback = SS_MESH_WELD_TOLERANCE_NUMBER},
 };
 
 /* USD's own tokens, in the order of the core's enums; the fallbacks are USD's. */
@@ -167,13 +170,18 @@ const char *skinslide_stage_schema(void) {
 
 /* ---- Names and ranges ---- */
 
-/* restPoints; live:envelope and its like; and cached, where a bake into the layer of the cache keeps the cache's values. */
+/* What is declared of meshes; live:envelope and its like; and cached, where a bake into the layer of the cache keeps the cache's
+ * values. */
 bool ss_is_reserved(const char *name, size_t length) {
     static const char *const reserved[] = {"live", "cached"};
-    const char *rest = mesh_inputs[SS_ROW_REST_POINTS].shown.name;
-    bool found = strlen(rest) == length && strncmp(name, rest, length) == 0;
+    bool found = false;
     for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
         found = found || (strlen(reserved[i]) == length && strncmp(name, reserved[i], length) == 0);
+    for (int32_t i = 0; i < SS_MESH_ROWS; i++) {
+        const skinslide_stage_input *own = &mesh_inputs[i].shown;
+        bool declared = strcmp(own->prefix, SS_NAMESPACE) == 0;
+        found = found || (declared && strlen(own->name) == length && strncmp(name, own->name, length) == 0);
+    }
     return found;
 }
 

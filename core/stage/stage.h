@@ -81,7 +81,7 @@ typedef enum ss_kind {
     SS_KIND_FACES,
     SS_KIND_CORNERS,
     SS_KIND_EDGES,
-    SS_KIND_NUMBER,  /* one for the patch */
+    SS_KIND_NUMBER,  /* one for the patch, or the mesh */
     SS_KIND_PAINT,   /* by point, by face or constant */
     SS_KIND_FACTORS, /* by painted edge */
     SS_KIND_TEXTURE, /* multiplies paint by point */
@@ -119,6 +119,8 @@ enum {
     SS_ROW_CAPITAL_PREF,
     SS_ROW_PRIVATE_PREF,
     SS_ROW_DEFAULT_POINTS,
+    SS_ROW_WELD,
+    SS_ROW_WELD_TOLERANCE,
     SS_MESH_ROWS
 };
 enum {
@@ -215,6 +217,7 @@ struct skinslide_stage_mesh {
     const char *rest_source;
     int32_t rest_row; /* of the candidate that counts, good or bad; -1: none yet */
     bool left_handed;
+    double weld, weld_tolerance; /* whether points in one place are one, and how near that is */
 };
 
 /* The mesh as the core's own functions take it, without rest points. */

@@ -2,6 +2,8 @@
 #include "mesh.h"
 #include "stage.h"
 
+#include "schema.inc"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +15,7 @@ static const ss_input *mesh_inputs(skinslide_stage_group group) {
 static skinslide_status fill_mesh(skinslide_stage_mesh *mesh, skinslide_error *error) {
     mesh->vertex_count = -1;
     mesh->rest_row = -1;
+    mesh->weld = SS_MESH_WELD_NUMBER, mesh->weld_tolerance = SS_MESH_WELD_TOLERANCE_NUMBER;
     skinslide_status status = ss_take_fallbacks(mesh_inputs(SKINSLIDE_STAGE_SUBDIVISION), SS_SUBDIVISION_ROWS, &mesh->memory,
                                                 mesh->subdivision, error);
     mesh->subdivision[SS_ROW_SCHEME].choice = SKINSLIDE_SCHEME_NONE; /* until it is taken */
@@ -162,6 +165,9 @@ static skinslide_status take_of_mesh(skinslide_stage_mesh *mesh, int32_t row, co
     case SS_KIND_ORIENTATION:
         take_orientation(mesh, record);
         return SKINSLIDE_OK;
+    case SS_KIND_NUMBER:
+        return ss_take_number(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], record,
+                              row == SS_ROW_WELD ? &mesh->weld : &mesh->weld_tolerance, error);
     default:
         return ss_take_rest(mesh, row, record, error);
     }
@@ -227,6 +233,19 @@ skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skin
     own.subdivision = mesh->subdivided.scheme == SKINSLIDE_SCHEME_NONE ? NULL : &mesh->subdivided;
     ss_give(&own, sizeof own, out);
     return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_stage_mesh_weld(const skinslide_stage_mesh *mesh, const skinslide_patch_setup *setups,
+                                           int32_t setup_count, skinslide_weld **out, skinslide_error *error) {
+    skinslide_mesh own = SKINSLIDE_MESH_DEFAULT;
+    skinslide_status status = skinslide_stage_mesh_get(mesh, &own, error);
+    if (status || !out)
+        return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the weld");
+    if (mesh->weld == 0) {
+        *out = NULL;
+        return SKINSLIDE_OK;
+    }
+    return skinslide_weld_create(&own, setups, setup_count, mesh->weld_tolerance, out, error);
 }
 
 skinslide_bool skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh) {

@@ -72,6 +72,36 @@ void LiveMesh::say(double time, const std::string &message) {
 
 // ---- The slider ----
 
+// Shows a weld every pose of the cache, but for those that cannot be slid.
+void LiveMesh::showPoses(skinslide_weld *weld) const {
+    std::vector<double> times = _mesh->points.attribute().times();
+    if (times.empty())
+        times.push_back(Attribute::defaultTime);
+    for (double time : times) {
+        try {
+            VtVec3fArray points = cachedPoints(_mesh->points.at(time));
+            skinslide_weld_show(weld, time, floatsOf(points), nullptr);
+        } catch (const Fault &) {
+            continue; // which is said when it is to be slid
+        }
+    }
+}
+
+// Which points are one, whatever frames are asked for; empty where none is one with another. Throws Fault.
+std::vector<int32_t> LiveMesh::weld(const std::vector<skinslide_patch_setup> &setups) const {
+    skinslide_weld *made = nullptr;
+    call(skinslide_stage_mesh_weld, _mesh->mesh.get(), setups.data(), static_cast<int32_t>(setups.size()), &made);
+    std::unique_ptr<skinslide_weld, Destroyer<skinslide_weld, skinslide_weld_destroy>> weld(made);
+    if (!skinslide_weld_wants_poses(made))
+        return {};
+    skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
+    call(skinslide_stage_mesh_get, _mesh->mesh.get(), &mesh);
+    std::vector<int32_t> vertices(static_cast<size_t>(mesh.vertex_count));
+    showPoses(made);
+    call(skinslide_weld_get, made, vertices.data(), nullptr);
+    return vertices;
+}
+
 void LiveMesh::build() {
     std::vector<skinslide_patch_setup> setups;
     try {
@@ -79,6 +109,8 @@ void LiveMesh::build() {
             setups.push_back(patch.setup());
         skinslide_mesh mesh = SKINSLIDE_MESH_DEFAULT;
         call(skinslide_stage_mesh_get, _mesh->mesh.get(), &mesh);
+        std::vector<int32_t> weld = this->weld(setups);
+        mesh.weld = weld.empty() ? nullptr : weld.data();
         call(skinslide_slider_create, &mesh, setups.data(), static_cast<int32_t>(setups.size()), &_slider);
     } catch (const std::exception &bad) {
         std::lock_guard<std::mutex> lock(_mutex);

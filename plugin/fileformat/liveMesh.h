@@ -41,6 +41,8 @@ class LiveMesh {
     std::vector<skinslide_controls> controlsAt(double time, const Work &work) const;
     const skinslide_slider *slider();
     void build();
+    std::vector<int32_t> weld(const std::vector<skinslide_patch_setup> &setups) const;
+    void showPoses(skinslide_weld *weld) const;
     [[noreturn]] void giveUp(const std::string &problem);
     skinslide_workspace_options workspaceOptions();
     Work takeWork();

@@ -25,6 +25,7 @@ from edits import (
     point,
     put,
     removed,
+    retyped,
     subset,
     topology,
 )
@@ -436,4 +437,22 @@ GEOMETRY = [
         None,
     ),
     Bad("points: blocked at the first frame", blocked_at("points", FRAMES[0]), "points has no value", None),
+    Bad(
+        "weld: a word",
+        retyped("skinSlide:weld", Types.Token, "yes"),
+        "skinSlide:weld is 'yes'; it must be a bool",
+        None,
+    ),
+    Bad(
+        "weld: a tolerance below 0",
+        retyped("skinSlide:weldTolerance", Types.Float, -1.0),
+        "skinSlide:weldTolerance is -1; it must be 0 or more",
+        None,
+    ),
+    Bad(
+        "weld: a tolerance that holds half the mesh",
+        retyped("skinSlide:weldTolerance", Types.Float, 0.5),
+        "weld: the tolerance is 0.5; it must be 0 to ...",
+        None,
+    ),
 ]

@@ -62,6 +62,30 @@ def two_meshes(scene: Scene) -> None:
     stages.add_patch(other, np.arange(20))
 
 
+def split_grid() -> stages.Shape:
+    return stages.split(stages.grid())
+
+
+def subdivided(scene: Scene) -> None:
+    scene.mesh.GetSubdivisionSchemeAttr().Set("catmullClark")
+
+
+def apart(scene: Scene) -> None:
+    """Copies of points a little beside each other, at rest and in every frame."""
+    noise = np.random.default_rng(1).uniform(-1e-5, 1e-5, (144, 3))
+    for time in (Usd.TimeCode.Default(), *FRAMES):
+        scene.points.Set(stages.vectors(np.array(scene.points.Get(time)) + noise), time)
+
+
+def parting(scene: Scene) -> None:
+    """The copies of one point inside the sheet go their own ways in the last frame."""
+    points = np.array(scene.points.Get(FRAMES[-1]))
+    rest = np.array(scene.points.Get())
+    copies = np.flatnonzero((rest == stages.grid().points[24]).all(axis=1))
+    points[copies] += 0.01 * np.arange(4)[:, None]
+    scene.points.Set(stages.vectors(points), FRAMES[-1])
+
+
 def inactive_neighbour(scene: Scene) -> None:
     other = stages.add_mesh(scene.stage, stages.grid(), "/World/prop/bad_GEO")
     stages.add_patch(other, None)
@@ -302,4 +326,9 @@ TIMES = [
         setting("envelope", 0.0),
         file=text(body=over(f"float {PLACE}:envelope.timeSamples = {{ 1001: 0, 1002.5: 1 }}")),
     ),
+    Good("weld: a point for each corner", shape=split_grid),
+    Good("weld: off", retyped("skinSlide:weld", Types.Bool, False), shape=split_grid, slides=False),
+    Good("weld: a tolerance", all_of(apart, retyped("skinSlide:weldTolerance", Types.Float, 1e-4)), shape=split_grid),
+    Good("weld: points that part", parting, shape=split_grid),
+    Good("weld: a point for each corner, subdivided", subdivided, shape=split_grid),
 ]

@@ -56,6 +56,14 @@ def grid(columns: int = 6, rows: int = 6, size: float = 1.0, centre: Sequence[fl
     return quads(points, columns, rows)
 
 
+def split(shape: Shape) -> Shape:
+    """With a point for each corner of each face, as in meshes of games; copies of a point follow each other."""
+    order = np.argsort(shape.indices, kind="stable")
+    indices = np.empty_like(shape.indices)
+    indices[order] = np.arange(len(order), dtype=np.int32)
+    return Shape(shape.points[shape.indices[order]], shape.counts, indices)
+
+
 def squares(side: int) -> Shape:
     """A flat sheet of unit squares, numbered as in a grid, from the origin along x and y."""
     y, x = np.divmod(np.arange((side + 1) ** 2), side + 1)

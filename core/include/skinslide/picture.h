@@ -37,7 +37,7 @@ typedef struct skinslide_tessellation_info {
  * gap, whatever their cells. Faces that are not rendered (holeIndices, and with boundary rule NONE those at the boundary) are
  * left out, and so are those of fewer than three vertices. In faces, texture coordinates and values go linearly, as in USD with
  * faceVaryingLinearInterpolation "all".
- *   mesh   in  read during the call only
+ *   mesh   in  read during the call only; outlines are those of the welded mesh
  *   st     in  [index_count][2] texture coordinates of the mesh's corners, face by face; NULL: rest_points take their place, as
  *              the coordinates of squares in space
  *   faces  in  [face_count] mesh faces: the patch, or all of several, in any order, of any shape

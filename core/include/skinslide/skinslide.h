@@ -362,6 +362,17 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_s
 SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, int32_t patch, int32_t *faces,
                                                             skinslide_error *error);
 
+/* How many vertices of a patch have a point of another mesh in their place, as where a head and a body meet at the neck.
+ *   points     in  [vertex_count][3] the slider's mesh in some pose
+ *   others     in  [other_count][3] the other mesh in that pose, in the same space
+ *   tolerance  in  as of skinslide_weld_create, but of any size; 0 is fast
+ *   held       out those that stay
+ *   loose      out those that may slide, which the other mesh does not follow
+ * Fails with BAD_ARGUMENT (there is no such patch; NULL), BAD_POINTS (not finite), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int32_t patch, const float *points,
+                                                           const float *others, int32_t other_count, double tolerance,
+                                                           int32_t *held, int32_t *loose, skinslide_error *error);
+
 /* The rest embedding U0 of a patch.
  *   uv  out [vertex_count of the patch][2], in [0,1]^2 up to rounding
  * Fails with BAD_ARGUMENT (there is no such patch), UNSUPPORTED (its rule has none). */

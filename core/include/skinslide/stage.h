@@ -223,8 +223,8 @@ SKINSLIDE_API void skinslide_stage_mesh_destroy(skinslide_stage_mesh *mesh);
 
 /* Takes the value of an input of the group MESH or SUBDIVISION. Where points, face counts or face indices are refused, what
  * comes after needs them. Rest points are the first candidate that is authored.
- * Fails with BAD_POINTS (points and rest points), BAD_MESH (the others; each names what it cannot use), BAD_ARGUMENT,
- * OUT_OF_MEMORY. */
+ * Fails with BAD_POINTS (points and rest points), BAD_CONTROL (numbers), BAD_MESH (the others; each names what it cannot use),
+ * BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
                                                          const skinslide_value *value, skinslide_error *error);
 
@@ -246,6 +246,13 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_
 
 /* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the library. */
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
+
+/* Begins to find which vertices are one, as skinslide_weld_create, as near as skinSlide:weldTolerance says.
+ *   setups  in   [setup_count] all patches of the mesh
+ *   out     out  the caller's to destroy; NULL where skinSlide:weld is off
+ * Fails as skinslide_weld_create and skinslide_stage_mesh_get. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_weld(const skinslide_stage_mesh *mesh, const skinslide_patch_setup *setups,
+                                                         int32_t setup_count, skinslide_weld **out, skinslide_error *error);
 
 /* Whether the mesh's orientation is leftHanded. */
 SKINSLIDE_API skinslide_bool skinslide_stage_mesh_left_handed(const skinslide_stage_mesh *mesh);

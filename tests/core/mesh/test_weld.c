@@ -399,6 +399,33 @@ static void points_off_the_patches_follow(void **state) {
     free_mesh(&sheet), free_mesh(&both);
 }
 
+/* A sheet, and another that goes on from its last column: they meet in five points, which stay unless the border is free. */
+static void points_of_other_meshes_are_counted(void **state) {
+    (void)state;
+    test_mesh sheet = quad_grid(4, 4), beside = quad_grid(4, 4);
+    for (int32_t v = 0; v < beside.vertex_count; v++)
+        beside.points[3 * v] += 4;
+    for (int all = 0; all < 2; all++) {
+        skinslide_patch_setup choices = {.rule = SKINSLIDE_RULE_EVEN,
+                                         .holes = all ? SKINSLIDE_HOLES_FREE_ALL : SKINSLIDE_HOLES_PINNED};
+        rig r = rig_of(&sheet, choices);
+        int32_t held = -1, loose = -1;
+        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 25, 0, &held, &loose, &error), &error);
+        assert_int_equal(held, all ? 0 : 5);
+        assert_int_equal(loose, all ? 5 : 0);
+        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, sheet.points, 25, 0, &held, &loose, &error), &error);
+        assert_int_equal(held + loose, 25);
+        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 0, 0, &held, &loose, &error), &error);
+        assert_int_equal(held + loose, 0);
+        assert_fails(skinslide_slider_neighbours(r.slider, 0, sheet.points, NULL, 25, 0, &held, &loose, &error), &error,
+                     SKINSLIDE_BAD_ARGUMENT, "no points of the other mesh");
+        assert_fails(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 25, -1, &held, &loose, &error),
+                     &error, SKINSLIDE_BAD_ARGUMENT, "no place for the count, or a tolerance or a count that cannot be");
+        free_rig(&r);
+    }
+    free_mesh(&sheet), free_mesh(&beside);
+}
+
 /* ---- Bad input ---- */
 
 static void bad_input_is_named(void **state) {
@@ -449,6 +476,7 @@ int main(void) {
         cmocka_unit_test(a_doubled_sheet_stays_two),
         cmocka_unit_test(what_welding_would_break_is_named),
         cmocka_unit_test(points_off_the_patches_follow),
+        cmocka_unit_test(points_of_other_meshes_are_counted),
         cmocka_unit_test(bad_input_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -640,6 +640,23 @@ static void any_faces_can_be_drawn(void **state) {
     skinslide_tessellation_destroy(drawn);
 }
 
+/* Two squares, each with points of its own, that are one skin: 6 sides, and not 8. */
+static void seams_of_one_skin_are_not_outlined(void **state) {
+    (void)state;
+    static const float points[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}};
+    static const int32_t counts[2] = {4, 4}, indices[8] = {0, 1, 2, 3, 4, 5, 6, 7}, faces[2] = {0, 1};
+    static const int32_t weld[8] = {0, 1, 2, 3, 1, 5, 6, 2};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 8, 2, 8, counts, indices, &points[0][0], NULL, NULL};
+    skinslide_error error;
+    for (int welded = 0; welded < 2; welded++) {
+        skinslide_tessellation *drawn;
+        mesh.weld = welded ? weld : NULL;
+        assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 2, &drawn, &error), &error);
+        assert_int_equal(drawn->outline->segment_count, welded ? 6 : 8);
+        skinslide_tessellation_destroy(drawn);
+    }
+}
+
 static void bad_arguments_are_named(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(2, 2);
@@ -677,9 +694,13 @@ static void bad_arguments_are_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_mesh_in_every_way),   cmocka_unit_test(normals_point_out),
-        cmocka_unit_test(without_st_places_at_rest), cmocka_unit_test(fine_cells_are_bounded),
-        cmocka_unit_test(refused_faces_are_flat),    cmocka_unit_test(any_faces_can_be_drawn),
+        cmocka_unit_test(every_mesh_in_every_way),
+        cmocka_unit_test(normals_point_out),
+        cmocka_unit_test(without_st_places_at_rest),
+        cmocka_unit_test(fine_cells_are_bounded),
+        cmocka_unit_test(refused_faces_are_flat),
+        cmocka_unit_test(any_faces_can_be_drawn),
+        cmocka_unit_test(seams_of_one_skin_are_not_outlined),
         cmocka_unit_test(bad_arguments_are_named),
     };
     return cmocka_run_group_tests_name("tessellation", tests, NULL, NULL);

@@ -57,6 +57,7 @@ class Tessellation:
         st: np.ndarray | None,
         faces: np.ndarray,
         subdivision: Subdivision | None = None,
+        weld: np.ndarray | None = None,
     ):
         """Makes the triangles.
 
@@ -66,9 +67,10 @@ class Tessellation:
             st: At the mesh's corners (sum of counts, 2); None: chequers are squares in space, at rest.
             faces: Those outlined (n,).
             subdivision: Of which the limit surface is drawn; None: the faces are.
+            weld: Of each point that which it is one with (V,): where faces meet there is no outline.
         """
         native, out = Arguments(), ffi.new("skinslide_tessellation **")
-        mesh = native.mesh(*shape, rest_points, subdivision)
+        mesh = native.mesh(*shape, rest_points, subdivision, weld)
         corners = native.optional(st, np.float32, (len(shape.face_indices), 2), "st")
         chosen = native.pointer(faces, np.int32, (-1,), "faces")
         call(lib.skinslide_tessellation_create, ffi.addressof(mesh), corners, chosen, len(faces), out)

@@ -18,13 +18,16 @@ from skinslide.arrays.native import (
     Controls,
     Handle,
     PatchSetup,
+    Sizes,
     Subdivision,
     new,
     new_array,
+    read,
     text,
     token_of,
     writable,
 )
+from skinslide.arrays.records import WeldInfo
 from skinslide.problems import Fault
 
 SCHEMA = text(lib.skinslide_stage_schema())
@@ -229,6 +232,13 @@ class Taker:
 # ---- Meshes ----
 
 
+class Weld(NamedTuple):
+    """Which points are one: of each that which it is one with, and what came of it."""
+
+    vertices: np.ndarray  # int32 (V,)
+    info: WeldInfo
+
+
 class MeshMeaning(Taker):
     """One mesh of a scene: its faces, its rest points, how it is subdivided."""
 
@@ -275,6 +285,21 @@ class MeshMeaning(Taker):
         """None where the mesh renders as its faces, or where that was not asked. Raises Fault."""
         found = self._read(lib.skinslide_stage_mesh_get).subdivision
         return _subdivision(found) if found else None
+
+    def weld(self, patches: Sequence[PatchSetup], poses: Iterable[tuple[float, np.ndarray]]) -> Weld:
+        """Which points are one, over rest and all poses of the shot, each with its frame. Raises Fault."""
+        native, count = Arguments(), self.shape.vertex_count
+        setups, out, info = new_array("patch_setup", len(patches)), ffi.new("skinslide_weld **"), new("weld_info")
+        for setup, patch in zip(setups, patches, strict=True):
+            native.fill_setup(setup, patch, Sizes(count, self.shape.face_count))
+        _call(lib.skinslide_stage_mesh_weld, self.handle, setups, len(patches), out)
+        weld, vertices = Handle(out[0], lib.skinslide_weld_destroy), np.arange(count, dtype=np.int32)
+        if lib.skinslide_weld_wants_poses(weld.pointer):
+            for frame, points in poses:
+                # What cannot be slid there is said when it is to be.
+                lib.skinslide_weld_show(weld.pointer, frame, Arguments().points(points, count, "points"), ffi.NULL)
+            _call(lib.skinslide_weld_get, weld, writable("int32_t[]", vertices), info)
+        return Weld(vertices, read(WeldInfo, info[0]))
 
     def points(self, value: Value | None) -> np.ndarray:
         """The points of a frame, float32 (V, 3). Raises Fault."""

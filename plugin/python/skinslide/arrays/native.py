@@ -14,10 +14,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult
+from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult, WeldInfo
 from skinslide.problems import SliderError
 
-Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo)
+Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo, WeldInfo)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,6 +213,7 @@ class Arguments:
         face_indices: Any,
         points: Any,
         subdivision: Subdivision | None = None,
+        weld: Any = None,
     ) -> Any:
         mesh = new("mesh")
         self._alive.append(mesh)
@@ -222,6 +223,7 @@ class Arguments:
         mesh.face_count, mesh.index_count, mesh.vertex_count = len(face_counts), len(face_indices), len(points)
         if subdivision is not None:
             mesh.subdivision = self.subdivision(subdivision)
+        mesh.weld = self.optional(weld, np.int32, (len(points),), "weld")
         return mesh[0]
 
     def subdivision(self, given: Subdivision) -> Any:

@@ -110,6 +110,7 @@ class Slider:
         *,
         lookup: str | Lookup = "auto",
         subdivision: Subdivision | None = None,
+        weld: npt.ArrayLike | None = None,
     ):
         """Builds every patch at rest.
 
@@ -120,12 +121,13 @@ class Slider:
             patches: The set-ups.
             lookup: How rest vertices are looked up: auto, egl, exact, or a Lookup.
             subdivision: How the mesh is subdivided, on which the interpolation limit depends; None: it is not.
+            weld: Of each point that which it is one with (V,), itself for most; None: each is its own.
 
         Raises:
             SliderError: What cannot be slid; the message names patch and element.
         """
         native = Arguments()
-        mesh = native.mesh(face_counts, face_indices, rest_points, subdivision)
+        mesh = native.mesh(face_counts, face_indices, rest_points, subdivision, weld)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
         self._lookup = Lookup.of(lookup).options()
         self._names = tuple(patch.name for patch in patches)
@@ -240,6 +242,29 @@ class Slider:
             int32 (patch faces,), ascending.
         """
         return self._patch_array(lib.skinslide_slider_patch_faces, patch, "face_count", np.int32)
+
+    def neighbours(
+        self, patch: int, points: npt.ArrayLike, others: npt.ArrayLike, tolerance: float = 0
+    ) -> tuple[int, int]:
+        """How many vertices of a patch have a point of another mesh in their place.
+
+        Args:
+            patch: Its index in `patches`.
+            points: Of the mesh, in some pose (V, 3).
+            others: Of the other mesh in that pose, in the same space (n, 3).
+            tolerance: The distance within which points are in one place.
+
+        Returns:
+            Those that stay, and those that may slide, which the other mesh does not follow.
+
+        Raises:
+            SliderError: There is no such patch, or points that are not finite.
+        """
+        native, held, loose = Arguments(), ffi.new("int32_t *"), ffi.new("int32_t *")
+        own, other = native.points(points, self._sizes.vertices, "points"), native.points(others, -1, "others")
+        count = len(np.asarray(others))
+        call(lib.skinslide_slider_neighbours, self._slider.pointer, patch, own, other, count, tolerance, held, loose)
+        return held[0], loose[0]
 
     def embedding(self, patch: int) -> np.ndarray:
         """The rest embedding of a patch in the unit square.

@@ -543,6 +543,59 @@ class SkinSlideMeshAPI(AppliedSchema):
         """
         return self._create_attribute("restPoints", defaultValue, writeSparsely)
 
+    def GetWeldAttr(self) -> Usd.Attribute:
+        """Whether points in one place are one.
+
+        Those that coincide at rest and at every sample of points, and whose faces meet there edge to edge, such as
+        both sides of a UV seam. Patches go on across them, each goes where the others go, and what is painted on
+        them counts as its mean. What parts during the shot, or would give an edge more than two faces, is not one,
+        and is named by check.
+
+        Returns:
+            The attribute skinSlide:weld, bool, uniform; not valid where there is none.
+        """
+        return self._attribute("weld")
+
+    def CreateWeldAttr(self, defaultValue: bool | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:weld in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, bool, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("weld", defaultValue, writeSparsely)
+
+    def GetWeldToleranceAttr(self) -> Usd.Attribute:
+        """The distance within which points are in one place for weld, in the mesh's units.
+
+        0 to a thousandth of its size. 0: where they are exactly that.
+
+        Returns:
+            The attribute skinSlide:weldTolerance, float, uniform; not valid where there is none.
+        """
+        return self._attribute("weldTolerance")
+
+    def CreateWeldToleranceAttr(self, defaultValue: float | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:weldTolerance in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("weldTolerance", defaultValue, writeSparsely)
+
 
 class SkinSlideLiveAPI(AppliedSchema):
     """What a shot sets for all patches of a .skinslide file, on the prim that payloads it.

@@ -58,7 +58,7 @@ class Skin:
         corners = _st_of(mesh, st)
         shape, subdivision = Shape(mesh.face_counts, mesh.face_indices), mesh.drawn_subdivision()
         try:
-            tessellation = Tessellation(shape, mesh.rest_points, corners, faces, subdivision)
+            tessellation = Tessellation(shape, mesh.rest_points, corners, faces, subdivision, mesh.weld.vertices)
         except SliderError as error:
             if error.status == "BAD_CONTROL":  # st
                 raise Fault(f"primvars:{st or _ST}: {error}") from error

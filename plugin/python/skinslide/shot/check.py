@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import combinations
 from typing import Any
@@ -15,13 +15,15 @@ from skinslide.arrays.meaning import Texture
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
-from skinslide.problems import Problem, SliderError, UsageError, errors, frame_text, lines_text
+from skinslide.problems import FrameProblem, Problem, SliderError, UsageError, errors, frame_text, lines_text
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
 from skinslide.stage.finding import is_skinned
 from skinslide.stage.given import PrimsLike, StageLike, given_paths, given_stage
 from skinslide.stage.mesh import PatchedMesh
+
+_MOST_PIECES = 20  # of a patch, with a line each
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,7 @@ class CheckedMesh:
         points: How many it has.
         faces: How many it has.
         rest: Where its rest points were found, such as primvars:Pref.
+        welded: Points that are one with others, since they are in one place.
         samples: The stage times that would be written.
         patches: Every piece of every patch.
         maps: The textures that are painted by.
@@ -98,6 +101,7 @@ class CheckedMesh:
     points: int
     faces: int
     rest: str
+    welded: int
     samples: list[float]
     patches: list[CheckedPatch]
     maps: list[CheckedMap]
@@ -196,15 +200,27 @@ def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
         samples = f"{len(mesh.samples)} samples, {first} to {last}"
     else:
         samples = "no samples"
-    yield f"{mesh.path}: {mesh.points} points, {mesh.faces} faces, rest from {mesh.rest}, {samples}"
-    for patch in mesh.patches:
-        name = patch.name if patch.pieces == 1 else f"{patch.name} ({patch.piece} of {patch.pieces})"
-        counts = ("vertices", "free", "edges", "faces", "holes")
-        yield f"  {name}: " + ", ".join(f"{count} {getattr(patch, count)}" for count in counts)
+    welded = f", {mesh.welded} of them welded" if mesh.welded else ""
+    yield f"{mesh.path}: {mesh.points} points{welded}, {mesh.faces} faces, rest from {mesh.rest}, {samples}"
+    for name in dict.fromkeys(patch.name for patch in mesh.patches):
+        yield from _patch_lines(name, [patch for patch in mesh.patches if patch.name == name])
     for used in mesh.maps:
         tiles = f", tiles {', '.join(map(str, used.tiles))}" if used.tiles != [0] else ""
         size = f"{used.width} x {used.height}"
         yield f"  {used.name}: {used.file}, channel {used.channel}, {size}{tiles}, at primvars:{used.st}"
+
+
+def _patch_lines(name: str, pieces: Sequence[CheckedPatch]) -> Iterator[str]:
+    """A line for each piece, or one for more than anyone reads."""
+    counts = ("vertices", "free", "edges", "faces", "holes")
+    if len(pieces) > _MOST_PIECES:
+        spans = [(count, [getattr(piece, count) for piece in pieces]) for count in counts]
+        told = ", ".join(f"{count} {min(found)} to {max(found)}" for count, found in spans)
+        yield f"  {name}: {len(pieces)} pieces, {told}"
+        return
+    for piece in pieces:
+        label = name if piece.pieces == 1 else f"{name} ({piece.piece} of {piece.pieces})"
+        yield f"  {label}: " + ", ".join(f"{count} {getattr(piece, count)}" for count in counts)
 
 
 def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Lookup = "auto") -> CheckReport:
@@ -241,6 +257,7 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     for name in dict.fromkeys(patch.name for patch in patches):
         problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
     problems += _overlaps(mesh)
+    problems += _neighbours(mesh, slider) if slider else ()
     problems += _cache_problems(mesh)
     problems += Derived(mesh).problems
     times = mesh.sample_times()
@@ -248,7 +265,8 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     pairs = zip(mesh.patches, mesh.animation, strict=True)
     used = [_checked_map(patch.name, each) for patch, read in pairs for each in read.textures]
     faces = mesh.topology.face_count
-    return CheckedMesh(mesh.path, mesh.vertex_count, faces, mesh.rest_source, times, patches, used)
+    welded = mesh.weld.info.welded_points if slider else 0
+    return CheckedMesh(mesh.path, mesh.vertex_count, faces, mesh.rest_source, welded, times, patches, used)
 
 
 def _checked_map(patch: str, used: Texture) -> CheckedMap:
@@ -303,6 +321,27 @@ def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:
             shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
             message = f"overlaps patch {b.name} in {np.count_nonzero(shared)} vertices, which take the mean of both"
             yield Problem("note", mesh.path, a.name, None, message)
+
+
+def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
+    """Points that another mesh has in the same place: what is open there stays closed as long as they stay."""
+    try:
+        points = mesh.points_at(Usd.TimeCode.EarliestTime())
+    except FrameProblem:
+        return  # which is said of its frame
+    for path, others in mesh.others():
+        found = [slider.neighbours(patch, points, others) for patch in range(len(slider.patches))]
+        for name in dict.fromkeys(patch.name for patch in mesh.patches):
+            of_name = [(each, info) for each, info in zip(found, slider.patches, strict=True) if info.name == name]
+            held, loose = (sum(counts) for counts in zip(*(each for each, _ in of_name), strict=True))
+            if held + loose == sum(info.vertex_count for _, info in of_name):
+                continue  # a copy of the mesh, such as a proxy
+            if held:
+                message = f"{held} border points coincide with points of {path}, and stay with them"
+                yield Problem("note", mesh.path, name, None, message)
+            if loose:
+                message = f"{loose} points that slide coincide with points of {path}, which do not follow"
+                yield Problem("warning", mesh.path, name, None, message)
 
 
 def _cache_problems(mesh: PatchedMesh) -> Iterator[Problem]:

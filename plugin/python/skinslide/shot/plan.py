@@ -62,6 +62,7 @@ def read_sliders(
     for mesh in meshes:
         try:
             sliders.append(mesh.slider(lookup))
+            problems.extend(mesh.weld_problems())
         except StageProblems as bad:
             sliders.append(None)
             problems.extend(bad.problems)

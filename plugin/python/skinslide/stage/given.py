@@ -123,6 +123,8 @@ def given_value(name: str, value: Any, type_name: Sdf.ValueTypeName) -> Any:
     if str(type_name) in ARRAYS:
         dtype, array, shape = ARRAYS[str(type_name)]
         return array.FromNumpy(given_array(name, value, dtype, shape))
+    if type_name == Sdf.ValueTypeNames.Bool:
+        return bool(value)
     if type_name == Sdf.ValueTypeNames.Float:
         return given_number(name, value)
     if type_name == Sdf.ValueTypeNames.Asset and isinstance(value, str | os.PathLike):

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import MeshMeaning, inputs, merge_times
+from skinslide.arrays.meaning import MeshMeaning, Weld, inputs, merge_times
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
@@ -136,7 +138,47 @@ class PatchedMesh:
             patches,
             lookup=lookup,
             subdivision=self.subdivision,
+            weld=self.weld.vertices,
         )
+
+    @cached_property
+    def weld(self) -> Weld:
+        """Which points are one, whatever frames are slid. Raises SliderError."""
+        try:
+            return self.meaning.weld(self.patches, self._poses())
+        except Fault as fault:
+            raise SliderError("BAD_ARGUMENT", str(fault)) from fault
+
+    def _poses(self) -> Iterator[tuple[float, np.ndarray]]:
+        """All that the cache has, but for those that cannot be slid."""
+        for time in map(Usd.TimeCode, self.points_times()) if self.points_times() else [Usd.TimeCode.Default()]:
+            with contextlib.suppress(FrameProblem):
+                yield 0 if time.IsDefault() else time.GetValue(), self.points_at(time)
+
+    def others(self) -> Iterator[tuple[str, np.ndarray]]:
+        """Other meshes of the stage in the same space, and their points (n, 3), at the first time."""
+        first, frames = Usd.TimeCode.EarliestTime(), UsdGeom.XformCache()
+        own = frames.GetLocalToWorldTransform(self.prim)
+        for prim in self.stage.Traverse():
+            if prim == self.prim or not prim.IsA(UsdGeom.Mesh) or frames.GetLocalToWorldTransform(prim) != own:
+                continue
+            points = UsdGeom.Mesh(prim).GetPointsAttr().Get(first)
+            if points and np.isfinite(np.asarray(points)).all():
+                yield str(prim.GetPath()), np.asarray(points)
+
+    def weld_problems(self) -> Iterator[Problem]:
+        """Points in one place that are not one."""
+        info = self.weld.info
+        if info.parted_points:
+            frame = info.parted_frame if self.points_times() else None
+            first = f"points {info.parted_from} and {info.parted_vertex} first"
+            message = (
+                f"{info.parted_points} points part from others in their place at rest, {first}: they are not welded"
+            )
+            yield Problem("note", self.path, None, frame, message)
+        if info.refused_points:
+            message = f"{info.refused_points} points are in one place with others and cannot be welded: {info.refused}"
+            yield Problem("note", self.path, None, None, message)
 
     def _patch_problems(self, lookup: str | Lookup) -> list[Problem]:
         """What is wrong with each patch alone: the core stops at the first."""
