@@ -63,6 +63,12 @@ def test_check_counts_what_is_welded(split):
     assert [patch.vertices for patch in mesh.patches] == [49] and not notes(report)
 
 
+def test_a_record_counts_it_too(split, tmp_path):
+    stage, _ = split_stage(split)
+    (mesh,) = skinslide.bake_to_file(stage, tmp_path / "out.usdc").as_dict()["meshes"]
+    assert mesh["welded"] == 140 and len(mesh["patches"]) == 1
+
+
 def test_what_is_not_welded_is_summed_up(split):
     stage, mesh = split_stage(split)
     skinslide.SkinSlideMeshAPI.Apply(mesh).CreateWeldAttr(False)

@@ -83,7 +83,8 @@ class _Mesh(NamedTuple):
     @classmethod
     def of(cls, planned: PlannedMesh) -> _Mesh:
         mesh, patches = planned.mesh, planned.slider.patches
-        return cls(planned, MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, patches), [])
+        welded = mesh.weld.info.welded_points
+        return cls(planned, MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, welded, patches), [])
 
     def run(self, pool: ThreadPoolExecutor, jobs: int) -> Iterator[Usd.TimeCode]:
         """Slides the mesh at each of its times, in order; yields each once all is taken."""

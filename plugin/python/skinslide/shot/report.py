@@ -155,28 +155,33 @@ class MeshReport:
         path: Of the prim.
         vertex_count: Of the mesh.
         rest_source: Where the rest points were found, such as primvars:Pref.
+        welded: Points that are one with others, since they are in one place.
         patches: Those that were slid, in the order of the set-ups and their pieces.
     """
 
     path: str
     vertex_count: int
     rest_source: str
+    welded: int
     patches: list[PatchReport]
 
     @classmethod
-    def start(cls, path: str, vertex_count: int, rest_source: str, patches: Sequence[PatchInfo]) -> MeshReport:
+    def start(
+        cls, path: str, vertex_count: int, rest_source: str, welded: int, patches: Sequence[PatchInfo]
+    ) -> MeshReport:
         """A report without frames.
 
         Args:
             path: Of the prim.
             vertex_count: Of the mesh.
             rest_source: Where the rest points were found.
+            welded: Points that are one with others.
             patches: What each patch is.
 
         Returns:
             The report.
         """
-        return cls(path, vertex_count, rest_source, [PatchReport(info) for info in patches])
+        return cls(path, vertex_count, rest_source, welded, [PatchReport(info) for info in patches])
 
     def add(self, frame: float | None, results: Sequence[PatchResult]) -> None:
         """Takes in one frame.
@@ -200,6 +205,7 @@ class MeshReport:
             "prim": self.path,
             "vertex_count": self.vertex_count,
             "rest": self.rest_source,
+            "welded": self.welded,
             "frames": self.patches[0].frames if self.patches else [],
             "patches": [patch.as_dict() for patch in self.patches],
         }
