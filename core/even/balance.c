@@ -25,6 +25,7 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_ev
     evener->slide = ss_new(memory, vertices, sizeof *evener->slide);
     evener->step = ss_new(memory, vertices, sizeof *evener->step);
     evener->part = SS_NEW(memory, double, vertices);
+    evener->reach = SS_NEW(memory, double, sheet->patch->faces.face_count);
     evener->whole = ss_new(memory, vertices, sizeof *evener->whole);
     evener->anchor = SS_NEW(memory, double, vertices);
     evener->stretch = SS_NEW(memory, double, sheet->spring_count);

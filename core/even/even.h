@@ -86,6 +86,7 @@ typedef struct ss_evener {
     double (*whole)[2];  /* [vertex_count] the slide as if all shares were 1, where some are less */
     double *anchor;      /* [vertex_count] */
     double *part;        /* [vertex_count] of a step that is taken */
+    double *reach;       /* [face_count] the part that each face lets be taken */
     ss_weighted *sorted; /* [spring_count] */
 } ss_evener;
 

@@ -64,9 +64,21 @@ static void fill_parts(ss_evener *evener, double part) {
         evener->part[v] = part;
 }
 
+static bool is_shorter(const ss_evener *evener, int32_t face) {
+    const ss_faces *faces = &evener->sheet->patch->faces;
+    for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++)
+        if (evener->part[faces->corner_vertex[c]] != 1)
+            return true;
+    return false;
+}
+
+/* Takes the parts of the step; faces none of whose corners have a part keep their reaches. */
 static void scale_step(ss_evener *evener) {
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         evener->step[v][0] *= evener->part[v], evener->step[v][1] *= evener->part[v];
+    for (int32_t f = 0; f < evener->sheet->patch->faces.face_count; f++)
+        if (is_shorter(evener, f))
+            evener->reach[f] = face_reach(evener, f);
 }
 
 /* Every vertex goes (1 + sum of r^-4)^(-1/4) of its step, r the reaches of the faces there. */
@@ -75,7 +87,7 @@ static void share_reaches(ss_evener *evener) {
     double *part = evener->part;
     fill_parts(evener, 1);
     for (int32_t f = 0; f < faces->face_count; f++) {
-        double reach = face_reach(evener, f);
+        double reach = evener->reach[f] = face_reach(evener, f);
         if (reach > FAR)
             continue;
         double square = 1 / (ss_most(reach, NEAR) * ss_most(reach, NEAR));
@@ -92,7 +104,7 @@ static double lower_parts(ss_evener *evener) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     double least = 1;
     for (int32_t f = 0; f < faces->face_count; f++) {
-        double reach = face_reach(evener, f);
+        double reach = evener->reach[f];
         least = ss_least(reach, least);
         for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1] && reach < 1; c++)
             evener->part[faces->corner_vertex[c]] = ss_least(evener->part[faces->corner_vertex[c]], reach);
