@@ -163,19 +163,23 @@ typedef enum skinslide_holes {
     SKINSLIDE_HOLES_FREE_ALL /* nothing, and the outer boundary slides along itself, too: of RELAXED and EVEN alone */
 } skinslide_holes;
 
-/* Where skin slides to. UNIT and FAST are the paper's: force density of an edge of length l (section 3.1), and a lookup in the
- * plane; they need a patch that is a disk with holes. RELAXED and EVEN slide on the rest surface itself, and take a patch with any
- * number of handles and boundaries, or none: corners and boundary count for nothing, and there is no embedding. */
+/* Where skin slides to. UNIT and FAST are the paper's: force density of an edge of length l (section 3.1), and a lookup in
+ * the plane; they need a patch that is a disk with holes. RELAXED and EVEN slide on the rest surface itself, and take a
+ * patch with any number of handles and boundaries, or none: corners and boundary count for nothing, and there is no
+ * embedding.
+ *
+ * EVEN goes to where the logarithms of edge lengths over rest lengths are in balance, less their median, which is the
+ * character's scale, and those of compressed edges bounded: smooth in the pose, and so in time.
+ *
+ * RELAXED goes to where every edge is as near its rest length as the deformed surface allows: from where EVEN leaves skin,
+ * held more, three steps on the pose itself towards a minimum of the sum of k log^2(l / rest l), k the painted force
+ * density, with compressed edges bounded as there; skin that a pose crushes stays nearer to where it was left. Smooth in the
+ * pose, as EVEN is, which is why it is no minimum. */
 typedef enum skinslide_rule {
     SKINSLIDE_RULE_UNIT, /* 1/l */
     SKINSLIDE_RULE_FAST, /* m - l^2 + 1e-4 m, m the largest l^2 of the patch in that pose */
-    SKINSLIDE_RULE_RELAXED, /* to where every edge is as near its rest length as the deformed surface allows: from where EVEN leaves
-                              skin, held more, three steps on the pose itself towards a minimum of the sum of k log^2(l / rest l),
-                              k the painted force density, with compressed edges bounded as there; skin that a pose crushes stays
-                              nearer to where it was left. Smooth in the pose, as EVEN is, which is why it is no minimum */
-    SKINSLIDE_RULE_EVEN /* to where the logarithms of edge lengths over rest lengths are in balance, less their median, which
-                              is the character's scale, and those of compressed edges bounded: smooth in the pose, and so in
-                              time */
+    SKINSLIDE_RULE_RELAXED,
+    SKINSLIDE_RULE_EVEN
 } skinslide_rule;
 
 /* How a point in a face of the embedding becomes a point on the deformed mesh. AUTO: LIMIT on a subdivided mesh, else LINEAR.
@@ -505,10 +509,10 @@ typedef struct skinslide_patch_result {
  *   points    in  [vertex_count][3] the deformed mesh
  *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force
  *                 densities that differ from the set-up's cost a second embedding, since rest is then embedded anew.
- *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches keep their bits,
- *                 so do those on the outer boundary or a pinned hole of every patch they are in, and so does every vertex
- *                 when points are the rest points. A vertex that may slide in several patches moves by the mean of their
- *                 displacements, weighted by weight times envelope.
+ *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches keep their bits
+ *                 (but for those welded to one that slides), so do those on the outer boundary or a pinned hole of every
+ *                 patch they are in, and so does every vertex when points are the rest points. A vertex that may slide in
+ *                 several patches moves by the mean of their displacements, weighted by weight times envelope.
  *   results   out [patch_count], or NULL; only the first need have its size
  * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid to where a float is not: names the
  * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */
