@@ -209,3 +209,79 @@ def test_a_bake_into_the_layer_of_the_earlier_one(baked_shot, tmp_path):
     before = values(stage)
     bake(stage)
     assert values(stage) == before
+
+
+# ---- Variants ----
+
+LODS = {"high": 1.0, "low": 0.5}
+
+
+def lods() -> tuple[Usd.Stage, Usd.VariantSet]:
+    """A mesh whose points are in one variant or the other, all in the root layer; the last is selected."""
+    stage, mesh = stages.patched_stage()
+    shape, prim = stages.grid(), mesh.GetPrim()
+    prim.RemoveProperty("points")
+    variants = stage.GetPrimAtPath("/World/char").GetVariantSets().AddVariantSet("lod")
+    for name, size in LODS.items():
+        variants.AddVariant(name)
+        variants.SetVariantSelection(name)
+        with variants.GetVariantEditContext():
+            mesh.CreatePointsAttr(stages.vectors(shape.points))
+            for frame in FRAMES:
+                mesh.GetPointsAttr().Set(stages.vectors(size * shape.moved(frame)), frame)
+    return stage, variants
+
+
+def selected(stage: Usd.Stage, variants: Usd.VariantSet, name: str) -> None:
+    """Selects a variant, and edits in it."""
+    with Usd.EditContext(stage, stage.GetRootLayer()):
+        variants.SetVariantSelection(name)
+        target = variants.GetVariantEditTarget()
+    stage.SetEditTarget(target)
+
+
+def test_a_bake_into_one_variant_leaves_the_others():
+    alone = {}
+    for name in LODS:
+        stage, variants = lods()
+        selected(stage, variants, name)
+        bake(stage)
+        alone[name] = values(stage)
+    stage, variants = lods()
+    for name in (*LODS, "high"):
+        selected(stage, variants, name)
+        bake(stage, prims=["/World"] if name == "low" else None)
+    for name in LODS:
+        selected(stage, variants, name)
+        assert values(stage) == alone[name]
+    assert alone["high"] != alone["low"]
+
+
+def test_a_bake_beside_variants_leaves_what_is_in_them():
+    stage, variants = lods()
+    selected(stage, variants, "low")
+    bake(stage)
+    low = values(stage)
+    stage.SetEditTarget(stage.GetRootLayer())
+    variants.SetVariantSelection("high")
+    bake(stage)
+    stage.GetPrimAtPath(MESH).RemoveProperty("points")
+    variants.SetVariantSelection("low")
+    assert values(stage) == low
+
+
+def test_a_bake_below_a_reference_leaves_what_is_beside_it(tmp_path):
+    stage, mesh = cached_stage()
+    other = stages.add_mesh(stage, stages.grid(), OTHER)
+    stages.add_patch(other, stages.annulus(), "rope")
+    stages.save(stage, tmp_path / "cache.usda")
+    cache = Usd.Stage.Open(str(tmp_path / "cache.usda"))
+    bake(cache)
+    rope = values(cache, path=OTHER)
+    shot = Usd.Stage.CreateInMemory()
+    prim = shot.DefinePrim("/shot/char")
+    prim.GetReferences().AddReference(cache.GetRootLayer().identifier, "/World/char")
+    shot.SetEditTarget(Usd.EditTarget(cache.GetRootLayer(), prim.GetPrimIndex().rootNode.children[0]))
+    bake(shot, prims=["/shot"], frames=[1002])
+    assert list(values(shot, path="/shot/char/geo/skin_GEO")) == [1002]
+    assert values(cache, path=OTHER) == rope

@@ -69,21 +69,23 @@ class EarlierBake:
                     remove(self._layer, path)
 
     def _marked(self, prims: Sequence[str] | None) -> list[Sdf.Path]:
+        """Where there are marked values that the target would author, for prims at and below `prims`."""
+        roots = [Sdf.Path("/")] if prims is None else [Sdf.Path(prim) for prim in prims if _is_path(prim)]
         found: list[Sdf.Path] = []
 
         def look(path: Sdf.Path) -> None:
             spec = self._layer.GetAttributeAtPath(path) if path.IsPropertyPath() else None
-            if spec and is_marked(spec):
+            if spec and is_marked(spec) and any(map(self._on_stage(path).HasPrefix, roots)):
                 found.append(path)
 
-        for root in [Sdf.Path.absoluteRootPath] if prims is None else map(self._mapped, prims):
-            if root and self._layer.GetObjectAtPath(root):
-                self._layer.Traverse(root, look)
-        return list(dict.fromkeys(found))
+        self._layer.Traverse(Sdf.Path.absoluteRootPath, look)
+        return found
 
-    def _mapped(self, prim: str) -> Sdf.Path:
-        valid = Sdf.Path.IsValidPathString(prim) and Sdf.Path(prim).IsAbsoluteRootOrPrimPath()
-        return self._target.MapToSpecPath(Sdf.Path(prim)) if valid else Sdf.Path()
+    def _on_stage(self, path: Sdf.Path) -> Sdf.Path:
+        """The attribute of a spec, if it is where the target authors that: the layer may have others, as in variants."""
+        there = self._target.GetMapFunction().MapSourceToTarget(path)
+        is_there = not there.ContainsPrimVariantSelection() and self._target.MapToSpecPath(there) == path
+        return there if is_there else Sdf.Path.emptyPath
 
     def _revert(self, path: Sdf.Path) -> None:
         spec = self._layer.GetAttributeAtPath(path)
@@ -122,6 +124,10 @@ def without_earlier_bake(stage: Usd.Stage, prims: Sequence[str] | None) -> Itera
         yield
     finally:
         earlier.bring_back()
+
+
+def _is_path(prim: str) -> bool:
+    return Sdf.Path.IsValidPathString(prim) and Sdf.Path(prim).IsAbsoluteRootOrPrimPath()
 
 
 def _cached(path: Sdf.Path) -> Sdf.Path:
