@@ -126,14 +126,36 @@ static int32_t channel_named(const exr_attr_chlist_t *channels, const char *name
     return -1;
 }
 
+/* The name of a channel without that of its layer: "R" of "paint.R". */
+static const char *own_name(const exr_attr_chlist_t *channels, int32_t channel) {
+    const char *name = channels->entries[channel].name.str, *dot = strrchr(name, '.');
+    return dot ? dot + 1 : name;
+}
+
+/* The layer of all channels: the length of its name, 0 where they have none, or are of several. */
+static size_t layer_length(const exr_attr_chlist_t *channels) {
+    const char *first = channels->entries[0].name.str;
+    size_t length = (size_t)(own_name(channels, 0) - first);
+    for (int32_t c = 1; c < channels->num_channels; c++) {
+        const char *name = channels->entries[c].name.str;
+        if ((size_t)(own_name(channels, c) - name) != length || strncmp(name, first, length) != 0)
+            return 0;
+    }
+    return length;
+}
+
+/* R, else Y, else the first but A. Where all are of one layer, so are these. */
 static int32_t default_channel(const exr_attr_chlist_t *channels) {
-    int32_t found = channel_named(channels, "R");
-    if (found < 0)
-        found = channel_named(channels, "Y");
-    for (int32_t c = 0; found < 0 && c < channels->num_channels; c++)
-        if (strcmp(channels->entries[c].name.str, "A") != 0)
-            found = c;
-    return found < 0 ? channels->num_channels - 1 : found;
+    static const char *const preferred[] = {"R", "Y"};
+    size_t layer = channels->num_channels ? layer_length(channels) : 0;
+    for (size_t i = 0; i < sizeof preferred / sizeof *preferred; i++)
+        for (int32_t c = 0; c < channels->num_channels; c++)
+            if (strcmp(channels->entries[c].name.str + layer, preferred[i]) == 0)
+                return c;
+    for (int32_t c = 0; c < channels->num_channels; c++)
+        if (strcmp(channels->entries[c].name.str + layer, "A") != 0)
+            return c;
+    return channels->num_channels - 1;
 }
 
 /* The channel of a part that is meant by a name: its own, or where dotted, the part's and its own. */

@@ -39,7 +39,7 @@ typedef struct skinslide_image {
  * compressed as NONE, RLE, ZIPS, ZIP, PIZ or PXR24.
  *   bytes    in  [size] the whole file
  *   channel  in  the name of a channel, of the first part that has it; or PART.CHANNEL; NULL or "": R, else Y, else the first
- *                in the file's order but A, of the first part
+ *                in the file's order but A, of the first part; LAYER.R, LAYER.Y, LAYER.A where all are of one layer
  *   out      out, the caller's to destroy
  * Fails with BAD_IMAGE (not OpenEXR, truncated, corrupt, empty, deep, no such channel: names those there are), UNSUPPORTED (a
  * channel of whole numbers or of fewer texels than the image, another compression, more than 16384 * 16384 texels,

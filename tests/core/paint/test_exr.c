@@ -175,6 +175,16 @@ static void channels_are_chosen(void **state) {
     assert_chosen(&alpha, 1, "", "A", 0, 0);
     exr_part layer = {.channels = {"paint.R", "paint.G"}, .width = 5, .height = 4, .type = EXR_PIXEL_HALF};
     assert_chosen(&layer, 1, "paint.R", "paint.R", 0, 0);
+    exr_part one = {.channels = {"paint.A", "paint.B", "paint.G", "paint.R"}, .width = 5, .height = 4, .type = EXR_PIXEL_HALF};
+    assert_chosen(&one, 1, "", "paint.R", 0, 3);
+    exr_part nested = {.channels = {"a.b.A", "a.b.Y"}, .width = 5, .height = 4, .type = EXR_PIXEL_HALF};
+    assert_chosen(&nested, 1, "", "a.b.Y", 0, 1);
+    exr_part masks = {.channels = {"paint.A", "paint.mask"}, .width = 5, .height = 4, .type = EXR_PIXEL_HALF};
+    assert_chosen(&masks, 1, "", "paint.mask", 0, 1);
+    exr_part several = {.channels = {"a.G", "a.R", "b.R"}, .width = 5, .height = 4, .type = EXR_PIXEL_HALF};
+    assert_chosen(&several, 1, "", "a.G", 0, 0);
+    exr_part beside = {.channels = {"R", "paint.R"}, .width = 5, .height = 4, .type = EXR_PIXEL_HALF};
+    assert_chosen(&beside, 1, "", "R", 0, 0);
 }
 
 static void parts_are_chosen(void **state) {

@@ -37,7 +37,7 @@ class Corners(NamedTuple):
 
 
 def decode_exr(data: Any, channel: str = "") -> Image:
-    """One channel of the OpenEXR file in `data`, by its name, PART.NAME, or "": R, else Y, else the first but A."""
+    """One channel of the OpenEXR file in `data`, by its name, PART.NAME, or "": as a map's is chosen."""
     out = ffi.new("skinslide_image **")
     buffer = ffi.from_buffer("uint8_t[]", data)
     call(lib.skinslide_exr_decode, buffer, len(buffer), channel.encode(), out)

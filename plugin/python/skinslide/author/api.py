@@ -290,7 +290,7 @@ class SkinSlideAPI(AppliedPatch):
     def GetForceDensityMapChannelAttr(self) -> Usd.Attribute:
         """The channel of forceDensityMap to use: its name, or PART.NAME in a file of several parts.
 
-        Absent: R, else Y, else the first but A.
+        Absent: R, else Y, else the first but A; in a file of one layer, of that.
 
         Returns:
             The attribute skinSlide:NAME:forceDensityMapChannel, token, uniform; not valid where there is none.
@@ -344,7 +344,7 @@ class SkinSlideAPI(AppliedPatch):
     def GetWeightMapChannelAttr(self) -> Usd.Attribute:
         """The channel of weightMap to use: its name, or PART.NAME in a file of several parts.
 
-        Absent: R, else Y, else the first but A.
+        Absent: R, else Y, else the first but A; in a file of one layer, of that.
 
         Returns:
             The attribute skinSlide:NAME:weightMapChannel, token, uniform; not valid where there is none.
