@@ -70,18 +70,74 @@ def test_a_failed_bake_leaves_the_stage(shot):
     assert stage.GetRootLayer().ExportToString() == before
 
 
-def test_a_target_that_cannot_be_edited(shot):
-    stage = Usd.Stage.Open(str(shot.save().path))
-    stage.GetRootLayer().SetPermissionToEdit(False)
-    with pytest.raises(UsageError, match="not editable"):
+ANOTHER = "choose another by stage.SetEditTarget, such as stage.GetSessionLayer()"
+
+
+def refused(stage: Usd.Stage) -> str:
+    """What is said of the edit target of a stage, which is left as it is."""
+    before = stage.ExportToString()
+    with pytest.raises(UsageError) as error:
         bake(stage)
-    stage = Usd.Stage.Open(str(shot.path))
+    assert stage.ExportToString() == before
+    return str(error.value)
+
+
+def sublayered(stage: Usd.Stage) -> Sdf.Layer:
+    """A layer of the stage, which is its edit target."""
     layer = Sdf.Layer.CreateAnonymous(".usda")
     stage.GetSessionLayer().subLayerPaths.append(layer.identifier)
     stage.SetEditTarget(layer)
+    return layer
+
+
+def test_a_target_that_cannot_be_edited_says_what_to_do(shot):
+    stage = Usd.Stage.Open(str(shot.save().path))
+    stage.GetRootLayer().SetPermissionToEdit(False)
+    assert refused(stage) == f"the edit target {shot.path} is not editable; {ANOTHER}"
+    stage = Usd.Stage.Open(str(shot.path))
+    layer = sublayered(stage)
     stage.MuteLayer(layer.identifier)
-    with pytest.raises(UsageError, match="muted"):
-        bake(stage)
+    assert (
+        refused(stage) == f"the edit target {layer.identifier} is muted; unmute it by stage.UnmuteLayer, or {ANOTHER}"
+    )
+    stage.UnmuteLayer(layer.identifier)
+    assert bake(stage).frame_count == 5
+
+
+def test_a_target_that_has_left_the_stage(shot):
+    stage = Usd.Stage.Open(str(shot.save().path))
+    layer = sublayered(stage)
+    stage.GetSessionLayer().subLayerPaths.clear()
+    assert refused(stage) == f"the edit target {layer.identifier} is no layer of the stage; {ANOTHER}"
+
+
+def test_a_target_that_nobody_holds(shot):
+    stage = Usd.Stage.Open(str(shot.save().path))
+    sublayered(stage)
+    stage.GetSessionLayer().subLayerPaths.clear()
+    assert refused(stage) == f"the edit target is gone; {ANOTHER}"
+
+
+def test_a_target_that_is_computed(shot, tmp_path):
+    path = tmp_path / "x.skinslide"
+    path.write_text(f"#usda 1.0\n(\n    subLayers = [@{shot.save().path}@]\n)\n")
+    stage = Usd.Stage.Open(str(path))
+    assert refused(stage).startswith(f"the edit target {path} is computed; give its path to functions that write files")
+
+
+def test_a_target_in_a_variant_that_is_not_selected(shot):
+    stage = Usd.Stage.Open(str(shot.save().path))
+    variants = stage.GetPrimAtPath("/World/char").GetVariantSets().AddVariantSet("lod")
+    variants.AddVariant("high")
+    variants.AddVariant("low")
+    variants.SetVariantSelection("high")
+    high = variants.GetVariantEditTarget()
+    stage.SetEditTarget(high)
+    assert not bake(stage).problems
+    with Usd.EditContext(stage, stage.GetRootLayer()):
+        variants.SetVariantSelection("low")
+    fault = f"the variant high of lod in {shot.path}, but low is selected on /World/char"
+    assert refused(stage) == f"the edit target is {fault}; select high, or {ANOTHER}"
 
 
 def test_a_target_that_covers_only_some_of_the_meshes(shot):
@@ -106,6 +162,17 @@ def test_points_that_stay_hidden_are_named(shot):
     stage.SetEditTarget(stage.GetRootLayer())
     report = bake(stage)
     assert any("hidden" in problem.message for problem in report.problems)
+
+
+def test_points_that_stay_hidden_in_one_layer_are_named():
+    stage, mesh = stages.patched_stage()
+    variants = mesh.GetPrim().GetVariantSets().AddVariantSet("lod")
+    variants.AddVariant("high")
+    variants.SetVariantSelection("high")
+    stage.SetEditTarget(variants.GetVariantEditTarget())
+    (problem,) = bake(stage).problems
+    hidden = f"{stage.GetRootLayer().identifier}<{stages.MESH}>"
+    assert problem.message == f"the slid points are hidden by those in {hidden}, which is stronger"
 
 
 def test_prims_choose_meshes(shot, out):

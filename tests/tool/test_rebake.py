@@ -271,7 +271,7 @@ def test_a_bake_beside_variants_leaves_what_is_in_them():
 
 
 def test_a_bake_below_a_reference_leaves_what_is_beside_it(tmp_path):
-    stage, mesh = cached_stage()
+    stage, _mesh = cached_stage()
     other = stages.add_mesh(stage, stages.grid(), OTHER)
     stages.add_patch(other, stages.annulus(), "rope")
     stages.save(stage, tmp_path / "cache.usda")

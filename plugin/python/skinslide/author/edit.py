@@ -15,10 +15,9 @@ from skinslide.problems import NO_SUCH_PRIM, Fault, Problem, StageProblems, erro
 from skinslide.shot.check import CheckReport, check
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, given_path
-from skinslide.stage.marks import has_values
 from skinslide.stage.mesh import read_faces_of_mesh
 from skinslide.write.earlier import without_earlier_bake
-from skinslide.write.target import check_target, whole_or_not_at_all
+from skinslide.write.target import check_target, hidden_by, whole_or_not_at_all
 
 
 @dataclass(frozen=True)
@@ -44,12 +43,11 @@ class EditedMesh:
         return replace(report, problems=[*report.problems, *self._hidden()])
 
     def _hidden(self) -> Iterator[Problem]:
-        """Warns of what a stronger layer than the edit target has another opinion on."""
-        target = self.prim.GetStage().GetEditTarget().GetLayer()
+        """Warns of what a stronger opinion than the edit target's hides."""
         for each in self.prim.GetAuthoredProperties():
-            layers = [spec.layer for spec in each.GetPropertyStack() if has_values(spec)]
-            if schema.is_of_patch(each.GetName(), self.patch) and target in layers[1:]:
-                message = f"{each.GetName()} is hidden by that in {layers[0].identifier}, which is stronger"
+            stronger = hidden_by(each) if schema.is_of_patch(each.GetName(), self.patch) else None
+            if stronger:
+                message = f"{each.GetName()} is hidden by that in {stronger}, which is stronger"
                 yield Problem("warning", str(self.prim.GetPath()), self.patch, None, message)
 
 
@@ -63,7 +61,7 @@ def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = No
     check_target(stage)
     path = given_path("prim", prim)
     try:
-        with whole_or_not_at_all(stage.GetEditTarget(), path, lambda name: schema.is_of_patch(name, patch)):
+        with whole_or_not_at_all(stage, path, lambda name: schema.is_of_patch(name, patch)):
             yield EditedMesh(*_mesh(stage.GetPrimAtPath(path)), patch)
     except Fault as fault:
         raise StageProblems([Problem("error", str(path), source or patch, None, str(fault))]) from fault

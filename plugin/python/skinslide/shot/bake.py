@@ -26,7 +26,7 @@ from skinslide.stage.schema import SLIDE, STRETCH
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
 from skinslide.write.place import check_not_input, check_output
-from skinslide.write.target import check_target, spec_path
+from skinslide.write.target import check_target, hidden_by, spec_path
 
 # Primvars, each with the field of skinslide.arrays.slider.Diagnostics that it holds.
 DIAGNOSTICS = {STRETCH: "stretch_after", SLIDE: "slide"}
@@ -139,7 +139,7 @@ class _Layer:
     def begin(self, shot: Shot, _options: SlideOptions) -> Making:
         check_output(self.output, EXTENSIONS)
         check_not_input(self.output, shot.stage, *shot.paths)
-        return _Baking(self.options, layer_in_place(self.output, shot.stage), None)
+        return _Baking(self.options, layer_in_place(self.output, shot.stage), in_stage=False)
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ class _Opinions:
     earlier: EarlierBake
 
     def begin(self, shot: Shot, _options: SlideOptions) -> Making:
-        return _Baking(self.options, self._authored(shot.stage), shot.stage.GetEditTarget())
+        return _Baking(self.options, self._authored(shot.stage), in_stage=True)
 
     @contextmanager
     def _authored(self, stage: Usd.Stage) -> Iterator[OverLayer]:
@@ -164,15 +164,14 @@ class _Baking(Making):
 
     overs: OverLayer  # while it is running
 
-    def __init__(self, options: LayerOptions, place: AbstractContextManager[OverLayer], target: Usd.EditTarget | None):
-        self.options, self._place, self._target = options, place, target
+    def __init__(self, options: LayerOptions, place: AbstractContextManager[OverLayer], *, in_stage: bool):
+        self.options, self._place, self._in_stage = options, place, in_stage
 
     def of_mesh(self, planned: PlannedMesh, _report: MeshReport) -> MeshMaking:
-        path = planned.mesh.prim.GetPath()
         if self.options.diagnostics:
             _check_primvars(planned.mesh.prim)
-        if self._target:
-            spec_path(self._target, path)
+        if self._in_stage:
+            spec_path(planned.mesh.stage, planned.mesh.prim.GetPath())
         return _MeshBake(planned, self)
 
     @contextmanager
@@ -231,13 +230,11 @@ def _indices(prim: Usd.Prim) -> list[Usd.Attribute]:
 
 
 def _hidden(stage: Usd.Stage, meshes: Iterable[str]) -> Iterator[Problem]:
-    """Warns of meshes whose points a stronger layer than the edit target has an opinion on."""
-    target = stage.GetEditTarget().GetLayer()
+    """Warns of meshes whose points a stronger opinion than the edit target's hides."""
     for path in meshes:
-        opinions = UsdGeom.PointBased(stage.GetPrimAtPath(path)).GetPointsAttr().GetPropertyStack()
-        valued = [spec.layer for spec in opinions if spec.HasInfo("default") or spec.HasInfo("timeSamples")]
-        if valued and valued[0] != target:
-            message = f"the slid points are hidden by those in {valued[0].identifier}, which is stronger"
+        stronger = hidden_by(UsdGeom.PointBased(stage.GetPrimAtPath(path)).GetPointsAttr())
+        if stronger:
+            message = f"the slid points are hidden by those in {stronger}, which is stronger"
             yield Problem("warning", path, None, None, message)
 
 

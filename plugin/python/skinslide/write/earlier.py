@@ -82,7 +82,7 @@ class EarlierBake:
         return found
 
     def _on_stage(self, path: Sdf.Path) -> Sdf.Path:
-        """The attribute of a spec, if it is where the target authors that: the layer may have others, as in variants."""
+        """The attribute of a spec that is where the target authors it: the layer may have others, as in variants."""
         there = self._target.GetMapFunction().MapSourceToTarget(path)
         is_there = not there.ContainsPrimVariantSelection() and self._target.MapToSpecPath(there) == path
         return there if is_there else Sdf.Path.emptyPath

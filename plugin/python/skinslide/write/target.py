@@ -8,9 +8,11 @@ from contextlib import contextmanager
 from pxr import Sdf, Usd
 
 from skinslide.problems import UsageError
-from skinslide.stage.opening import check_clocks
+from skinslide.stage.marks import has_values
+from skinslide.stage.opening import check_clocks, is_live
 
 _SCHEMAS = "apiSchemas"
+_ANOTHER = "choose another by stage.SetEditTarget, such as stage.GetSessionLayer()"
 
 
 def check_target(stage: Usd.Stage) -> None:
@@ -22,17 +24,46 @@ def check_target(stage: Usd.Stage) -> None:
         raise TypeError(f"stage is {stage!r}; it must be a Usd.Stage, or see the function that writes a file")
     check_clocks(stage)
     layer = stage.GetEditTarget().GetLayer()
-    if not layer.permissionToEdit or stage.IsLayerMuted(layer.identifier):
-        fault = "not editable" if not layer.permissionToEdit else "muted"
-        raise UsageError(f"the edit target {layer.identifier} is {fault}")
+    if not layer:
+        raise UsageError(f"the edit target is gone; {_ANOTHER}")
+    fault = _fault(stage, layer)
+    if fault:
+        raise UsageError(f"the edit target {layer.identifier} {fault} {_ANOTHER}")
 
 
-def spec_path(target: Usd.EditTarget, prim: Sdf.Path) -> Sdf.Path:
-    """Where the target's layer has opinions on a prim. Raises UsageError where it can have none."""
-    path = target.MapToSpecPath(prim)
+def _fault(stage: Usd.Stage, layer: Sdf.Layer) -> str | None:
+    """Why a layer takes nothing, and what to do before "choose another"."""
+    if stage.IsLayerMuted(layer.identifier):
+        return "is muted; unmute it by stage.UnmuteLayer, or"
+    if layer not in stage.GetUsedLayers():
+        return "is no layer of the stage;"
+    if is_live(layer):
+        return "is computed; give its path to functions that write files, such as bake_to_file, or"
+    return None if layer.permissionToEdit else "is not editable;"
+
+
+def spec_path(stage: Usd.Stage, prim: Sdf.Path) -> Sdf.Path:
+    """Where the edit target has opinions on a prim. Raises UsageError where it can have none that count."""
+    target = stage.GetEditTarget()
+    path, layer = target.MapToSpecPath(prim), target.GetLayer().identifier
     if not path:
-        raise UsageError(f"the edit target {target.GetLayer().identifier} cannot hold opinions on {prim}")
+        raise UsageError(f"the edit target {layer} cannot hold opinions on {prim}; {_ANOTHER}")
+    for variant in filter(Sdf.Path.IsPrimVariantSelectionPath, path.GetPrefixes()):
+        (name, chosen), owner = variant.GetVariantSelection(), target.GetMapFunction().MapSourceToTarget(variant)
+        selected = stage.GetPrimAtPath(owner).GetVariantSet(name).GetVariantSelection()
+        if selected != chosen:
+            where = f"the variant {chosen} of {name} in {layer}, but {selected or 'none'} is selected on {owner}"
+            raise UsageError(f"the edit target is {where}; select {chosen}, or {_ANOTHER}")
     return path
+
+
+def hidden_by(attribute: Usd.Attribute) -> str | None:
+    """Where the value is that hides the one in the edit target of the stage; None where that is the strongest."""
+    target = attribute.GetStage().GetEditTarget()
+    own = target.GetLayer(), target.MapToSpecPath(attribute.GetPath())
+    valued = [spec for spec in attribute.GetPropertyStack() if has_values(spec)]
+    hidden = own in [(spec.layer, spec.path) for spec in valued[1:]]
+    return f"{valued[0].layer.identifier}<{valued[0].owner.path}>" if hidden else None
 
 
 class Before:
@@ -73,9 +104,12 @@ def remove(layer: Sdf.Layer, attribute: Sdf.Path) -> None:
 
 
 @contextmanager
-def whole_or_not_at_all(target: Usd.EditTarget, prim: Sdf.Path, ours: Callable[[str], bool]) -> Iterator[None]:
-    """What the block authors on a prim: its schemas, and attributes whose names are `ours`. An exception undoes it."""
-    layer, path = target.GetLayer(), spec_path(target, prim)
+def whole_or_not_at_all(stage: Usd.Stage, prim: Sdf.Path, ours: Callable[[str], bool]) -> Iterator[None]:
+    """What the block authors in the edit target: schemas of a prim, and attributes whose names are `ours`.
+
+    An exception undoes it.
+    """
+    layer, path = stage.GetEditTarget().GetLayer(), spec_path(stage, prim)
     spec, before = layer.GetPrimAtPath(path), Before(layer)
     schemas = spec.GetInfo(_SCHEMAS) if spec and spec.HasInfo(_SCHEMAS) else None
     for each in _names(layer, path, ours):
