@@ -4,14 +4,33 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* One line of what a caller may print: names and tokens that a message quotes can hold what moves a terminal's cursor. */
+/* Bytes of the character of UTF-8 that begins at text; 0 where none does, or a control. */
+static int character_size(const char *text) {
+    const unsigned char *c = (const unsigned char *)text;
+    int size = c[0] < 0x80                   ? 1
+               : c[0] >= 0xC2 && c[0] < 0xE0 ? 2
+               : (c[0] & 0xF0) == 0xE0       ? 3
+               : c[0] >= 0xF0 && c[0] < 0xF5 ? 4
+                                             : 0;
+    for (int i = 1; i < size; i++)
+        if ((c[i] & 0xC0) != 0x80)
+            return 0;
+    bool is_control = size == 1 ? c[0] < ' ' || c[0] == 127 : c[0] == 0xC2 && c[1] < 0xA0;
+    bool is_longer_than_need_be = (c[0] == 0xE0 && c[1] < 0xA0) || (c[0] == 0xF0 && c[1] < 0x90);
+    bool is_none = (c[0] == 0xED && c[1] >= 0xA0) || (c[0] == 0xF4 && c[1] >= 0x90); /* a surrogate, or above all */
+    return is_control || is_longer_than_need_be || is_none ? 0 : size;
+}
+
+/* One line of what a caller may print: names that a message quotes can hold what moves a terminal's cursor, and those that come
+ * from files any bytes. */
 static void copy_line(char *out, size_t size, const char *text) {
     size_t end = 0;
-    for (; *text; text++) {
+    for (int whole; *text; text += whole ? whole : 1) {
         unsigned char c = (unsigned char)*text;
         const char *named = c == '\n' ? "\\n" : c == '\r' ? "\\r" : c == '\t' ? "\\t" : NULL;
-        const char *format = named ? named : c < ' ' || c == 127 ? "\\x%02x" : "%c";
-        int length = snprintf(out + end, size - end, format, c);
+        whole = character_size(text);
+        int length = whole ? snprintf(out + end, size - end, "%.*s", whole, text)
+                           : snprintf(out + end, size - end, named ? named : "\\x%02x", c);
         if ((size_t)length >= size - end)
             break; /* what does not fit whole is left out */
         end += (size_t)length;
