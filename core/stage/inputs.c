@@ -67,6 +67,8 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
 #define CONTROL(declared) .shown = {declared, SKINSLIDE_STAGE_CONTROLS, SS_NAMESPACE, SKINSLIDE_STAGE_ANIMATED, 0, 0}
 #define PAINT(name)       PRIMVAR(name, "float[]", SKINSLIDE_STAGE_CONTROLS, SKINSLIDE_STAGE_ANIMATED, 1), .kind = SS_KIND_PAINT
 
+static const char positive[] = "finite and above 0";
+
 static const ss_input patch_inputs[SS_PATCH_ROWS] = {
     [SS_ROW_FACES] = {PRIMVAR("patch", "bool[]", SKINSLIDE_STAGE_PATCH, SKINSLIDE_STAGE_STILL, 0), .kind = SS_KIND_FACES},
     [SS_ROW_BOUNDARY] = {SETTING(SS_PATCH_BOUNDARY), .kind = SS_KIND_CHOICE},
@@ -95,13 +97,13 @@ static const ss_input control_inputs[SS_CONTROL_ROWS] = {
                            .channel = SS_ROW_WEIGHT_CHANNEL},
     [SS_ROW_MAX_DISTANCE] = {PAINT("maxDistance"), .range = SS_RANGE_NOT_NEGATIVE, .wanted = "0 or more",
                              .place = offsetof(skinslide_controls, max_distance)},
-    [SS_ROW_DENSITY] = {PAINT("forceDensity"), .range = SS_RANGE_DENSITY, .wanted = "finite and above 0", .off_patch = 1,
+    [SS_ROW_DENSITY] = {PAINT("forceDensity"), .range = SS_RANGE_DENSITY, .wanted = positive, .off_patch = 1,
                         .drops_constant = true, .place = offsetof(skinslide_controls, vertex_density),
                         .face_place = offsetof(skinslide_controls, face_density)},
     [SS_ROW_DENSITY_MAP] = {CONTROL(SS_PATCH_FORCE_DENSITY_MAP), .kind = SS_KIND_TEXTURE, .multiplies = SS_ROW_DENSITY,
                             .channel = SS_ROW_DENSITY_CHANNEL},
     [SS_ROW_EDGE_DENSITIES] = {CONTROL(SS_PATCH_EDGE_FORCE_DENSITIES), .kind = SS_KIND_FACTORS, .range = SS_RANGE_DENSITY,
-                               .wanted = "finite and above 0", .place = offsetof(skinslide_controls, edge_density)},
+                               .wanted = positive, .place = offsetof(skinslide_controls, edge_density)},
 };
 
 /* ---- What follows from points, and what a shot sets ---- */

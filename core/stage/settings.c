@@ -233,6 +233,37 @@ static skinslide_status check_pairs(const ss_record *record, skinslide_error *er
     return SKINSLIDE_OK;
 }
 
+static skinslide_status check_points(const ss_record *record, const ss_array *points, skinslide_error *error) {
+    for (int32_t i = 0; i < points->count; i++)
+        if (((const int32_t *)points->values)[i] < 0)
+            return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED "[%d] is %d; points are numbered from 0",
+                           SS_NAME(record->value.name), i, ((const int32_t *)points->values)[i]);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_stage_check_value(const skinslide_stage_input *input, const skinslide_value *value,
+                                             skinslide_error *error) {
+    int32_t count, patch_row = ss_row_of(SKINSLIDE_STAGE_PATCH, input), live_row = ss_row_of(SKINSLIDE_STAGE_LIVE, input);
+    if (patch_row < 0 && live_row < 0)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no input of a patch, or of what is live");
+    const ss_input *own = patch_row < 0 ? &ss_inputs(SKINSLIDE_STAGE_LIVE, &count)[live_row] : &patch_inputs()[patch_row];
+    bool are_points = own->kind == SS_KIND_CORNERS || own->kind == SS_KIND_EDGES;
+    ss_memory scratch = {0};
+    ss_taken taken = {0};
+    ss_record record;
+    skinslide_status status = ss_open(value, &record, error);
+    if (!status && (are_points || own->kind == SS_KIND_CHOICE))
+        status = ss_take_plain(own, &record, SKINSLIDE_BAD_CONTROL, &scratch, &taken, error);
+    if (!status && are_points)
+        status = check_points(&record, &taken.array, error);
+    if (!status && own->kind == SS_KIND_CORNERS)
+        status = check_corners(&record, &taken.array, INT32_MAX, error);
+    if (!status && own->kind == SS_KIND_EDGES)
+        status = check_pairs(&record, error);
+    ss_free(&scratch);
+    return status;
+}
+
 static skinslide_status take_setting(skinslide_stage_patch *patch, int32_t row, const ss_record *record,
                                      skinslide_error *error) {
     const ss_input *input = &patch_inputs()[row];

@@ -139,6 +139,12 @@ SKINSLIDE_API skinslide_bool skinslide_stage_is_texture(const skinslide_stage_in
 SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_input(skinslide_stage_group group,
                                                                       const skinslide_stage_input *before);
 
+/* Checks what is to be authored for an input of the group PATCH or LIVE, as far as that can be told without a mesh: that it is
+ * one of its tokens, or that it may be indices of points.
+ * Fails with BAD_CONTROL (names it by the record's name), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_check_value(const skinslide_stage_input *input, const skinslide_value *value,
+                                                           skinslide_error *error);
+
 /* ---- Prims --------------------------------------------------------------------------------------------------------------- */
 
 /* "SkinSlideAPI": a prim that has it applied, as SkinSlideAPI:PATCH, carries a patch. A static string. */

@@ -83,8 +83,48 @@ static void names_that_a_patch_may_have(void **state) {
     assert_string_equal(skinslide_stage_schema(), "SkinSlideAPI");
 }
 
+static skinslide_error error;
+
+static void refused(const skinslide_stage_input *input, skinslide_value value, skinslide_status status, const char *message) {
+    assert_fails(skinslide_stage_check_value(input, &value, &error), &error, status, message);
+}
+
+static void accepted(const skinslide_stage_input *input, skinslide_value value) {
+    assert_ok(skinslide_stage_check_value(input, &value, &error), &error);
+}
+
+static void what_may_be_authored_whatever_the_mesh(void **state) {
+    (void)state;
+    const skinslide_stage_input *holes = input_of(SKINSLIDE_STAGE_PATCH, NULL, "holes"),
+                                *lookup = input_of(SKINSLIDE_STAGE_LIVE, NULL, "lookup"),
+                                *corners = input_of(SKINSLIDE_STAGE_PATCH, NULL, "corners"),
+                                *edges = input_of(SKINSLIDE_STAGE_PATCH, NULL, "edges");
+    static const int32_t points[4] = {3, 0, 7, INT32_MAX - 1}, below[4] = {3, 0, -1, 7}, twice[4] = {3, 0, 3, 7};
+    accepted(holes, text_of("holes", "free"));
+    accepted(lookup, text_of("lookup", "exact"));
+    accepted(corners, array_of("corners", SKINSLIDE_VALUE_INT32, 1, 4, points));
+    accepted(edges, array_of("edges", SKINSLIDE_VALUE_INT32, 1, 4, points));
+    accepted(input_of(SKINSLIDE_STAGE_LIVE, NULL, "envelope"), text_of("envelope", "of another kind"));
+    refused(holes, text_of("holes", "open"), SKINSLIDE_BAD_CONTROL, "holes is 'open'; it must be one of pinned, free");
+    refused(lookup, text_of("lookup", "open"), SKINSLIDE_BAD_CONTROL, "lookup is 'open'; it must be one of auto, egl, exact");
+    refused(corners, array_of("corners", SKINSLIDE_VALUE_INT32, 1, 3, points), SKINSLIDE_BAD_CONTROL,
+            "corners has 3 values; it must have 4");
+    refused(corners, array_of("corners", SKINSLIDE_VALUE_INT32, 1, 4, below), SKINSLIDE_BAD_CONTROL,
+            "corners[2] is -1; points are numbered from 0");
+    refused(corners, array_of("corners", SKINSLIDE_VALUE_INT32, 1, 4, twice), SKINSLIDE_BAD_CONTROL,
+            "corners has point 3 more than once");
+    refused(edges, array_of("edges", SKINSLIDE_VALUE_INT32, 1, 4, below), SKINSLIDE_BAD_CONTROL,
+            "edges[2] is -1; points are numbered from 0");
+    refused(edges, array_of("edges", SKINSLIDE_VALUE_INT32, 1, 3, points), SKINSLIDE_BAD_CONTROL,
+            "edges has 3 values; it must hold pairs of point indices");
+    refused(input_of(SKINSLIDE_STAGE_MESH, NULL, "points"), text_of("points", "x"), SKINSLIDE_BAD_ARGUMENT,
+            "no input of a patch, or of what is live");
+    refused(NULL, text_of("points", "x"), SKINSLIDE_BAD_ARGUMENT, "no input of a patch, or of what is live");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_may_be_authored_whatever_the_mesh),
         cmocka_unit_test(each_input_is_there_once),
         cmocka_unit_test(what_is_of_no_group_ends_a_walk),
         cmocka_unit_test(tokens_are_in_the_order_of_enums),
