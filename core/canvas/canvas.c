@@ -28,9 +28,7 @@ static skinslide_status check_options(const skinslide_canvas_options *options, s
                        MOST_PIXELS);
     if ((unsigned)options->pixels > SKINSLIDE_PIXELS_FLOATS)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such pixels: %d", (int)options->pixels);
-    if (options->device < SKINSLIDE_ANY_DEVICE)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such device: %d", options->device);
-    return SKINSLIDE_OK;
+    return ss_egl_check_device(options->device, error);
 }
 
 static skinslide_status check_limits(const skinslide_canvas *canvas, skinslide_error *error) {

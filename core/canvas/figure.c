@@ -170,10 +170,10 @@ static skinslide_status check_paint(const skinslide_figure *figure, skinslide_er
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a chequer of %g squares", (double)figure->squares);
     if (figure->values && !(range > 0 && isnormal(range) && isnormal(1 / range)))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a scale from %g to %g", (double)figure->lowest, (double)figure->highest);
-    for (int32_t v = 0; figure->values && v < figure->tessellation->mesh_vertex_count; v++)
-        if (!isfinite(figure->values[v]))
-            return ss_fail(error, SKINSLIDE_BAD_POINTS, "vertex %d has the value %g", v, (double)figure->values[v]);
-    return SKINSLIDE_OK;
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t v = 0; figure->values && v < figure->tessellation->mesh_vertex_count && !status; v++)
+        status = ss_check_value(v, figure->values[v], error);
+    return status;
 }
 
 static skinslide_status check(const skinslide_canvas *canvas, const skinslide_viewport *viewport,

@@ -198,10 +198,10 @@ static skinslide_status make_objects(ss_idbuffer *buffer, skinslide_error *error
     gl->glEnable(GL_SCISSOR_TEST);
     for (int32_t p = 0; p < buffer->drawing_count; p++)
         make_buffers(buffer, &buffer->drawings[p]);
-    GLenum failure = gl->glGetError();
-    return failure
-               ? ss_fail(error, SKINSLIDE_DEVICE_FAILED, "the device has no room for the patches: OpenGL error 0x%04x", failure)
-               : SKINSLIDE_OK;
+    char failure[64];
+    if (ss_gl_did(gl, failure, sizeof failure))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_DEVICE_FAILED, "the device has no room for the patches: %s", failure);
 }
 
 /* ---- Losing a context and making it again ---- */

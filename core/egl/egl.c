@@ -132,19 +132,25 @@ static int32_t list_devices(const ss_egl_api *api, const char *client, const ss_
     return found;
 }
 
+static void say_software(account *tried, const char *what) {
+    say(tried, "%.60s is a software rasteriser; ", what);
+}
+
 /* Fills choices [MOST_DISPLAYS]; returns their count. Where EGL lists devices and only hardware will do, they are all there is:
  * it would be the same devices that the other platforms find. */
 static int32_t list_choices(const ss_egl_api *api, const ss_device_request *request, choice *choices, account *tried) {
     const char *client = api->eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     int32_t count = 0, devices = list_devices(api, client, request, choices, &count);
+    char asked[32];
+    snprintf(asked, sizeof asked, "EGL device %d", request->device);
     if (devices < 0)
         say(tried, "EGL does not list devices; ");
     else if (request->device >= MOST_DEVICES && devices == MOST_DEVICES)
         say(tried, "only EGL's first %d devices are tried, not device %d; ", MOST_DEVICES, request->device);
     else if (request->device >= devices)
-        say(tried, "there is no EGL device %d, there are %d; ", request->device, devices);
+        say(tried, "there is no %s, there are %d; ", asked, devices);
     else if (request->hardware_only && count == 0 && request->device >= 0)
-        say(tried, "EGL device %d is a software rasteriser; ", request->device);
+        say_software(tried, asked);
     else if (request->hardware_only && count == 0)
         say(tried, devices ? "EGL has only software rasterisers; " : "EGL has no devices; ");
     if (request->device >= 0 || (request->hardware_only && devices > 0))
@@ -276,7 +282,7 @@ static void drop_context(ss_egl *egl) {
 static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, account *tried) {
     bool made_one = open_display(egl, made, tried) && make_context(egl, tried) && describe(egl, made, tried);
     if (made_one && hardware_only && egl->info.software) {
-        say(tried, "%.60s is a software rasteriser; ", egl->info.renderer);
+        say_software(tried, egl->info.renderer);
         made_one = false;
     }
     if (!made_one)
@@ -311,6 +317,12 @@ static void tell(attempts *tried) {
     tried->count = 0;
 }
 
+static void tell_untold(attempts *tried) {
+    if (tried->untold)
+        say(&tried->told, "and %d more devices; ", tried->untold);
+    tried->untold = 0;
+}
+
 static void note(attempts *tried, const choice *made, const account *failure) {
     const choice *first = &tried->first;
     bool same = tried->count > 0 && first->platform == EGL_PLATFORM_DEVICE_EXT && made->platform == first->platform &&
@@ -319,17 +331,14 @@ static void note(attempts *tried, const choice *made, const account *failure) {
         tell(tried);
         tried->first = *made, tried->failure = *failure;
     }
-    if (made->platform != EGL_PLATFORM_DEVICE_EXT && tried->untold) {
-        say(&tried->told, "and %d more devices; ", tried->untold);
-        tried->untold = 0;
-    }
+    if (made->platform != EGL_PLATFORM_DEVICE_EXT)
+        tell_untold(tried);
     tried->count++;
 }
 
 static const char *tell_all(attempts *tried) {
     tell(tried);
-    if (tried->untold)
-        say(&tried->told, "and %d more devices; ", tried->untold);
+    tell_untold(tried);
     if (tried->told.length > 2)
         tried->told.text[tried->told.length - 2] = 0; /* the last separator */
     return tried->told.text;
@@ -352,6 +361,10 @@ static bool try_all(ss_egl *egl, const ss_device_request *request, attempts *tri
 }
 
 /* ---- Open, enter, leave, close ---- */
+
+skinslide_status ss_egl_check_device(int32_t device, skinslide_error *error) {
+    return device >= SKINSLIDE_ANY_DEVICE ? SKINSLIDE_OK : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such device: %d", device);
+}
 
 skinslide_status ss_egl_open(const ss_device_request *request, ss_egl **out, skinslide_error *error) {
     attempts tried = {0};

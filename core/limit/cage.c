@@ -115,7 +115,7 @@ static skinslide_status fill_stencils(ss_cage *cage, double *weights, skinslide_
     int64_t entries = count_entries(cage, weights);
     ss_rows *rows = &cage->stencils;
     if (entries > INT32_MAX)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its limit system is too large", cage->patch->label);
+        return ss_refuse_large(cage->patch->label, error);
     rows->row_count = count;
     rows->start = SS_NEW(&cage->memory, int32_t, (int64_t)count + 1);
     rows->column = SS_NEW(&cage->memory, int32_t, entries);

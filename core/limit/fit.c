@@ -111,7 +111,7 @@ static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double
     if (samples)
         row_count += samples->row_count, entries += samples->start[samples->row_count];
     if (row_count > INT32_MAX || entries > INT32_MAX)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its limit system is too large", label);
+        return ss_refuse_large(label, error);
     ss_memory scratch = {0};
     ss_rows rows = {.column_count = fit->free_count};
     rows.start = SS_NEW(&scratch, int32_t, row_count + 1);

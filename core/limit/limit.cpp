@@ -183,13 +183,13 @@ skinslide_status refuse_crowd(const ss_topology &topology, int32_t face, const c
     Far::TopologyLevel level = topology.refiner->GetLevel(0);
     Far::ConstIndexArray vertices = level.GetFaceVertices(face);
     int vertex = crowded_vertex(topology, vertices);
-    if (vertices.size() > most_around)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: face %d has %d vertices; limit surfaces are made for %d at most",
-                       label, face, vertices.size(), most_around);
-    if (vertex >= 0)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: vertex %d has %d faces; limit surfaces are made for %d at most",
-                       label, vertex, level.GetVertexFaces(vertex).size(), most_around);
-    return SKINSLIDE_OK;
+    bool is_face = vertices.size() > most_around;
+    if (!is_face && vertex < 0)
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: %s %d has %d %s; limit surfaces are made for %d at most", label,
+                   is_face ? "face" : "vertex", is_face ? face : vertex,
+                   is_face ? vertices.size() : level.GetVertexFaces(vertex).size(), is_face ? "vertices" : "faces",
+                   most_around);
 }
 
 /* OpenSubdiv is asked last: where it crashes at a face, it may do so when asked. */

@@ -82,7 +82,7 @@ static int32_t multiply_row(const ss_rows *rows, const ss_rows *transposed, int3
     return count;
 }
 
-static skinslide_status too_large(const char *label, skinslide_error *error) {
+skinslide_status ss_refuse_large(const char *label, skinslide_error *error) {
     return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its limit system is too large", label);
 }
 
@@ -100,7 +100,7 @@ static skinslide_status multiply(const ss_rows *rows, const char *label, product
     for (int32_t j = 0; j < n; j++)
         entries += multiply_row(rows, &out->transpose, j, place, touched, NULL);
     if (entries > INT32_MAX)
-        return too_large(label, error);
+        return ss_refuse_large(label, error);
     new_rows(memory, n, n, entries, &out->square);
     if (memory->failed)
         return ss_out_of_memory(error);
@@ -115,7 +115,7 @@ static skinslide_status refuse(const ss_least_squares *sparse, const char *label
     if (sparse->common.status == KLU_OUT_OF_MEMORY)
         return ss_out_of_memory(error);
     if (sparse->common.status == KLU_TOO_LARGE)
-        return too_large(label, error);
+        return ss_refuse_large(label, error);
     return ss_fail(error, SKINSLIDE_SINGULAR, "%s: its vertices do not follow from points of its limit surface", label);
 }
 

@@ -100,6 +100,8 @@ typedef struct ss_rows {
 typedef struct ss_least_squares ss_least_squares;           /* A'A, factored: immutable */
 typedef struct ss_least_squares_work ss_least_squares_work; /* one a thread */
 
+/* That a system of a patch has more entries than can be numbered. label begins the message. */
+skinslide_status ss_refuse_large(const char *label, skinslide_error *error);
 /* SINGULAR where the condition of A'A leaves too few digits. rows are only read; label begins messages. */
 skinslide_status ss_least_squares_create(const ss_rows *rows, const char *label, ss_least_squares **out,
                                          skinslide_error *error);

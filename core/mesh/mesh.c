@@ -2,6 +2,7 @@
 #include "mesh.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 int ss_ascending(const void *a, const void *b) {
@@ -14,13 +15,24 @@ int ss_ascending_pairs(const void *a, const void *b) {
     return x[0] != y[0] ? ss_ascending(x, y) : ss_ascending(x + 1, y + 1);
 }
 
+/* ---- Checks ---- */
+
+skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float *numbers, int width, skinslide_status status,
+                                  skinslide_error *error) {
+    char shown[96];
+    if (width == 3)
+        snprintf(shown, sizeof shown, "(%g, %g, %g)", (double)numbers[0], (double)numbers[1], (double)numbers[2]);
+    else
+        snprintf(shown, sizeof shown, "%g", (double)numbers[0]);
+    return ss_fail(error, status, "%s: vertex %d is not finite: %s", what, vertex, shown);
+}
+
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error) {
     if (!points)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
     for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++)
         if (!isfinite(points[i]))
-            return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d is not finite: (%g, %g, %g)", what, (int)(i / 3),
-                           points[i / 3 * 3], points[i / 3 * 3 + 1], points[i / 3 * 3 + 2]);
+            return ss_refuse_vertex(what, (int32_t)(i / 3), points + i / 3 * 3, 3, SKINSLIDE_BAD_POINTS, error);
     return SKINSLIDE_OK;
 }
 
@@ -35,6 +47,31 @@ static skinslide_status check_weld(const skinslide_mesh *mesh, skinslide_error *
     return SKINSLIDE_OK;
 }
 
+skinslide_status ss_check_face_counts(const int32_t *counts, int32_t face_count, skinslide_error *error) {
+    for (int32_t f = 0; f < face_count; f++)
+        if (counts[f] < 0)
+            return ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has %d vertices", f, counts[f]);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_check_members(const int32_t *indices, int32_t count, int32_t end, const char *what, skinslide_status status,
+                                  skinslide_error *error) {
+    for (int32_t i = 0; i < count; i++)
+        if (indices[i] < 0 || indices[i] >= end)
+            return ss_fail(error, status, "%s%d is not one of the mesh's %d", what, indices[i], end);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_check_faces(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error) {
+    if (face_count < 0 || (face_count && !faces))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces");
+    return ss_check_members(faces, face_count, mesh_face_count, "face ", SKINSLIDE_BAD_ARGUMENT, error);
+}
+
+skinslide_status ss_refuse_repeated(const char *label, const char *element, skinslide_status status, skinslide_error *error) {
+    return ss_fail(error, status, "%s: %s is listed more than once", label, element);
+}
+
 skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error) {
     if (!mesh || mesh->vertex_count < 0 || mesh->face_count < 0 || mesh->index_count < 0)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh, or a negative count in it");
@@ -43,11 +80,11 @@ skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *erro
     if (!mesh->face_counts || !mesh->face_indices)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the mesh has no array of face counts or indices");
     int64_t corners = 0;
-    for (int32_t f = 0; f < mesh->face_count; f++) {
-        if (mesh->face_counts[f] < 0)
-            return ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has %d vertices", f, mesh->face_counts[f]);
+    skinslide_status status = ss_check_face_counts(mesh->face_counts, mesh->face_count, error);
+    if (status)
+        return status;
+    for (int32_t f = 0; f < mesh->face_count; f++)
         corners += mesh->face_counts[f];
-    }
     if (corners != mesh->index_count)
         return ss_fail(error, SKINSLIDE_BAD_MESH, "face counts add up to %lld, but there are %d face indices",
                        (long long)corners, mesh->index_count);

@@ -47,6 +47,18 @@ typedef struct ss_taken_mesh {
 skinslide_status ss_take_mesh(const skinslide_mesh **mesh, ss_taken_mesh *own, skinslide_error *error);
 /* Counts, indices and rest points of the whole mesh. */
 skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error);
+/* Names the first face of fewer vertices than none. */
+skinslide_status ss_check_face_counts(const int32_t *counts, int32_t face_count, skinslide_error *error);
+/* Names the first index that is not one of a mesh's, of which there are `end`; what begins the message, such as "face ". */
+skinslide_status ss_check_members(const int32_t *indices, int32_t count, int32_t end, const char *what, skinslide_status status,
+                                  skinslide_error *error);
+/* The same of some faces of a mesh, which may be NULL where they are none. Fails with BAD_ARGUMENT. */
+skinslide_status ss_check_faces(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error);
+/* That what a caller lists once, such as "face 3", is there again. */
+skinslide_status ss_refuse_repeated(const char *label, const char *element, skinslide_status status, skinslide_error *error);
+/* That what belongs to a vertex, one number or three, is not finite. */
+skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float *numbers, int width, skinslide_status status,
+                                  skinslide_error *error);
 /* Names the first vertex that is not finite. */
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
 /* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. label begins messages. */

@@ -2,6 +2,7 @@
  * element. */
 #include "mesh.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,14 +74,17 @@ static skinslide_status check_crease_edges(const skinslide_mesh *mesh, skinslide
 
 /* ---- Creases, corners, holes ---- */
 
+static skinslide_status refuse_array(const char *what, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no array of %s, or a negative count of them", what);
+}
+
 static skinslide_status check_indices(const int32_t *indices, int32_t count, int32_t end, const char *what,
                                       skinslide_error *error) {
     if (count < 0 || (count > 0 && !indices))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no array of %s, or a negative count of them", what);
-    for (int32_t i = 0; i < count; i++)
-        if (indices[i] < 0 || indices[i] >= end)
-            return ss_fail(error, SKINSLIDE_BAD_MESH, "%s: %d is not one of the mesh's %d", what, indices[i], end);
-    return SKINSLIDE_OK;
+        return refuse_array(what, error);
+    char label[32];
+    snprintf(label, sizeof label, "%s: ", what);
+    return ss_check_members(indices, count, end, label, SKINSLIDE_BAD_MESH, error);
 }
 
 static skinslide_status check_sharpness(const float *sharpnesses, int32_t count, const char *what, skinslide_error *error) {

@@ -50,21 +50,13 @@ static bool succeeds(source *from, exr_result_t result) {
 
 /* ---- What OpenEXR calls ---- */
 
-/* Messages may quote the file. */
-static void copy_plain(char *target, size_t size, const char *text) {
-    snprintf(target, size, "%s", text ? text : "");
-    for (char *c = target; *c; c++)
-        if ((unsigned char)*c < ' ' || (unsigned char)*c > '~')
-            *c = '?';
-}
-
 static void hear(exr_const_context_t context, exr_result_t code, const char *message) {
     void *data = NULL;
     if (code != EXR_ERR_SUCCESS && exr_get_user_data(context, &data) == EXR_ERR_SUCCESS && data) {
         source *from = data;
         from->out_of_memory |= code == EXR_ERR_OUT_OF_MEMORY;
         if (!from->said[0])
-            copy_plain(from->said, sizeof from->said, message);
+            snprintf(from->said, sizeof from->said, "%s", message ? message : "");
     }
 }
 
@@ -188,14 +180,12 @@ static void list_channels(exr_const_context_t file, int part_count, char *text, 
 
 static skinslide_status no_channel(exr_const_context_t file, int part_count, bool all_deep, const char *wanted,
                                    skinslide_error *error) {
-    char listed[256], there[256], name[96];
+    char listed[256];
     if (all_deep)
         return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the image is deep; flatten it");
     list_channels(file, part_count, listed, sizeof listed);
-    copy_plain(there, sizeof there, listed);
-    copy_plain(name, sizeof name, wanted);
-    return ss_fail(error, SKINSLIDE_BAD_IMAGE, "there is no channel %s; the file has %s", name,
-                   there[0] ? there : "no channels");
+    return ss_fail(error, SKINSLIDE_BAD_IMAGE, "there is no channel %.95s; the file has %s", wanted,
+                   listed[0] ? listed : "no channels");
 }
 
 static skinslide_status choose_channel(exr_const_context_t file, const char *wanted, selection *chosen,
@@ -220,22 +210,24 @@ static skinslide_status choose_channel(exr_const_context_t file, const char *wan
 static skinslide_status check_compression(exr_const_context_t file, const selection *chosen, skinslide_error *error) {
     static const char *const lossy[] = {"B44", "B44A", "DWAA", "DWAB"};
     exr_compression_t compression = EXR_COMPRESSION_LAST_TYPE;
-    if (exr_get_compression(file, chosen->part, &compression) != EXR_ERR_SUCCESS || compression > EXR_COMPRESSION_DWAB)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "a compression that is not known; write the file as ZIP or PIZ");
-    if (compression > EXR_COMPRESSION_PXR24)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "compression %s is not read; write the file as ZIP or PIZ",
-                       lossy[compression - EXR_COMPRESSION_B44]);
-    return SKINSLIDE_OK;
+    bool known =
+        exr_get_compression(file, chosen->part, &compression) == EXR_ERR_SUCCESS && compression <= EXR_COMPRESSION_DWAB;
+    if (known && compression <= EXR_COMPRESSION_PXR24)
+        return SKINSLIDE_OK;
+    char which[32] = "a compression that is not known";
+    if (known)
+        snprintf(which, sizeof which, "compression %s is not read", lossy[compression - EXR_COMPRESSION_B44]);
+    return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s; write the file as ZIP or PIZ", which);
 }
 
 static skinslide_status check_channel(const selection *chosen, skinslide_error *error) {
     const exr_attr_chlist_entry_t *channel = &chosen->channels->entries[chosen->channel];
-    char name[96];
-    copy_plain(name, sizeof name, channel->name.str);
+    const char *name = channel->name.str;
     if (channel->pixel_type != EXR_PIXEL_HALF && channel->pixel_type != EXR_PIXEL_FLOAT)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "channel %s holds whole numbers (uint); it must be half or float", name);
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "channel %.95s holds whole numbers (uint); it must be half or float",
+                       name);
     if (channel->x_sampling != 1 || channel->y_sampling != 1)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "channel %s has fewer texels than the image (sampling %d, %d)", name,
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "channel %.95s has fewer texels than the image (sampling %d, %d)", name,
                        channel->x_sampling, channel->y_sampling);
     return SKINSLIDE_OK;
 }
@@ -268,6 +260,18 @@ static skinslide_status read_windows(exr_const_context_t file, int part, window 
     return status ? status : check_window("display", *display, error);
 }
 
+skinslide_status ss_check_most(const char *before, uint64_t count, const char *of, uint64_t most, skinslide_status status,
+                               skinslide_error *error) {
+    if (count <= most)
+        return SKINSLIDE_OK;
+    return ss_fail(error, status, "%s%llu %s; more than %llu are refused", before, (unsigned long long)count, of,
+                   (unsigned long long)most);
+}
+
+static skinslide_status refuse_storage(skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the header does not say how the texels are stored");
+}
+
 /* Every chunk has eight bytes in the table of offsets and eight of its own at least, so a header cannot claim more of them than
  * the file has room for. */
 static skinslide_status check_chunks(exr_const_context_t file, int part, const source *from, skinslide_error *error) {
@@ -275,17 +279,13 @@ static skinslide_status check_chunks(exr_const_context_t file, int part, const s
     uint64_t unpacked = 0;
     if (exr_get_chunk_count(file, part, &count) != EXR_ERR_SUCCESS || count < 1 ||
         exr_get_chunk_unpacked_size(file, part, &unpacked) != EXR_ERR_SUCCESS)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the header does not say how the texels are stored");
+        return refuse_storage(error);
     if (count > from->size / 16)
         return ss_fail(error, SKINSLIDE_BAD_IMAGE,
                        "truncated: the header promises %d chunks of texels, the file has %lld bytes", count,
                        (long long)from->size);
-    if (count > MOST_CHUNKS)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%d chunks of texels; more than %d are refused", count, MOST_CHUNKS);
-    if (unpacked > LARGEST_CHUNK)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "chunks of %llu bytes; more than %llu are refused",
-                       (unsigned long long)unpacked, (unsigned long long)LARGEST_CHUNK);
-    return SKINSLIDE_OK;
+    skinslide_status status = ss_check_most("", (uint64_t)count, "chunks of texels", MOST_CHUNKS, SKINSLIDE_UNSUPPORTED, error);
+    return status ? status : ss_check_most("chunks of ", unpacked, "bytes", LARGEST_CHUNK, SKINSLIDE_UNSUPPORTED, error);
 }
 
 static skinslide_wrap wrap_word(const char *word, size_t length) {
@@ -439,7 +439,7 @@ static skinslide_status decode_texels(exr_const_context_t file, target *to, skin
     else if (known)
         known = exr_get_scanlines_per_chunk(file, part, &height) == EXR_ERR_SUCCESS;
     if (!known || width < 1 || height < 1)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the header does not say how the texels are stored");
+        return refuse_storage(error);
     to->chunk_size = least(width, to->data.width) * least(height, to->data.height);
     to->from->said[0] = 0;
     int64_t end = storage == EXR_STORAGE_TILED ? decode_tiles(file, width, height, to) : decode_scanlines(file, height, to);
@@ -524,11 +524,15 @@ static skinslide_status decode(source *from, const char *channel, skinslide_imag
     return status;
 }
 
+static skinslide_status refuse_arguments(skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no bytes, or no place for the image");
+}
+
 skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const char *channel, skinslide_image **out,
                                       skinslide_error *error) {
     static const uint8_t nothing = 0;
     if (!out || size < 0 || (size && !bytes))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no bytes, or no place for the image");
+        return refuse_arguments(error);
     source from = {.bytes = bytes ? bytes : &nothing, .size = size};
     return decode(&from, channel, out, error);
 }
@@ -536,7 +540,7 @@ skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const 
 skinslide_status skinslide_exr_read(int32_t descriptor, int64_t offset, int64_t size, const char *channel,
                                     skinslide_image **out, skinslide_error *error) {
     if (!out || offset < 0 || size < 0 || size > INT64_MAX - offset)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no bytes, or no place for the image");
+        return refuse_arguments(error);
     source from = {.descriptor = descriptor, .offset = offset, .size = size};
     return decode(&from, channel, out, error);
 }

@@ -52,7 +52,7 @@ static int64_t write_bytes(exr_const_context_t context, void *data, const void *
     sink *to = data;
     if (!make_room(to, (size_t)(offset + size))) {
         to->failed = EXR_ERR_OUT_OF_MEMORY;
-        fail(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
+        fail(context, EXR_ERR_OUT_OF_MEMORY, "%s", skinslide_status_text(SKINSLIDE_OUT_OF_MEMORY));
         return -1;
     }
     if (size)

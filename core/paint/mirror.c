@@ -220,11 +220,7 @@ static skinslide_status check(const skinslide_mesh *mesh, int32_t axis, double p
         return status;
     if (axis < 0 || axis > 2 || !isfinite(plane) || !isfinite(tolerance))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "axis %d, plane %g, tolerance %g", axis, plane, tolerance);
-    for (int32_t i = 0; i < face_count; i++)
-        if (!faces || faces[i] < 0 || faces[i] >= mesh->face_count)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", faces ? faces[i] : -1,
-                           mesh->face_count);
-    return SKINSLIDE_OK;
+    return ss_check_faces(mesh->face_count, faces, face_count, error);
 }
 
 /* Fills m->vertex, and mirror_faces of the caller's. */
@@ -251,7 +247,7 @@ skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, doub
     skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (!status)
         status = check(mesh, axis, plane, tolerance, faces, face_count, error);
-    if (status || face_count < 0 || !mirror_faces || !mirror_vertices)
+    if (status || !mirror_faces || !mirror_vertices)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for what is found");
     ss_memory memory = {0};
     mirror m = {.mesh = mesh, .axis = axis, .plane = plane, .tolerance = tolerance};

@@ -17,5 +17,10 @@ typedef struct ss_taken_layout {
 } ss_taken_layout;
 /* Puts what it takes in the place of the caller's layout, and checks that. */
 skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_taken_layout *own, skinslide_error *error);
+/* Files may claim any size, such as that one "has " so many "bytes". */
+skinslide_status ss_check_most(const char *before, uint64_t count, const char *of, uint64_t most, skinslide_status status,
+                               skinslide_error *error);
+/* Texture coordinates of a corner of a face must be finite. */
+skinslide_status ss_check_st(const float st[2], int32_t face, skinslide_error *error);
 
 #endif

@@ -12,11 +12,13 @@ typedef struct corners {
 static skinslide_status check(const skinslide_texture_layout *layout, skinslide_error *error) {
     if (!layout->st || layout->face_count < 0 || (layout->face_count && !layout->faces))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no texture coordinates, or no faces");
-    for (int32_t i = 0; i < layout->face_count; i++)
-        if (layout->faces[i] < 0 || layout->faces[i] >= layout->mesh->face_count)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", layout->faces[i],
-                           layout->mesh->face_count);
-    return SKINSLIDE_OK;
+    return ss_check_faces(layout->mesh->face_count, layout->faces, layout->face_count, error);
+}
+
+skinslide_status ss_check_st(const float st[2], int32_t face, skinslide_error *error) {
+    if (isfinite(st[0]) && isfinite(st[1]))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
 }
 
 skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_taken_layout *own, skinslide_error *error) {
@@ -55,8 +57,9 @@ static skinslide_status face_tiles(const corners *c, int32_t face, int32_t *tile
     int32_t begin = c->start[face], end = c->start[face + 1];
     for (int32_t i = begin; i < end; i++) {
         const float *st = c->layout->st + 2 * (int64_t)i;
-        if (!isfinite(st[0]) || !isfinite(st[1]))
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
+        skinslide_status status = ss_check_st(st, face, error);
+        if (status)
+            return status;
         middle[0] += (double)st[0] / (end - begin), middle[1] += (double)st[1] / (end - begin);
     }
     for (int32_t i = begin; i < end; i++) {
@@ -147,8 +150,9 @@ static skinslide_status sample_face(const corners *c, int32_t face, const int32_
                                     int32_t tile_count, double (*sums)[2], skinslide_error *error) {
     for (int32_t i = c->start[face]; i < c->start[face + 1]; i++) {
         const float *st = c->layout->st + 2 * (int64_t)i;
-        if (!isfinite(st[0]) || !isfinite(st[1]))
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", face, st[0], st[1]);
+        skinslide_status status = ss_check_st(st, face, error);
+        if (status)
+            return status;
         const skinslide_texture_tile *tile = find_tile(tiles, tile_count, numbers[i]);
         if (!tile)
             return ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g), but there is no tile %d", face, st[0], st[1],

@@ -9,8 +9,7 @@
  * Then, DILATION times, each uncovered texel that touches covered ones, along a side or at a corner, takes their mean. All in
  * double, one texel after the other: the same bytes on every machine. */
 #include "paint.h"
-#include "plane.h"
-#include "skinslide/picture.h"
+#include "picture.h"
 
 #include <math.h>
 #include <string.h>
@@ -207,8 +206,9 @@ static skinslide_status check_values(const map *m, const float *values, skinslid
         int32_t face = m->layout->faces[i];
         for (int32_t c = m->face_start[face]; c < m->face_start[face + 1]; c++) {
             int32_t vertex = m->layout->mesh->face_indices[c];
-            if (!isfinite(values[vertex]))
-                return ss_fail(error, SKINSLIDE_BAD_POINTS, "vertex %d has the value %g", vertex, (double)values[vertex]);
+            skinslide_status status = ss_check_value(vertex, values[vertex], error);
+            if (status)
+                return status;
         }
     }
     return SKINSLIDE_OK;

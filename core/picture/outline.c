@@ -73,15 +73,6 @@ static bool fill(skinslide_outline *own, const int32_t *chosen, int32_t count) {
     return allocated;
 }
 
-skinslide_status ss_check_patch(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error) {
-    if (face_count < 0 || (face_count && !faces))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces");
-    for (int32_t i = 0; i < face_count; i++)
-        if (faces[i] < 0 || faces[i] >= mesh_face_count)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", faces[i], mesh_face_count);
-    return SKINSLIDE_OK;
-}
-
 skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces, int32_t face_count,
                                    skinslide_outline **out, skinslide_error *error) {
     skinslide_outline *own = calloc(1, sizeof *own);
@@ -100,7 +91,7 @@ skinslide_status skinslide_outline_create(const skinslide_tessellation *tessella
                                           skinslide_outline **out, skinslide_error *error) {
     if (!tessellation || !out)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no tessellation, or no place for the outline");
-    skinslide_status status = ss_check_patch(tessellation->mesh_face_count, faces, face_count, error);
+    skinslide_status status = ss_check_faces(tessellation->mesh_face_count, faces, face_count, error);
     return status ? status : ss_outline_create(tessellation, faces, face_count, out, error);
 }
 

@@ -89,7 +89,6 @@ bool ss_join_seams(skinslide_tessellation *tessellation);
 /* Of faces that are the mesh's. */
 skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces, int32_t face_count,
                                    skinslide_outline **out, skinslide_error *error);
-skinslide_status ss_check_patch(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error);
 /* Blends values [width] at the corners of a grid's face linearly at one of its vertices: values are of the mesh's vertices, or
  * of its corners. */
 void ss_blend(const skinslide_tessellation *tessellation, const ss_grid *grid, int32_t vertex, const float *values,
@@ -97,6 +96,8 @@ void ss_blend(const skinslide_tessellation *tessellation, const ss_grid *grid, i
 
 /* The middle of the box of the vertices that faces have, to be taken off places before they are rounded to float. */
 void ss_find_middle(const skinslide_tessellation *tessellation, const float *points, double middle[3]);
+/* What a vertex has to show must be finite. */
+skinslide_status ss_check_value(int32_t mesh_vertex, float value, skinslide_error *error);
 bool ss_tessellation_work_allocate(const skinslide_tessellation *tessellation, ss_tessellation_work *work);
 /* The mesh in a pose, less the origin: work->vertices, whose values are 0 where values is NULL. */
 void ss_tessellate(const skinslide_tessellation *tessellation, const float *points, const float *values, const double origin[3],

@@ -137,6 +137,11 @@ void ss_find_middle(const skinslide_tessellation *own, const float *points, doub
     }
 }
 
+skinslide_status ss_check_value(int32_t mesh_vertex, float value, skinslide_error *error) {
+    return isfinite(value) ? SKINSLIDE_OK
+                           : ss_fail(error, SKINSLIDE_BAD_POINTS, "vertex %d has the value %g", mesh_vertex, (double)value);
+}
+
 bool ss_tessellation_work_allocate(const skinslide_tessellation *own, ss_tessellation_work *work) {
     ss_memory *memory = &work->memory;
     work->patch_points = SS_NEW(memory, double, own->surfaces ? ss_limit_surfaces_scratch(own->surfaces) : 0);

@@ -3,6 +3,8 @@
  * meet all the same. Grids are fine in the patch and around it, where a picture looks, and coarse elsewhere. */
 #include "picture.h"
 
+#include "paint.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -240,11 +242,10 @@ static skinslide_status check(const skinslide_mesh *mesh, const float *st, const
     if (!status && !st)
         status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
     if (!status)
-        status = ss_check_patch(mesh->face_count, faces, face_count, error);
+        status = ss_check_faces(mesh->face_count, faces, face_count, error);
     for (int32_t f = 0, c = 0; !status && st && f < mesh->face_count; c += mesh->face_counts[f++])
-        for (int32_t k = 2 * c; k < 2 * (c + mesh->face_counts[f]) && !status; k++)
-            if (!isfinite(st[k]))
-                status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "face %d has st (%g, %g)", f, st[k & ~1], st[k | 1]);
+        for (int32_t k = c; k < c + mesh->face_counts[f] && !status; k++)
+            status = ss_check_st(st + 2 * (int64_t)k, f, error);
     return status;
 }
 

@@ -216,16 +216,11 @@ skinslide_status check_poses(const skinslide_subject &own, skinslide_error *erro
 }
 
 skinslide_status check(const skinslide_subject &own, const double *up, double aspect, skinslide_error *error) {
-    if (own.face_count < 1 || !own.faces || own.pose_count < 1 || !own.poses)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces, or no poses");
     double length = up ? glm::length(glm::make_vec3(up)) : 0;
     if (!(length > 0) || !std::isfinite(length) || !(aspect > 0) || !std::isfinite(aspect))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no way up, or no shape of picture");
-    for (int32_t i = 0; i < own.face_count; i++)
-        if (own.faces[i] < 0 || own.faces[i] >= own.mesh->face_count)
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "face %d is not one of the mesh's %d", own.faces[i],
-                           own.mesh->face_count);
-    return check_poses(own, error);
+    skinslide_status status = ss_check_faces(own.mesh->face_count, own.faces, own.face_count, error);
+    return status ? status : check_poses(own, error);
 }
 
 } // namespace
@@ -249,6 +244,8 @@ skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const d
     skinslide_subject own = SKINSLIDE_SUBJECT_DEFAULT;
     ss_taken_mesh taken;
     skinslide_status status = ss_take(subject, "skinslide_subject", &own, sizeof own, error);
+    if (!status && (own.face_count < 1 || !own.faces || own.pose_count < 1 || !own.poses))
+        status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no faces, or no poses");
     if (!status)
         status = ss_take_mesh(&own.mesh, &taken, error);
     if (!status)

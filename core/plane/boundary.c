@@ -3,6 +3,7 @@
 #include "plane.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define PI 3.14159265358979323846
 
@@ -108,9 +109,11 @@ static skinslide_status find_corners(const ss_patch *patch, int32_t positions[4]
     }
     sort4(positions);
     for (int k = 1; k < 4; k++)
-        if (positions[k] == positions[k - 1])
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s: corner %d is listed more than once", patch->label,
-                           patch->mesh_vertex[patch->loop_vertex[positions[k]]]);
+        if (positions[k] == positions[k - 1]) {
+            char corner[24];
+            snprintf(corner, sizeof corner, "corner %d", patch->mesh_vertex[patch->loop_vertex[positions[k]]]);
+            return ss_refuse_repeated(patch->label, corner, SKINSLIDE_BAD_CONTROL, error);
+        }
     return SKINSLIDE_OK;
 }
 

@@ -130,9 +130,9 @@ static measures measure(const tally *at, const float *cached, const float *slid,
 /* Stretches are logarithms of lengths that floats can say. */
 static skinslide_status check_vertex(const measures *own, const skinslide_diagnostics *out, int32_t v, skinslide_error *error) {
     if (out->slide && !isfinite(own->slide))
-        return ss_fail(error, SKINSLIDE_BAD_POINTS, "slide: vertex %d is not finite: %g", v, own->slide);
+        return ss_refuse_vertex("slide", v, &own->slide, 1, SKINSLIDE_BAD_POINTS, error);
     if (out->force_density && !isfinite(own->density))
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "force density: vertex %d is not finite: %g", v, own->density);
+        return ss_refuse_vertex("force density", v, &own->density, 1, SKINSLIDE_BAD_CONTROL, error);
     return SKINSLIDE_OK;
 }
 

@@ -7,11 +7,9 @@
 static skinslide_status check_options(const skinslide_workspace_options *options, skinslide_error *error) {
     if ((unsigned)options->lookup > SKINSLIDE_LOOKUP_EXACT)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such lookup: %d", (int)options->lookup);
-    if (options->device < SKINSLIDE_ANY_DEVICE)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such device: %d", options->device);
     if (options->resolution < 0)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such resolution: %d", options->resolution);
-    return SKINSLIDE_OK;
+    return ss_egl_check_device(options->device, error);
 }
 
 /* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with

@@ -1,5 +1,5 @@
 /* Velocities and accelerations of slid points: the cache's own, plus the rate at which the displacement changes. */
-#include "base.h"
+#include "mesh.h"
 
 #include <math.h>
 
@@ -47,8 +47,8 @@ static skinslide_status check_rates(int32_t vertex_count, const skinslide_sample
     for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++) {
         float rate = corrected(samples, count, rates[i], i);
         if (!isfinite(rate) && isfinite(rates[i]))
-            return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d is not finite: %g",
-                           count == 2 ? "velocities" : "accelerations", (int)(i / 3), rate);
+            return ss_refuse_vertex(count == 2 ? "velocities" : "accelerations", (int32_t)(i / 3), &rate, 1,
+                                    SKINSLIDE_BAD_POINTS, error);
     }
     return SKINSLIDE_OK;
 }

@@ -2,29 +2,43 @@
 #include "slide.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* ---- Checks that name mesh elements ---- */
 
-static skinslide_status check_density(const float *values, int32_t count, const char *name, const char *element,
-                                      skinslide_error *error) {
-    for (int32_t i = 0; values && i < count; i++)
-        if (!(values[i] > 0) || isinf(values[i]))
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: force density of %s %d is %g; it must be finite and > 0",
-                           name, element, i, values[i]);
-    return SKINSLIDE_OK;
+static bool is_positive(float value) {
+    return value > 0 && !isinf(value);
+}
+
+/* The value of something, such as "hold of vertex 3". */
+static skinslide_status refuse(const char *name, const char *of, float value, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: %s is %g; it must be finite and > 0", name, of, value);
+}
+
+static skinslide_status check_all(const float *values, int32_t count, const char *name, const char *elements,
+                                  skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    char of[64];
+    for (int32_t i = 0; values && i < count && !status; i++)
+        if (!is_positive(values[i])) {
+            snprintf(of, sizeof of, "%s %d", elements, i);
+            status = refuse(name, of, values[i], error);
+        }
+    return status;
 }
 
 static skinslide_status check_edge_density(const char *name, const skinslide_controls *controls, skinslide_error *error) {
     if (controls->edge_count < 0 || (controls->edge_count > 0 && (!controls->edges || !controls->edge_density)))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: edges without force densities, or the reverse", name);
-    for (int32_t i = 0; i < controls->edge_count; i++) {
-        float value = controls->edge_density[i];
-        if (!(value > 0) || isinf(value))
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL,
-                           "patch %s: force density of edge %d-%d is %g; it must be finite and > 0", name,
-                           controls->edges[2 * i], controls->edges[2 * i + 1], value);
-    }
-    return SKINSLIDE_OK;
+    skinslide_status status = SKINSLIDE_OK;
+    char of[64];
+    for (int32_t i = 0; i < controls->edge_count && !status; i++)
+        if (!is_positive(controls->edge_density[i])) {
+            const int32_t *edge = controls->edges + 2 * i;
+            snprintf(of, sizeof of, "force density of edge %d-%d", edge[0], edge[1]);
+            status = refuse(name, of, controls->edge_density[i], error);
+        }
+    return status;
 }
 
 static skinslide_status check_response(float response, const char *name, const char *of, skinslide_error *error) {
@@ -36,9 +50,9 @@ static skinslide_status check_response(float response, const char *name, const c
 
 skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
                                    skinslide_error *error) {
-    skinslide_status status = check_density(controls->vertex_density, mesh->vertex_count, name, "vertex", error);
+    skinslide_status status = check_all(controls->vertex_density, mesh->vertex_count, name, "force density of vertex", error);
     if (!status)
-        status = check_density(controls->face_density, mesh->face_count, name, "face", error);
+        status = check_all(controls->face_density, mesh->face_count, name, "force density of face", error);
     if (!status)
         status = check_edge_density(name, controls, error);
     if (status)
@@ -52,11 +66,9 @@ skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name,
                            v, controls->max_distance[v]);
     if (isnan(controls->envelope))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: envelope is not a number", name);
-    for (int32_t v = 0; controls->hold && v < mesh->vertex_count; v++)
-        if (!(controls->hold[v] > 0) || isinf(controls->hold[v]))
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: hold of vertex %d is %g; it must be finite and > 0", name,
-                           v, controls->hold[v]);
-    status = check_response(controls->stretch_response, name, "stretch", error);
+    status = check_all(controls->hold, mesh->vertex_count, name, "hold of vertex", error);
+    if (!status)
+        status = check_response(controls->stretch_response, name, "stretch", error);
     return status ? status : check_response(controls->compression_response, name, "compression", error);
 }
 

@@ -1,6 +1,7 @@
 /* Builds a slider from its set-ups. */
 #include "slide.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,17 +23,21 @@ static skinslide_status check_choices(const skinslide_mesh *mesh, const skinslid
 /* Sorts the set-up's faces into sorted [face_count]. */
 static skinslide_status sort_faces(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t *sorted,
                                    skinslide_error *error) {
-    for (int32_t i = 0; i < setup->face_count; i++) {
-        if (setup->faces[i] < 0 || setup->faces[i] >= mesh->face_count)
-            return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: face %d is not one of the mesh's %d", setup->name,
-                           setup->faces[i], mesh->face_count);
-        sorted[i] = setup->faces[i];
-    }
+    char label[160], what[sizeof label + 8], element[24];
+    ss_label(setup, 0, 1, label, sizeof label);
+    snprintf(what, sizeof what, "%s: face ", label);
+    skinslide_status status =
+        ss_check_members(setup->faces, setup->face_count, mesh->face_count, what, SKINSLIDE_BAD_PATCH, error);
+    if (status)
+        return status;
+    memcpy(sorted, setup->faces, (size_t)setup->face_count * sizeof *sorted);
     qsort(sorted, (size_t)setup->face_count, sizeof *sorted, ss_ascending);
-    for (int32_t i = 1; i < setup->face_count; i++)
-        if (sorted[i] == sorted[i - 1])
-            return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: face %d is listed more than once", setup->name, sorted[i]);
-    return SKINSLIDE_OK;
+    for (int32_t i = 1; i < setup->face_count && !status; i++)
+        if (sorted[i] == sorted[i - 1]) {
+            snprintf(element, sizeof element, "face %d", sorted[i]);
+            status = ss_refuse_repeated(label, element, SKINSLIDE_BAD_PATCH, error);
+        }
+    return status;
 }
 
 static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a, int32_t b) {
@@ -62,9 +67,12 @@ static skinslide_status check_edges(const skinslide_slider *slider, int32_t setu
     if (!status)
         qsort(pairs, (size_t)controls->edge_count, sizeof *pairs, ss_ascending_pairs);
     for (int32_t i = 1; i < controls->edge_count && !status; i++)
-        if (ss_ascending_pairs(pairs[i], pairs[i - 1]) == 0)
-            status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: edge %d-%d is listed more than once", name, pairs[i][0],
-                             pairs[i][1]);
+        if (ss_ascending_pairs(pairs[i], pairs[i - 1]) == 0) {
+            char label[160], edge[40];
+            ss_label(&slider->setups[setup], 0, 1, label, sizeof label);
+            snprintf(edge, sizeof edge, "edge %d-%d", pairs[i][0], pairs[i][1]);
+            status = ss_refuse_repeated(label, edge, SKINSLIDE_BAD_CONTROL, error);
+        }
     ss_free(&scratch);
     return status;
 }

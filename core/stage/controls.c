@@ -91,7 +91,7 @@ static skinslide_status check_paint(const ss_input *input, const ss_record *reco
                        SS_NAME(interpolation), input->face_place ? " or uniform" : "");
     *found = is_constant ? LAYOUT_NONE : by_face ? LAYOUT_FACE : LAYOUT_VERTEX;
     if (!ss_has_value(record))
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " has no value", SS_NAME(name));
+        return ss_refuse_empty(record, SKINSLIDE_BAD_CONTROL, error);
     return ss_check_indices(record, SKINSLIDE_BAD_CONTROL, error);
 }
 
@@ -400,7 +400,6 @@ static skinslide_status check_complete(const skinslide_stage_controls *controls,
 /* Paint by vertex times a map, into the paint's product. */
 static skinslide_status multiply(skinslide_stage_controls *controls, int32_t map_row, skinslide_error *error) {
     int32_t row = inputs()[map_row].multiplies, count = controls->patch->mesh->vertex_count;
-    const ss_input *input = &inputs()[row];
     const ss_texture *texture = controls->controls[map_row].texture;
     const float *map = ss_texture_values(texture);
     control *own = &controls->controls[row];
@@ -410,18 +409,13 @@ static skinslide_status multiply(skinslide_stage_controls *controls, int32_t map
         own->own_product = SS_NEW(&controls->memory, float, count);
     if (!own->own_product)
         return ss_out_of_memory(error);
-    for (int32_t v = 0; v < count; v++) {
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t v = 0; v < count && !status; v++) {
         own->own_product[v] = own->values[v] * map[v];
-        if (!ss_in_range(input->range, (double)own->own_product[v])) {
-            char name[256];
-            ss_name_property(SKINSLIDE_STAGE_CONTROLS, row, controls->patch->name, name);
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s times " SS_NAMED ": " SS_FILED " at point %d is %g; it must be %s",
-                           name, SS_NAME(ss_texture_shown(texture)->name), SS_FILE(ss_texture_shown(texture)->file), v,
-                           (double)own->own_product[v], input->wanted);
-        }
+        status = ss_texture_check(texture, true, v, own->own_product[v], error);
     }
-    own->product = own->own_product;
-    return SKINSLIDE_OK;
+    own->product = status ? NULL : own->own_product;
+    return status;
 }
 
 static skinslide_status multiply_all(skinslide_stage_controls *controls, skinslide_error *error) {

@@ -160,13 +160,17 @@ static bool same_times(const skinslide_stage_derived *derived, const double *tim
     return true;
 }
 
+static skinslide_status refuse_count(int64_t count, int32_t wanted, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_BAD_POINTS, "that takes %d samples of points, and there are %lld", wanted,
+                   (long long)count);
+}
+
 static skinslide_status check_rate(const skinslide_stage_derived *derived, int32_t pose_count, const double *times,
                                    int64_t time_count, skinslide_error *error) {
     if (!(isfinite(derived->rate) && derived->rate > 0))
         return ss_fail(error, SKINSLIDE_BAD_POINTS, "the stage has %g time codes per second", derived->rate);
     if (derived->merged_count < pose_count)
-        return ss_fail(error, SKINSLIDE_BAD_POINTS, "that takes %d samples of points, and there are %lld", pose_count,
-                       (long long)derived->merged_count);
+        return refuse_count(derived->merged_count, pose_count, error);
     if (!same_times(derived, times, time_count))
         return ss_fail(error, SKINSLIDE_BAD_POINTS, "their samples are at other times than those of points");
     return SKINSLIDE_OK;
@@ -429,8 +433,7 @@ skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *de
     if (!status)
         status = check_value(derived->mesh, &record, own->layout, error);
     if (!status && pose_count != output->pose_count)
-        status = ss_fail(error, SKINSLIDE_BAD_POINTS, "that takes %d samples of points, and there are %d", output->pose_count,
-                         pose_count);
+        status = refuse_count(pose_count, output->pose_count, error);
     const skinslide_stage_pose standard = SKINSLIDE_STAGE_POSE_DEFAULT;
     skinslide_stage_pose taken[MOST_POSES];
     if (!status)

@@ -44,7 +44,7 @@ static skinslide_status check_primvar(const skinslide_stage_patch *patch, const 
                        SS_NAMED " has interpolation " SS_NAMED "; it must be uniform (by face) or vertex", SS_NAME(value->name),
                        SS_NAME(interpolation));
     if (!ss_has_value(record))
-        return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " has no value", SS_NAME(value->name));
+        return ss_refuse_empty(record, SKINSLIDE_BAD_PATCH, error);
     status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
     if (status)
         return status;
@@ -119,9 +119,8 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
 
 static skinslide_status check_painted(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_error *error) {
     skinslide_status status = check_type(record, error);
-    if (!status && !ss_is_by_vertex(ss_interpolation(record)))
-        status = ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " has interpolation " SS_NAMED "; it must be vertex",
-                         SS_NAME(record->value.name), SS_NAME(ss_interpolation(record)));
+    if (!status)
+        status = ss_check_by_vertex(record, "", SKINSLIDE_BAD_PATCH, error);
     if (!status)
         status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
     if (!status)

@@ -19,15 +19,6 @@ static skinslide_status none_found(skinslide_error *error) {
                    own->prefix, own->name, primvar->prefix, primvar->name);
 }
 
-/* By vertex, as varying values of a mesh are too. */
-static skinslide_status check_interpolation(const ss_record *record, const char *source, skinslide_error *error) {
-    const char *interpolation = ss_interpolation(record);
-    if (ss_is_by_vertex(interpolation))
-        return SKINSLIDE_OK;
-    return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED " has interpolation " SS_NAMED "; it must be vertex",
-                   SS_NAME(source), SS_NAME(interpolation));
-}
-
 static skinslide_status check_finite(const float *rest, int64_t count, const char *source, skinslide_error *error) {
     for (int64_t i = 0; i < count; i++, rest += 3)
         if (!isfinite(rest[0]) || !isfinite(rest[1]) || !isfinite(rest[2]))
@@ -62,7 +53,8 @@ skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_
     snprintf(source, sizeof source, SS_NAMED "%s", SS_NAME(record->value.name), is_last ? " (default)" : "");
     mesh->rest_row = row;
     mesh->rest = NULL;
-    skinslide_status status = is_primvar ? check_interpolation(record, source, error) : SKINSLIDE_OK;
+    skinslide_status status =
+        is_primvar ? ss_check_by_vertex(record, "rest points: ", SKINSLIDE_BAD_POINTS, error) : SKINSLIDE_OK;
     if (!status && !ss_has_value(record))
         status = none_found(error);
     if (!status)

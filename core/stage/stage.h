@@ -34,6 +34,10 @@ skinslide_status ss_check_indices(const ss_record *record, skinslide_status stat
 /* Number k of an element, indices applied, as a double. */
 double ss_number(const ss_record *record, int64_t element, int32_t k);
 
+/* That there is nothing in it. */
+skinslide_status ss_refuse_empty(const ss_record *record, skinslide_status status, skinslide_error *error);
+/* Fails where it is not by vertex; of begins the message. */
+skinslide_status ss_check_by_vertex(const ss_record *record, const char *of, skinslide_status status, skinslide_error *error);
 /* Checks what the record is an array of. status is what a fault is called. Fails with it. */
 skinslide_status ss_check_integers(const ss_record *record, skinslide_status status, skinslide_error *error);
 skinslide_status ss_check_floats(const ss_record *record, skinslide_status status, skinslide_error *error);
@@ -281,6 +285,9 @@ skinslide_status ss_texture_find_tiles(ss_texture *texture, const float *st, ski
 /* The next file, or NULL. */
 const skinslide_stage_need *ss_texture_need(const ss_texture *texture);
 bool ss_texture_holds(const ss_texture *texture, const char *path);
+/* Fails where what the map multiplies cannot be that at a point: the map alone, or multiplied. */
+skinslide_status ss_texture_check(const ss_texture *texture, bool multiplied, int32_t vertex, float value,
+                                  skinslide_error *error);
 /* Takes that file; with the last one samples the map, and checks it as the paint that it multiplies. */
 skinslide_status ss_texture_give(ss_texture *texture, const float *st, const skinslide_stage_file *file,
                                  skinslide_error *error);

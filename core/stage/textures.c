@@ -254,15 +254,15 @@ static skinslide_status decode(const ss_texture *texture, const skinslide_stage_
                                skinslide_error *error) {
     skinslide_error inner;
     const char *channel = texture->patch->taken[texture->input->channel].word;
-    if (file->byte_count > largest_file)
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": has %lld bytes; more than %lld are refused",
-                       SS_NAME(texture->name), SS_FILE(file->path), (long long)file->byte_count, (long long)largest_file);
+    uint64_t size = file->byte_count > 0 ? (uint64_t)file->byte_count : 0;
+    skinslide_status status = ss_check_most("has ", size, "bytes", (uint64_t)largest_file, SKINSLIDE_BAD_CONTROL, &inner);
+    if (status)
+        return of_map(texture, file->path, status, &inner, error);
     if (!file->bytes && !file->descriptor)
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": cannot be read%s%.160s", SS_NAME(texture->name),
                        SS_FILE(file->path), file->reason ? ": " : "", file->reason ? file->reason : "");
-    skinslide_status status =
-        file->bytes ? skinslide_exr_decode(file->bytes, file->byte_count, channel, image, &inner)
-                    : skinslide_exr_read(*file->descriptor, file->offset, file->byte_count, channel, image, &inner);
+    status = file->bytes ? skinslide_exr_decode(file->bytes, file->byte_count, channel, image, &inner)
+                         : skinslide_exr_read(*file->descriptor, file->offset, file->byte_count, channel, image, &inner);
     return status ? of_map(texture, file->path, status, &inner, error) : SKINSLIDE_OK;
 }
 
@@ -355,15 +355,25 @@ static skinslide_status sample(ss_texture *texture, const float *st, skinslide_e
     return status ? of_map(texture, texture->map.file, status, &inner, error) : SKINSLIDE_OK;
 }
 
-/* What the map multiplies takes no other values. */
+skinslide_status ss_texture_check(const ss_texture *texture, bool multiplied, int32_t vertex, float value,
+                                  skinslide_error *error) {
+    int32_t count, row = texture->input->multiplies;
+    const ss_input *paint = &ss_inputs(SKINSLIDE_STAGE_CONTROLS, &count)[row];
+    if (ss_in_range(paint->range, (double)value))
+        return SKINSLIDE_OK;
+    char name[256] = "";
+    if (multiplied)
+        ss_name_property(SKINSLIDE_STAGE_CONTROLS, row, texture->patch->name, name);
+    return ss_fail(error, SKINSLIDE_BAD_CONTROL, "%s%s" SS_NAMED ": " SS_FILED " at point %d is %g; it must be %s", name,
+                   multiplied ? " times " : "", SS_NAME(texture->name), SS_FILE(texture->map.file), vertex, (double)value,
+                   paint->wanted);
+}
+
 static skinslide_status check_values(const ss_texture *texture, skinslide_error *error) {
-    int32_t count;
-    const ss_input *paint = &ss_inputs(SKINSLIDE_STAGE_CONTROLS, &count)[texture->input->multiplies];
-    for (int32_t v = 0; v < texture->patch->mesh->vertex_count; v++)
-        if (!ss_in_range(paint->range, (double)texture->values[v]))
-            return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED " at point %d is %g; it must be %s",
-                           SS_NAME(texture->name), SS_FILE(texture->map.file), v, (double)texture->values[v], paint->wanted);
-    return SKINSLIDE_OK;
+    skinslide_status status = SKINSLIDE_OK;
+    for (int32_t v = 0; v < texture->patch->mesh->vertex_count && !status; v++)
+        status = ss_texture_check(texture, false, v, texture->values[v], error);
+    return status;
 }
 
 static skinslide_status finish(ss_texture *texture, const float *st, skinslide_error *error) {

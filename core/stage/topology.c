@@ -48,7 +48,7 @@ void skinslide_stage_mesh_destroy(skinslide_stage_mesh *mesh) {
 static skinslide_status check_points(const ss_record *record, skinslide_error *error) {
     skinslide_status status = ss_check_positions(record, SKINSLIDE_BAD_POINTS, error);
     if (!status && !record->length)
-        status = ss_fail(error, SKINSLIDE_BAD_POINTS, SS_NAMED " has no value", SS_NAME(record->value.name));
+        status = ss_refuse_empty(record, SKINSLIDE_BAD_POINTS, error);
     if (!status && record->length > INT32_MAX)
         status = ss_fail(error, SKINSLIDE_BAD_POINTS, SS_NAMED " has %lld values; there may be %d", SS_NAME(record->value.name),
                          (long long)record->length, INT32_MAX);
@@ -90,18 +90,14 @@ static skinslide_status take_array(skinslide_stage_mesh *mesh, int32_t row, cons
     const ss_input *input = &mesh_inputs(SKINSLIDE_STAGE_MESH)[row];
     skinslide_status status = ss_take_plain(input, record, SKINSLIDE_BAD_MESH, &mesh->memory, &mesh->taken[row], error);
     if (!status && !mesh->taken[row].array.count)
-        status = ss_fail(error, SKINSLIDE_BAD_MESH, SS_NAMED " has no value", SS_NAME(record->value.name));
+        status = ss_refuse_empty(record, SKINSLIDE_BAD_MESH, error);
     return status;
 }
 
 static skinslide_status take_face_counts(skinslide_stage_mesh *mesh, const ss_record *record, skinslide_error *error) {
     skinslide_status status = take_array(mesh, SS_ROW_FACE_COUNTS, record, error);
     const ss_array *counts = &mesh->taken[SS_ROW_FACE_COUNTS].array;
-    for (int32_t face = 0; !status && face < counts->count; face++)
-        if (((const int32_t *)counts->values)[face] < 0)
-            status =
-                ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has %d vertices", face, ((const int32_t *)counts->values)[face]);
-    return status;
+    return status ? status : ss_check_face_counts(counts->values, counts->count, error);
 }
 
 /* Where the corners of each face begin. Fails where the counts do not add up to the indices. */

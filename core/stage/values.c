@@ -133,6 +133,18 @@ static bool is_array_of(const skinslide_value *value, bool (*is_type)(skinslide_
     return value->count == 0 || (value->is_array && value->width == width && is_type(value->type));
 }
 
+skinslide_status ss_refuse_empty(const ss_record *record, skinslide_status status, skinslide_error *error) {
+    return ss_fail(error, status, SS_NAMED " has no value", SS_NAME(record->value.name));
+}
+
+skinslide_status ss_check_by_vertex(const ss_record *record, const char *of, skinslide_status status, skinslide_error *error) {
+    const char *interpolation = ss_interpolation(record);
+    if (ss_is_by_vertex(interpolation))
+        return SKINSLIDE_OK;
+    return ss_fail(error, status, "%s" SS_NAMED " has interpolation " SS_NAMED "; it must be vertex", of,
+                   SS_NAME(record->value.name), SS_NAME(interpolation));
+}
+
 skinslide_status ss_check_indices(const ss_record *record, skinslide_status status, skinslide_error *error) {
     const skinslide_value *indices = &record->indices;
     const char *name = record->value.name;
