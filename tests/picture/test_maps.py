@@ -357,7 +357,7 @@ def test_command(tmp_path, shot, capfd):
     assert slide["lowest"] == 0 and slide["highest"] == pytest.approx(
         said["meshes"][0]["patches"][0]["max"]["largest_slide"], rel=1e-5
     )
-    assert main(["maps", str(shot), "-o", str(folder), "--frames=-5", "--size", "16", "--quiet"]) == 0
+    assert main(["maps", str(shot), "-o", str(folder), "--frames=-5", "--map-size", "16", "--quiet"]) == 0
     assert capfd.readouterr() == ("", "") and (folder / "skin_GEO.slide.-0005.exr").is_file()
 
 

@@ -84,6 +84,11 @@ def test_prims_that_can_have_no_patch(stage, prim):
     world = stage.GetPrimAtPath("/World")
     assert "applies to Mesh, which /World is not" in SkinSlideAPI.CanApply(world, PATCH).whyNot
     assert "invalid null prim" in SkinSlideAPI.CanApply(Usd.Prim(), PATCH).whyNot
+    for given in (None, 3, MESH):
+        message = f"SkinSlideAPI does not apply to {given!r}, which is no Usd.Prim"
+        assert SkinSlideAPI.CanApply(given, PATCH).whyNot == message
+        with pytest.raises(UsageError, match=message):
+            SkinSlideAPI.Apply(given, PATCH)
     stage.DefinePrim("/a").GetReferences().AddInternalReference("/World/char/geo")
     stage.GetPrimAtPath("/a").SetInstanceable(True)
     inside = stage.GetPrimAtPath("/a/skin_GEO")
@@ -162,7 +167,11 @@ def test_every_attribute(api, spec, name, prim):
         ("CreateCornersAttr", [0.5, 1, 2, 3], "corners: float64 values do not fit int32"),
         ("CreateCornersAttr", [[0, 1], [2, 3]], "corners: the shape is 2 x 2; it must be n"),
         ("CreateCornersAttr", [[0, 1], [2]], "corners: "),
+        ("CreateCornersAttr", [0, 1, 2, -1], "corners[3] is -1; points are numbered from 0"),
+        ("CreateCornersAttr", [0, 1, 2], "corners has 3 values; it must have 4"),
         ("CreateEdgesAttr", [2**40, 1], "edges: int64 values do not fit int32"),
+        ("CreateEdgesAttr", [-1, 1], "edges[0] is -1; points are numbered from 0"),
+        ("CreateEdgesAttr", [0, 1, 2], "edges has 3 values; it must hold pairs of point indices"),
         ("CreateEdgeForceDensitiesAttr", ["a"], "edgeForceDensities: "),
     ],
 )
@@ -255,6 +264,10 @@ def test_edges(stage, prim):
     assert controls.edges.tolist() == [[8, 9], [10, 9]] and controls.edge_density.tolist() == [2, 3.5]
     with pytest.raises(UsageError, match="force_densities: the shape is 1; it must be 2"):
         patch.SetEdges([[8, 9], [9, 10]], [1])
+    before = text(stage)
+    with pytest.raises(UsageError, match=r"edges\[2\] is -1; points are numbered from 0"):
+        patch.SetEdges([[8, 9], [-1, 10]], [1, 2])
+    assert text(stage) == before
 
 
 def test_opinions_go_to_the_edit_target_and_with_it(stage, prim):
@@ -467,6 +480,34 @@ def test_a_stage_is_a_stage_or_a_path(tmp_path):
 def test_what_is_no_stage(call, given):
     with pytest.raises(TypeError, match=r"stage is .*; it must be a Usd\.Stage"):
         call(given)
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (lambda shot, given: skinslide.bake_to_file(shot, given), "output"),
+        (lambda shot, given: skinslide.stitch([shot], given), "output"),
+        (lambda shot, given: skinslide.setup_to_file(shot, given, MESH, PATCH, faces=FACES), "output"),
+        (lambda shot, given: skinslide.maps(shot, given), "folder"),
+        (lambda shot, given: skinslide.preview(shot, given if given is not None else 3), "folder"),
+        (lambda shot, given: skinslide.preview(shot, html=given if given is not None else 3), "html"),
+    ],
+)
+@pytest.mark.parametrize("given", [3, None, [Path("a.usda")]])
+def test_what_is_no_output(call, name, given, tmp_path):
+    with pytest.raises(UsageError, match=rf"^{name} is .*; it must be a path"):
+        call(saved(tmp_path), given)
+
+
+@pytest.mark.parametrize("also", [3, None, skinslide.Maps("maps"), [3], ["maps"]])
+def test_what_is_no_product(also, tmp_path):
+    path = saved(tmp_path)
+    for call in (
+        lambda: skinslide.bake_to_file(path, tmp_path / "out.usda", also=also),
+        lambda: skinslide.bake(Usd.Stage.Open(str(path)), also=also),
+    ):
+        with pytest.raises(UsageError, match=r"^also is .*; it must be a sequence of Pictures and Maps"):
+            call()
 
 
 def saved(folder) -> Path:

@@ -13,7 +13,7 @@ from pxr import Sdf
 
 import stages
 from shots import MESH, REST, Shot, baked_mesh, digest, pose
-from skinslide import FrameProblem, Lookup, Slider, StageProblems, UsageError, bake_to_file
+from skinslide import FrameProblem, Lookup, Slider, StageError, StageProblems, UsageError, bake_to_file
 from stages import vectors
 
 
@@ -142,6 +142,13 @@ def test_a_link_to_the_output_stays_a_link(shot, tmp_path):
     assert (tmp_path / "link.usda").is_symlink()
     _stage, mesh = baked_mesh(tmp_path / "real.usda")
     assert mesh.GetPointsAttr().GetNumTimeSamples() == 5
+
+
+def test_where_no_file_can_be_made(shot):
+    """It is told of by its own name, not that under which it would have been written first."""
+    with pytest.raises(StageError) as raised:
+        bake_to_file(shot.save().path, "/proc/out.usdc")
+    assert str(raised.value) == "output /proc/out.usdc: No such file or directory"
 
 
 def test_a_full_disk_leaves_the_output(shot, out):

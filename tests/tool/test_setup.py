@@ -137,9 +137,12 @@ def pinched_faces() -> np.ndarray:
     return rows * 6 + columns
 
 
-@pytest.mark.parametrize("prim", ["/World/gone", "/World/char"])
-def test_prim_that_is_no_mesh(prim, cache, tmp_path):
-    with pytest.raises(StageProblems, match=prim):
+@pytest.mark.parametrize(
+    ("prim", "message"),
+    [("/World/gone", "there is no such prim"), ("/World/char", "is a Xform, not a Mesh"), ("/World", "is a Xform")],
+)
+def test_prim_that_is_no_mesh(prim, message, cache, tmp_path):
+    with pytest.raises(StageProblems, match=f"{prim}: patch elbow_L: {message}"):
         setup_to_file(cache, tmp_path / "shot.usda", prim, "elbow_L", faces="0")
 
 

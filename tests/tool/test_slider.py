@@ -148,6 +148,11 @@ def test_arrays_of_other_types_and_orders(sheet, rest, convert):
         ({"faces": np.arange(3).reshape(3, 1)}, r"patch elbow: faces: the shape is 3 x 1; it must be n"),
         ({"faces": np.array([0.5])}, r"patch elbow: faces: float64 values do not fit int32"),
         ({"faces": np.array([2**40])}, r"patch elbow: faces: int64 values do not fit int32"),
+        ({"faces": np.ones(FACES - 1, bool)}, rf"patch elbow: faces: {FACES - 1} values for {FACES} faces"),
+        ({"faces": None}, r"patch elbow: faces: the shape is a single value; it must be n"),
+        ({"controls": None}, r"patch elbow: controls is of the type NoneType; Controls is wanted"),
+        ({"controls": Controls(envelope="a")}, r"patch elbow: envelope: could not convert string"),
+        ({"controls": Controls(envelope=None)}, r"patch elbow: envelope: float\(\) argument must be"),
         ({"corners": np.array([1, 2, 3])}, r"patch elbow: corners: the shape is 3; it must be 4"),
         ({"rule": "stiff"}, r"patch elbow: rule 'stiff' is not one of unit, fast, relaxed"),
         ({"boundary": "SQUARE"}, r"patch elbow: boundary 'SQUARE' is not one of auto, square, circle"),
@@ -167,6 +172,36 @@ def test_what_cannot_cross_is_named(counts, indices, rest, changed, message):
     with pytest.raises(SliderError, match=message) as error:
         Slider(counts, indices, rest, [setup])
     assert error.value.status == "BAD_ARGUMENT"
+
+
+@pytest.mark.parametrize(
+    ("patches", "message"),
+    [
+        (None, "^patches is of the type NoneType; a sequence of PatchSetup is wanted"),
+        ("elbow", "^patches is of the type str; a sequence of PatchSetup is wanted"),
+        (PatchSetup("elbow", np.arange(3)), "^patches is of the type PatchSetup; a sequence of PatchSetup is wanted"),
+        ([PatchSetup("elbow", np.arange(FACES)), "knee"], r"^patches\[1\] is of the type str; PatchSetup is wanted"),
+    ],
+)
+def test_what_is_no_set_up(patches, message, counts, indices, rest):
+    with pytest.raises(SliderError, match=message) as error:
+        Slider(counts, indices, rest, patches)
+    assert error.value.status == "BAD_ARGUMENT"
+
+
+def test_controls_that_are_none(sheet, rest):
+    for bad, message in ((3, "controls is of the type int"), ([3], r"controls\[0\] is of the type int; Controls is")):
+        with pytest.raises(SliderError, match=message):
+            sheet.slide(rest, bad)
+
+
+@pytest.mark.parametrize("convert", [np.asarray, np.ndarray.tolist])
+def test_faces_by_a_bool_each(convert, counts, indices, rest):
+    chosen = np.arange(FACES) % SIZE < SIZE // 2
+    by_index = Slider(counts, indices, rest, [PatchSetup("half", np.flatnonzero(chosen))])
+    by_bool = Slider(counts, indices, rest, [PatchSetup("half", convert(chosen))])
+    assert by_bool.faces(0).tolist() == by_index.faces(0).tolist()
+    assert by_bool.slide(bumped(rest)).points.tobytes() == by_index.slide(bumped(rest)).points.tobytes()
 
 
 def test_what_the_core_says_arrives(counts, indices, rest):

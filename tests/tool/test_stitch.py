@@ -131,6 +131,14 @@ def test_chunks_that_are_none(shot, chunks, tmp_path):
         stitch([chunks[0], shot], tmp_path / "out.usdc")
     with pytest.raises(UsageError, match="is one of the chunks"):
         stitch(chunks, chunks[0])
+    link = tmp_path / "link.usdc"
+    link.symlink_to(chunks[0])
+    for again, message in ((chunks[0], "is given twice$"), (link, f"is given twice, as {chunks[0]}")):
+        with pytest.raises(UsageError, match=f"chunk {again}: {message}"):
+            stitch([*chunks, again], tmp_path / "out.usdc")
+    for bad in (3, None, chunks[0], str(chunks[0]), [3]):
+        with pytest.raises(UsageError, match=r"chunks is .*; it must be paths of layers"):
+            stitch(bad, tmp_path / "out.usdc")
     with pytest.raises(UsageError, match="no chunks"):
         stitch([], tmp_path / "out.usdc")
     with pytest.raises(UsageError, match="must end in"):

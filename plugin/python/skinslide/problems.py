@@ -104,6 +104,10 @@ def one_line(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
+def not_one_of(what: str, word: object, words: Sequence[str]) -> str:
+    return f"{what} {word!r} is not one of {', '.join(words)}"
+
+
 def lines_text(lines: Iterable[str]) -> str:
     """Lines for a terminal; each stays one."""
     return "\n".join(map(one_line, lines))

@@ -170,10 +170,9 @@ def frame_faces(
 ) -> Camera:
     """A camera that has faces in sight in each of the poses, (V, 3), with to_world (poses, 4, 4)."""
     native, subject, found = Arguments(), new("subject"), ffi.new("skinslide_camera *")
-    if not len(poses):
-        raise SliderError("BAD_ARGUMENT", "no faces, or no poses")
-    mesh = native.mesh(*shape, poses[0])
-    pointers = ffi.new("float *[]", [native.points(points, len(poses[0]), "points") for points in poses])
+    first = poses[0] if len(poses) else np.empty((0, 3), np.float32)
+    mesh = native.mesh(*shape, first)
+    pointers = ffi.new("float *[]", [native.points(points, len(first), "points") for points in poses])
     matrices = _doubles(to_world, (len(poses), 4, 4), "to_world")
     subject.mesh = ffi.addressof(mesh)
     subject.faces, subject.face_count = native.pointer(faces, np.int32, (-1,), "faces"), len(faces)

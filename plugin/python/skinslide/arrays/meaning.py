@@ -128,6 +128,11 @@ def check_text(usda: str) -> None:
     _call(lib.skinslide_stage_text, ffi.from_buffer(encoded), len(encoded))
 
 
+def check_value(source: Input, value: Value) -> None:
+    """Raises Fault for what cannot be authored for an input of the group PATCH or LIVE, whatever the mesh."""
+    _call(lib.skinslide_stage_check_value, source, value)
+
+
 def nothing_to_slide(where: str) -> str:
     """The sentence for a scene in which no mesh carries a patch."""
     error = ffi.new("skinslide_error *")

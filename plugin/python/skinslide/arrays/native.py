@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeVar
 
@@ -15,9 +16,10 @@ import numpy as np
 
 from skinslide._core import ffi, lib
 from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult, WeldInfo
-from skinslide.problems import SliderError
+from skinslide.problems import SliderError, not_one_of
 
 Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo, WeldInfo)
+Kind = TypeVar("Kind")
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ class PatchSetup:
 
     Attributes:
         name: Of the patch, such as elbow_L.
-        faces: Of the mesh (n,), in any order.
+        faces: Of the mesh: indices (n,), in any order, or a bool for each (F,).
         corners: Vertices (4,) on the outer boundary that go to the corners of the square; None: none.
         boundary: auto, square or circle: the outline in which the patch is laid out.
         holes: pinned, free or freeAll: what happens at the rims of holes, and by the last at the outer boundary too.
@@ -129,11 +131,9 @@ class Lookup:
 
     def options(self) -> Any:
         """The core's struct of options. Raises SliderError for what none can have."""
-        method, device = enum_value("lookup", self.method, ""), device_number(self.device)
-        if not 0 <= self.resolution < 2**31:
-            raise SliderError("BAD_ARGUMENT", f"no such resolution: {self.resolution}")
         options = new("workspace_options")
-        options.lookup, options.device, options.resolution = method, device, self.resolution
+        options.lookup, options.device = enum_value("lookup", self.method, ""), device_number(self.device)
+        options.resolution = _number("resolution", self.resolution)
         return options
 
 
@@ -153,11 +153,14 @@ def new_array(struct: str, count: int) -> Any:
 
 def device_number(device: int | None) -> int:
     """One of EGL's devices as the core has it; SliderError for a number that none can have."""
-    if device is None:
-        return -1
-    if not 0 <= device < 2**31:
-        raise SliderError("BAD_ARGUMENT", f"no such device: {device}")
-    return device
+    return -1 if device is None else _number("device", device)
+
+
+def _number(what: str, number: int) -> int:
+    # The core's structs have no room for others, but for one below 0 that stands for none.
+    if not 0 <= number < 2**31:
+        raise SliderError("BAD_ARGUMENT", f"no such {what}: {number}")
+    return number
 
 
 def tokens(setting: str) -> tuple[str, ...]:
@@ -234,9 +237,8 @@ class Arguments:
         for name, dtype in _SUBDIVISION_ARRAYS.items():
             values = getattr(given, name)
             setattr(target, name, self.optional(values, dtype, (-1,), name.replace("_", " ")))
-        if _length(given.corner_indices) != _length(given.corner_sharpnesses):
-            got = f"{_length(given.corner_sharpnesses)} values for {_length(given.corner_indices)} corners"
-            raise SliderError("BAD_MESH", f"corner sharpnesses: {got}")
+        sharpnesses, corners = _length(given.corner_sharpnesses), _length(given.corner_indices)
+        check_count("BAD_MESH", "corner sharpnesses", (sharpnesses, "values"), (corners, "corners"))
         target.crease_count, target.crease_index_count = _length(given.crease_lengths), _length(given.crease_indices)
         target.crease_sharpness_count = _length(given.crease_sharpnesses)
         target.corner_count, target.hole_count = _length(given.corner_indices), _length(given.hole_indices)
@@ -247,13 +249,15 @@ class Arguments:
         name = ffi.new("char[]", encoded_name(patch.name))
         self._alive.append(name)
         target.name = name
-        target.faces = self.pointer(patch.faces, np.int32, (-1,), f"{where}faces")
-        target.face_count = len(patch.faces)
+        faces = _indices(patch.faces, sizes.faces, f"{where}faces")
+        target.faces = self.pointer(faces, np.int32, (-1,), f"{where}faces")
+        target.face_count = len(faces)
         target.corners = self.optional(patch.corners, np.int32, (4,), f"{where}corners")
         for setting in ("boundary", "holes", "rule", "interpolation"):
             setattr(target, setting, enum_value(setting, getattr(patch, setting), where))
         controls = new("controls")
         self._alive.append(controls)
+        check_kind(f"{where}controls", patch.controls, Controls)
         self.fill_controls(controls, patch.controls, sizes, where)
         target.controls = controls
 
@@ -276,15 +280,14 @@ class Arguments:
         target.edge_count = 0 if edges is None else len(edges)
         target.edges = self.optional(edges, np.int32, (-1, 2), f"{where}edges")
         target.edge_density = self.optional(density, np.float32, (target.edge_count,), f"{where}edge density")
-        target.envelope = controls.envelope
-        target.stretch_response = controls.stretch_response
-        target.compression_response = controls.compression_response
+        for name in ("envelope", "stretch_response", "compression_response"):
+            setattr(target, name, _real(getattr(controls, name), where + name.replace("_", " ")))
 
     def frame_controls(self, controls: Sequence[Controls] | None, names: tuple[str, ...], sizes: Sizes) -> Any:
         if controls is None:
             return ffi.NULL
-        if len(controls) != len(names):
-            raise SliderError("BAD_ARGUMENT", f"controls: {len(controls)} given for {len(names)} patches")
+        controls = all_of("controls", controls, Controls)
+        check_count("BAD_ARGUMENT", "controls", (len(controls), "given"), (len(names), "patches"))
         targets = new_array("controls", len(names))
         self._alive.append(targets)
         for target, patch, name in zip(targets, controls, names, strict=True):
@@ -306,12 +309,50 @@ def _length(values: Any) -> int:
     return 0 if values is None else len(values)
 
 
-def encoded_name(name: str) -> bytes:
+def all_of(what: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
+    """Several of a kind, or SliderError."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        said = f"{what} is of the type {type(given).__name__}; a sequence of {kind.__name__} is wanted"
+        raise SliderError("BAD_ARGUMENT", said)
+    each = tuple(given)
+    for i, one in enumerate(each):
+        check_kind(f"{what}[{i}]", one, kind)
+    return each
+
+
+def check_kind(what: str, given: Any, kind: type) -> None:
+    if not isinstance(given, kind):
+        said = f"{what} is of the type {type(given).__name__}; {kind.__name__} is wanted"
+        raise SliderError("BAD_ARGUMENT", said)
+
+
+def _real(value: Any, what: str) -> float:
     try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error
+
+
+def _indices(chosen: Any, count: int, what: str) -> Any:
+    """Indices: themselves, or of those of which a bool says so."""
+    flags = np.asarray(chosen) if isinstance(chosen, np.ndarray | list | tuple) and len(chosen) else None
+    if flags is None or flags.dtype != np.bool_ or flags.ndim != 1:
+        return chosen
+    check_count("BAD_ARGUMENT", what, (len(flags), "values"), (count, "faces"))
+    return np.flatnonzero(flags).astype(np.int32)
+
+
+def check_count(status: str, what: str, counted: tuple[int, str], of: tuple[int, str]) -> None:
+    """Raises SliderError where there is not one for each: `what` has (1, "values") for (2, "corners")."""
+    if counted[0] != of[0]:
+        raise SliderError(status, f"{what}: {counted[0]} {counted[1]} for {of[0]} {of[1]}")
+
+
+def encoded_name(name: str) -> bytes:
+    encoded = None
+    with suppress(AttributeError, UnicodeEncodeError):
         encoded = name.encode()
-    except (AttributeError, UnicodeEncodeError) as error:
-        raise SliderError("BAD_ARGUMENT", f"{name!r} cannot name a patch") from error
-    if b"\0" in encoded:
+    if encoded is None or b"\0" in encoded:
         raise SliderError("BAD_ARGUMENT", f"{name!r} cannot name a patch")
     return encoded
 
@@ -353,7 +394,7 @@ def _values_by_token(setting: str) -> dict[str, int]:
 def enum_value(setting: str, token: str, where: str) -> int:
     values = _values_by_token(setting)
     if token not in values:
-        raise SliderError("BAD_ARGUMENT", f"{where}{setting} {token!r} is not one of {', '.join(values)}")
+        raise SliderError("BAD_ARGUMENT", where + not_one_of(setting, token, tuple(values)))
     return values[token]
 
 

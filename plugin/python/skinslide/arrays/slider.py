@@ -22,8 +22,10 @@ from skinslide.arrays.native import (
     PatchSetup,
     Sizes,
     Subdivision,
+    all_of,
     as_array,
     call,
+    check_count,
     enum_value,
     new,
     new_array,
@@ -130,11 +132,12 @@ class Slider:
         mesh = native.mesh(face_counts, face_indices, rest_points, subdivision, weld)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
         self._lookup = Lookup.of(lookup).options()
-        self._names = tuple(patch.name for patch in patches)
-        setups = new_array("patch_setup", len(patches))
-        for setup, patch in zip(setups, patches, strict=True):
+        given = all_of("patches", patches, PatchSetup)
+        self._names = tuple(patch.name for patch in given)
+        setups = new_array("patch_setup", len(given))
+        for setup, patch in zip(setups, given, strict=True):
             native.fill_setup(setup, patch, self._sizes)
-        self._slider = apart(_create, native, mesh, setups, len(patches))
+        self._slider = apart(_create, native, mesh, setups, len(given))
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider.pointer)))
         self._idle, self._busy = [apart(self._new_workspace)], list[Handle]()
         self._stopped = False
@@ -211,8 +214,8 @@ class Slider:
         native, count = Arguments(), self._sizes.vertices
         before, after = native.points(cached, count, "cached"), native.points(slid, count, "slid")
         given = native.frame_controls(controls, self._names, self._sizes)
-        if chosen is not None and len(chosen) != len(self._names):
-            raise SliderError("BAD_ARGUMENT", f"chosen: {len(chosen)} given for {len(self._names)} patches")
+        if chosen is not None:
+            check_count("BAD_ARGUMENT", "chosen", (len(chosen), "given"), (len(self._names), "patches"))
         wanted = ffi.NULL if chosen is None else ffi.new("uint8_t[]", [bool(each) for each in chosen])
         result = Diagnostics(*(np.empty(count, np.float32) for _ in Diagnostics._fields))
         arrays, buffers = new("diagnostics"), [writable("float[]", array) for array in result]

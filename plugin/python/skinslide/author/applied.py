@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.meaning import can_name_patch
+from skinslide.arrays.meaning import Input, Other, Value, can_name_patch, check_value, inputs
 from skinslide.problems import Fault, Problem, StageProblems, UsageError
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_faces, given_value
@@ -49,10 +49,18 @@ class _Declared(Usd.SchemaBase):
     def _attribute(self, name: str) -> Usd.Attribute:
         return self.GetPrim().GetAttribute(self._full(name))
 
+    def _given(self, name: str, value: Any) -> Any:
+        """A value as the attribute takes it. Raises UsageError."""
+        given = given_value(name, value, self._declaration(name).typeName)
+        for source in (*inputs("patch"), *inputs("live")):
+            if source.prefix + source.name == f"{self.NAMESPACE}:{name}":
+                _check(source, name, given)
+        return given
+
     def _create_attribute(self, name: str, value: Any, sparsely: bool) -> Usd.Attribute:
         """As pxr's do."""
         declared, attribute = self._declaration(name), self._attribute(name)
-        given = None if value is None else _given(name, value, declared)
+        given = None if value is None else self._given(name, value)
         authored = attribute and attribute.HasAuthoredValue()
         if sparsely and (given is None or (given == declared.default and not authored)):
             return attribute
@@ -62,8 +70,11 @@ class _Declared(Usd.SchemaBase):
         return attribute
 
     @classmethod
-    def _why_not_to(cls, prim: Usd.Prim) -> str:
+    def _why_not_to(cls, given: Usd.Prim | Usd.SchemaBase) -> str:
         """Why a prim cannot have the schema; empty where it can."""
+        if not isinstance(given, Usd.Prim | Usd.SchemaBase):
+            return f"{cls.SCHEMA} does not apply to {given!r}, which is no Usd.Prim"
+        prim = given.GetPrim()
         if not prim:
             return f"{cls.SCHEMA} does not apply to an {prim!r}"
         if prim.IsInstanceProxy() or prim.IsInPrototype():
@@ -102,7 +113,7 @@ class AppliedSchema(_Declared):
         Returns:
             What is true where it can; where it cannot, its whyNot says why.
         """
-        return CanApplyResult(cls._why_not_to(prim.GetPrim()))
+        return CanApplyResult(cls._why_not_to(prim))
 
     @classmethod
     def Apply(cls, prim: Usd.Prim | Usd.SchemaBase) -> Self:
@@ -117,7 +128,7 @@ class AppliedSchema(_Declared):
         Raises:
             UsageError: It does not apply to the prim.
         """
-        _apply(prim.GetPrim(), cls.SCHEMA, cls.CanApply(prim))
+        _apply(prim, cls.SCHEMA, cls.CanApply(prim))
         return cls(prim)
 
 
@@ -177,7 +188,7 @@ class AppliedPatch(_Declared):
         Returns:
             What is true where it can; where it cannot, its whyNot says why.
         """
-        return CanApplyResult(_why_no_name(name) or cls._why_not_to(prim.GetPrim()))
+        return CanApplyResult(_why_no_name(name) or cls._why_not_to(prim))
 
     @classmethod
     def Apply(cls, prim: Usd.Prim | Usd.SchemaBase, name: str) -> Self:
@@ -193,7 +204,7 @@ class AppliedPatch(_Declared):
         Raises:
             UsageError: The prim cannot have a patch of that name.
         """
-        _apply(prim.GetPrim(), f"{cls.SCHEMA}:{name}", cls.CanApply(prim, name))
+        _apply(prim, f"{cls.SCHEMA}:{name}", cls.CanApply(prim, name))
         return cls(prim, name)
 
     def GetName(self) -> str:
@@ -234,6 +245,7 @@ class AppliedPatch(_Declared):
         """
         pairs = given_array("edges", edges, np.int32, (-1, 2))
         factors = given_array("force_densities", force_densities, np.float32, (len(pairs),))
+        self._given("edges", pairs.ravel())
         self._forget(self._full("edges"), self._full("edgeForceDensities"))
         self._create_attribute("edges", pairs.ravel(), False)
         self._create_attribute("edgeForceDensities", factors, False)
@@ -264,12 +276,15 @@ class AppliedPatch(_Declared):
             self.GetPrim().RemoveProperty(name)
 
 
-def _given(name: str, value: Any, declared: Sdf.AttributeSpec) -> Any:
-    """A value for an attribute, of which tokens are those that the schema has."""
-    allowed = declared.allowedTokens
-    if allowed and not (isinstance(value, str) and value in allowed):
-        raise UsageError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
-    return given_value(name, value, declared.typeName)
+def _check(source: Input, name: str, given: Any) -> None:
+    """Raises UsageError for what the core does not take."""
+    value = Value(name, Other(), repr(given))
+    if isinstance(given, str | Vt.IntArray):
+        value = Value(name, given if isinstance(given, str) else np.asarray(given), source.type_name)
+    try:
+        check_value(source, value)
+    except Fault as fault:
+        raise UsageError(str(fault)) from fault
 
 
 def _why_no_name(patch: str) -> str:
@@ -284,8 +299,8 @@ def _why_no_name(patch: str) -> str:
     return ""
 
 
-def _apply(prim: Usd.Prim, applied: str, can: CanApplyResult) -> None:
+def _apply(prim: Usd.Prim | Usd.SchemaBase, applied: str, can: CanApplyResult) -> None:
     if not can:
         raise UsageError(can.whyNot)
     # Not ApplyAPI, which knows only schemas that were registered before the first stage was opened.
-    prim.AddAppliedSchema(applied)
+    prim.GetPrim().AddAppliedSchema(applied)

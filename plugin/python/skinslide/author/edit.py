@@ -32,6 +32,13 @@ class EditedMesh:
     def topology(self) -> Topology:
         return Topology.of(self.meaning)
 
+    def check_patch(self, patch: str) -> None:
+        """Raises Fault where the mesh has no patch of that name."""
+        there = schema.patch_names(self.prim)
+        if patch not in there:
+            others = f"it has {', '.join(there)}" if there else "skinslide setup makes one"
+            raise Fault(f"there is no such patch on the mesh; {others}")
+
     def checked(self) -> CheckReport:
         """What `check` says of the mesh. Raises StageProblems where the patch cannot be slid."""
         stage, path = self.prim.GetStage(), str(self.prim.GetPath())

@@ -21,8 +21,10 @@ from skinslide.write.place import (
     check_not_input,
     check_not_read,
     check_output,
+    given_output,
     partial_name,
     replacing,
+    saved,
     state,
     writing,
 )
@@ -40,7 +42,7 @@ def author_layer(stage: StageLike, output: StrPath, force: bool, author: Callabl
     Where another process put something there meanwhile, all is done again, on that.
     Raises TypeError, UsageError, StageError.
     """
-    path, output = given_file(stage), Path(output)
+    path, output = given_file(stage), given_output("output", output)
     if path.suffix == EXTENSION:
         raise UsageError(f"{path} is a set-up itself; give the stage that it sits on, and it as output to add to it")
     check_output(output, EXTENSIONS)
@@ -65,7 +67,7 @@ def _starting_layer(stage: Usd.Stage, path: Path, output: Path, force: bool) -> 
         layer.TransferContent(_existing_layer(output))
         sublayers = [Path(output.absolute().parent, each) for each in layer.subLayerPaths]
         if not any(each.exists() and each.samefile(path) for each in sublayers):
-            raise UsageError(f"output {output}: exists and does not sublayer {path}; --force replaces it")
+            raise _in_the_way(output, f"does not sublayer {path}")
     else:
         _describe(layer, stage)
         layer.subLayerPaths.append(_asset_path(path, output))
@@ -76,7 +78,11 @@ def _existing_layer(output: Path) -> Sdf.Layer:
     try:
         return read_text_layer(output) if output.suffix == EXTENSION else Sdf.Layer.OpenAsAnonymous(str(output))
     except (Tf.ErrorException, OSError, UnicodeDecodeError, StageError) as error:
-        raise UsageError(f"output {output}: exists and is not a layer; --force replaces it") from error
+        raise _in_the_way(output, "is not a layer") from error
+
+
+def _in_the_way(output: Path, fault: str) -> UsageError:
+    return UsageError(f"output {output}: exists and {fault}; --force replaces it")
 
 
 def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
@@ -98,5 +104,5 @@ def _write(layer: Sdf.Layer, output: Path, before: State, force: bool) -> None:
     with replacing(output, lambda: force or state(output) == before) as partial, writing(output):
         if partial.suffix == EXTENSION:
             partial.write_text(layer.ExportToString(), encoding="utf-8")
-        elif not layer.Export(str(partial)):
-            raise OSError("USD could not save it")
+        else:
+            saved(layer.Export(str(partial)))

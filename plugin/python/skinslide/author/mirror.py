@@ -13,7 +13,7 @@ from skinslide.arrays.geometry import AXES, Mirrored, mirror_faces
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import Fault, SliderError, UsageError
+from skinslide.problems import Fault, SliderError, UsageError, not_one_of
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath
@@ -80,8 +80,7 @@ def mirror(
     to = other_side(patch) if to is None else to
     _check_arguments(patch, to, axis, plane, tolerance)
     with edited(stage, prim, to, source=patch) as mesh:
-        if patch not in schema.patch_names(mesh.prim):
-            raise Fault("there is no such patch on the mesh")
+        mesh.check_patch(patch)
         animation, faults = read_patch(mesh.prim, patch, mesh.meaning)
         if animation is None:
             raise Fault(faults[0])
@@ -134,7 +133,7 @@ def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: fl
     if to == patch:
         raise UsageError(f"{patch} cannot be mirrored to itself")
     if axis not in AXES:
-        raise UsageError(f"axis {axis!r} is not one of {', '.join(AXES)}")
+        raise UsageError(not_one_of("axis", axis, AXES))
     if not np.isfinite(plane):
         raise UsageError(f"plane {plane:g} must be finite")
     if tolerance is not None and not (np.isfinite(tolerance) and tolerance >= 0):

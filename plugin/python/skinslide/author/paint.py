@@ -17,7 +17,7 @@ from skinslide.arrays.topology import Topology
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import Fault, SliderError, UsageError, one_line
+from skinslide.problems import Fault, SliderError, UsageError, not_one_of, one_line
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path, given_primvar, given_subset
@@ -126,8 +126,7 @@ def paint(
     what, choose = _choice(edges, subset, primvar, threshold, curve, distance, direction)
     _check_value(value)
     with edited(stage, prim, patch) as mesh:
-        if patch not in schema.patch_names(mesh.prim):
-            raise Fault(f"there is no such patch on the mesh; {_patches_there(mesh.prim)}")
+        mesh.check_patch(patch)
         before = read_faces(mesh.prim, patch, mesh.meaning)
         own = mesh.topology.edges_of(before.faces)
         chosen, left_out = _split(choose(_Surface(mesh.prim, mesh.meaning, mesh.topology, own)), own)
@@ -211,7 +210,7 @@ class _Near(NamedTuple):
 
 def _near(curve: PrimLike | None, distance: float | None, direction: str) -> _Near | None:
     if direction not in DIRECTIONS:
-        raise UsageError(f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}")
+        raise UsageError(not_one_of("direction", direction, DIRECTIONS))
     if curve is None:
         if distance is not None or direction != "any":
             raise UsageError("distance and direction go with a curve")
@@ -225,11 +224,6 @@ def _check_value(value: float) -> None:
     with np.errstate(over="ignore"):
         if not (np.isfinite(np.float32(value)) and np.float32(value) > 0):
             raise UsageError(f"value {value:g} must be finite and above 0")
-
-
-def _patches_there(mesh: Usd.Prim) -> str:
-    there = schema.patch_names(mesh)
-    return f"it has {', '.join(there)}" if there else "skinslide setup makes one"
 
 
 def _rows_in(edges: np.ndarray, others: np.ndarray) -> np.ndarray:

@@ -13,6 +13,7 @@ from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, positive_text
 from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
 
+_MAP_SIZE = "--map-size"  # of bake, whose --size is that of pictures; maps understands it too
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
 
 
@@ -108,11 +109,11 @@ def _add_options(command: argparse._ActionsContainer, table: type[Options], *nam
             _add_device(command)
 
 
-def _add_option(command: argparse._ActionsContainer, each: Field[Any], keyword: str, flag: str) -> None:
+def _add_option(command: argparse._ActionsContainer, each: Field[Any], keyword: str, *flags: str) -> None:
     words, default = dict(each.metadata["words"]), each.default
     if keyword == "jobs":
         default = words["default"] = _processors()
-    command.add_argument(flag, dest=keyword, **{**words, "help": described(each, default)})
+    command.add_argument(*flags, dest=keyword, **{**words, "help": described(each, default)})
 
 
 def _add_device(command: argparse._ActionsContainer) -> None:
@@ -173,7 +174,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     _add_options(pictures, PictureOptions)
     maps = command.add_argument_group("maps of the same frames, as maps draws them, with --patch and --st")
     maps.add_argument("--maps", metavar="DIR", help="a folder for them, as of maps -o")
-    _add_option(maps, MapOptions.__dataclass_fields__["size"], "map_size", "--map-size")
+    _add_option(maps, MapOptions.__dataclass_fields__["size"], "map_size", _MAP_SIZE)
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:
@@ -213,7 +214,9 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
         "One channel, Y. A map is replaced in one step, so one that fails or is killed leaves it as it was",
     )
     _add_options(command, SlideOptions)
-    _add_options(command, MapOptions)
+    _add_options(command, MapOptions, "patches", "st")
+    size = MapOptions.__dataclass_fields__["size"]
+    _add_option(command, size, "size", _MAP_SIZE, size.metadata["flag"])
     _add_printing(command)
 
 

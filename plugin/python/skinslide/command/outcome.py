@@ -119,11 +119,18 @@ def _verdict(error: BaseException, done: str) -> tuple[int, Sequence[Problem]]:
         case SystemExit():
             return int(error.code or FAILED), [_plain(f"ended by a signal{done}")]
         case MemoryError():
-            return FAILED, [_plain("out of memory")]
+            return FAILED, [_plain(_out_of_memory())]
         case UnicodeDecodeError():  # of USD's: its strings are decoded as they are read
             return FAILED, [_plain(f"the stage holds text that is not UTF-8: {error.object[:200]!r}")]
         case _:
             return USAGE if isinstance(error, UsageError) else FAILED, [_plain(str(error))]
+
+
+def _out_of_memory() -> str:
+    from skinslide._core import ffi, lib
+
+    said: bytes = ffi.string(lib.skinslide_status_text(lib.SKINSLIDE_OUT_OF_MEMORY))
+    return said.decode()
 
 
 def _plain(message: str) -> Problem:

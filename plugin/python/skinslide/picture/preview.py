@@ -36,7 +36,7 @@ from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.write.folder import OutputFolder, check_frames, frame_label
-from skinslide.write.place import check_not_input, check_output, replacing, writing
+from skinslide.write.place import check_not_input, check_output, given_output, replacing, writing
 
 _MOST_PIXELS = 1 << 27  # on canvases at once: each takes some forty bytes
 
@@ -113,7 +113,7 @@ class Pictures(PictureOptions):
             raise UsageError("no folder for pictures (-o) and no page (--html) is asked for")
         folder = None if self.folder is None else OutputFolder(self.folder, shot.stage, shot.path)
         if self.html is not None:
-            page_file = Path(self.html)
+            page_file = given_output("html", self.html)
             check_output(page_file, (".html", ".htm"), made=folder.folder if folder else None)
             check_not_input(page_file, shot.stage, *shot.paths)
             _check_clock(shot.stage)

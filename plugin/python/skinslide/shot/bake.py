@@ -18,14 +18,14 @@ from skinslide.shot.derived import Derived
 from skinslide.shot.loop import slide
 from skinslide.shot.options import Frames, LayerOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
-from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames
+from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
 from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.schema import SLIDE, STRETCH
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
-from skinslide.write.place import check_not_input, check_output
+from skinslide.write.place import check_not_input, check_output, given_output
 from skinslide.write.target import check_target, hidden_by, spec_path
 
 # Primvars, each with the field of skinslide.arrays.slider.Diagnostics that it holds.
@@ -76,8 +76,8 @@ def bake_to_file(
         FrameProblem: A frame cannot be slid, or has more than max_folded or max_clamped.
     """
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    layer = _Layer(LayerOptions(max_folded, max_clamped, diagnostics), Path(output))
-    return slide(Shot.of(stage), options, [layer, *also], progress)
+    layer = _Layer(LayerOptions(max_folded, max_clamped, diagnostics), given_output("output", output))
+    return slide(Shot.of(stage), options, [layer, *given_products("also", also)], progress)
 
 
 def bake(
@@ -122,9 +122,9 @@ def bake(
     """
     check_target(stage)
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    wanted = LayerOptions(max_folded, max_clamped, diagnostics)
+    wanted, others = LayerOptions(max_folded, max_clamped, diagnostics), given_products("also", also)
     with replacing_earlier_bake(stage, options.prims) as earlier:
-        report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *also], progress)
+        report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *others], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))
     return report
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from skinslide.problems import SliderError, UsageError
+from skinslide.problems import SliderError, UsageError, not_one_of
 from skinslide.shot.frames import checked_frames
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def texts(_name: str, words: Sequence[str] | str) -> list[str]:
 def one_of(what: str, words: Sequence[str]) -> Check:
     def check(_name: str, word: str) -> str:
         if word not in words:
-            raise UsageError(f"{what} {word!r} is not one of {', '.join(words)}")
+            raise UsageError(not_one_of(what, word, words))
         return word
 
     return check

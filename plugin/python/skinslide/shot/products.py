@@ -9,14 +9,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.native import Controls
 from skinslide.arrays.slider import Diagnostics, Slider
-from skinslide.problems import Problem
+from skinslide.problems import Problem, UsageError
 from skinslide.shot.options import SlideOptions
 from skinslide.stage.given import StageLike, StrPath, given_stage
 
@@ -61,11 +61,19 @@ class SlidFrame:
 SlidFrames = Mapping[Usd.TimeCode, SlidFrame]
 
 
+@runtime_checkable
 class Product(Protocol):
     """What can be asked for."""
 
     def begin(self, shot: Shot, options: SlideOptions) -> Making:
         """Raises UsageError and StageProblems for what can be known before the meshes are read."""
+
+
+def given_products(name: str, products: Sequence[Product]) -> Sequence[Product]:
+    """Raises UsageError for what is no sequence of products."""
+    if not isinstance(products, Sequence) or not all(isinstance(each, Product) for each in products):
+        raise UsageError(f"{name} is {products!r}; it must be a sequence of Pictures and Maps")
+    return products
 
 
 class Making(ABC):

@@ -118,14 +118,19 @@ class PatchReport:
         worst = added.argmax()
         before = stretch_text(self.results[worst].stretch_before)
         after = stretch_text(self.results[worst].stretch_after)
-        where = f" ({np.count_nonzero(added > _NO_STRETCH)} of {len(added)} frames have such; this one most)"
-        message = f"sliding adds stretch: {before} in the cache, {after} slid{where if len(added) > 1 else ''}"
+        message = f"sliding adds stretch: {before} in the cache, {after} slid{_share(added > _NO_STRETCH)}"
         return [Problem("warning", prim, self.label, self.frames[worst], message)]
 
     def _most(self, name: str, text: str) -> tuple[float | None, int, str]:
         counts = self.column(name)
-        where = f" ({np.count_nonzero(counts)} of {len(counts)} frames have such; this one most)"
-        return self.frames[counts.argmax()], counts.max().item(), text + (where if len(counts) > 1 else "")
+        return self.frames[counts.argmax()], counts.max().item(), text + _share(counts)
+
+
+def _share(found: np.ndarray) -> str:
+    """In how many of some frames something is; nothing to say of one."""
+    if len(found) == 1:
+        return ""
+    return f" ({np.count_nonzero(found)} of {len(found)} frames have such; this one most)"
 
 
 def stretch_text(stretch: float) -> str:

@@ -15,7 +15,16 @@ from skinslide.stage import schema
 from skinslide.stage.finding import patched_prims
 from skinslide.stage.given import StrPath
 from skinslide.stage.textures import texture_files
-from skinslide.write.place import Inputs, check_output, check_place, nearest_folder, replacing, writing
+from skinslide.write.place import (
+    Inputs,
+    check_output,
+    check_place,
+    given_output,
+    nearest_folder,
+    not_writable,
+    replacing,
+    writing,
+)
 
 _PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
 
@@ -25,9 +34,9 @@ class OutputFolder:
 
     def __init__(self, folder: StrPath, stage: Usd.Stage, stage_path: StrPath | None):
         """Raises UsageError for a folder that cannot be."""
+        self.folder, prims = given_output("folder", folder), patched_prims(stage)
         if not os.fspath(folder):  # Path would take it for the working folder
             raise UsageError("output: the name of the folder is empty")
-        self.folder, prims = Path(folder), patched_prims(stage)
         # A resolver may find maps where their names alone do not lead.
         maps = [file for prim in prims for patch in schema.patch_names(prim) for file in texture_files(prim, patch)]
         self._inputs = Inputs(stage, *maps, *([] if stage_path is None else [stage_path]))
@@ -111,8 +120,9 @@ def _depth(own: list[str], all_words: list[list[str]]) -> int:
 def _fault(folder: Path) -> str | None:
     """Why files cannot be put in the folder, which is made where it is missing."""
     nearest = nearest_folder(folder)
+    own = nearest == folder.resolve()
     if not nearest.is_dir():
-        return "is not a folder" if nearest == folder.resolve() else f"{nearest} is not a folder"
+        return f"{'' if own else nearest} is not a folder".lstrip()
     if not os.access(nearest, os.W_OK | os.X_OK):
-        return "is not writable" if nearest == folder.resolve() else f"the folder {nearest} is not writable"
+        return not_writable("" if own else f"the folder {nearest}")
     return None

@@ -13,7 +13,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 from skinslide.arrays.slider import version
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
-from skinslide.write.place import check_not_read, replacing, writing
+from skinslide.write.place import check_not_read, replacing, saved, writing
 
 EXTENSIONS = (".usda", ".usdc", ".usd")
 _TEXT = ".usda"
@@ -56,8 +56,7 @@ class OverLayer:
 
     def _check(self, write: Callable[[], bool]) -> None:
         with writing(self._output) if self._output else nullcontext():
-            if not write():
-                raise OSError("USD could not save it")
+            saved(write())
 
     def _set(self, spec: Sdf.AttributeSpec, value: Any, time: Usd.TimeCode) -> None:
         if time.IsDefault():

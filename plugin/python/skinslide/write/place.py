@@ -38,6 +38,13 @@ def check_output(output: Path, extensions: Sequence[str], made: Path | None = No
     check_place(output, lambda path: _fault(path, made))
 
 
+def given_output(name: str, given: StrPath) -> Path:
+    """The path of what is to be written. Raises UsageError for what is none."""
+    if not isinstance(given, str | os.PathLike):
+        raise UsageError(f"{name} is {given!r}; it must be a path")
+    return Path(given)
+
+
 def check_place(output: Path, find_fault: Callable[[Path], str | None]) -> None:
     """Raises UsageError where something is wrong with an output: with what it says, or with being looked at."""
     try:
@@ -71,8 +78,13 @@ def _fault(output: Path, made: Path | None) -> str | None:
     if len(os.fsencode(partial_name(target))) + _OF_USD > os.pathconf(folder, "PC_NAME_MAX"):  # on Linux 255
         return "the name is too long"
     if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
-        return "is not writable"
+        return not_writable()
     return None
+
+
+def not_writable(what: str = "") -> str:
+    """Of the output, or of what is named instead."""
+    return f"{what} is not writable".lstrip()
 
 
 def nearest_folder(folder: Path) -> Path:
@@ -200,8 +212,22 @@ def writing(output: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, Tf.ErrorException) as error:
-        reason = usd_message(error) if isinstance(error, Tf.ErrorException) else str(error)
-        raise StageError(f"output {output}: {reason}") from error
+        reason = usd_message(error) if isinstance(error, Tf.ErrorException) else str(error.strerror or error)
+        target = output.resolve()
+        raise StageError(f"output {output}: {re.sub(_partial_names(target), lambda _: target.name, reason)}") from error
+
+
+def _partial_names(output: Path) -> str:
+    """A pattern of the names under which an output is written, by us or by USD."""
+    # USD writes beside a file: six letters and digits after its name, or in place of its suffix; never a mere word.
+    suffixes = re.escape(output.suffix) + r"(\.\w+)?|\.(?![a-z]{6}$)[A-Za-z0-9]{6}"
+    return re.escape(f".{output.stem}.") + f"[0-9a-f]{{8}}({suffixes})"
+
+
+def saved(written: bool) -> None:
+    """Raises OSError where USD has not written a layer, of which it says no more."""
+    if not written:
+        raise OSError("USD could not save it")
 
 
 @contextmanager
@@ -217,9 +243,7 @@ def _locked(folder: Path) -> Iterator[None]:
 
 def _remove_abandoned(output: Path) -> None:
     """Removes what earlier writers of this output left when they were killed, a day ago or more."""
-    # USD writes beside a file: six letters and digits after its name, or in place of its suffix; never a mere word.
-    suffixes = re.escape(output.suffix) + r"(\.\w+)?|\.(?![a-z]{6}$)[A-Za-z0-9]{6}"
-    ours = re.compile(re.escape(f".{output.stem}.") + f"[0-9a-f]{{8}}({suffixes})")
+    ours = re.compile(_partial_names(output))
     for other in output.parent.glob(f".{glob.escape(output.stem)}.*"):
         with suppress(OSError):
             if ours.fullmatch(other.name) and other.is_file() and time.time() - other.stat().st_mtime > _ABANDONED:

@@ -8,6 +8,7 @@ stitch, and put the layer in place
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,7 @@ from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
 from skinslide.write.overs import EXTENSIONS
-from skinslide.write.place import check_output, replacing, writing
+from skinslide.write.place import check_output, given_output, replacing, saved, writing
 
 # Fields of a chunk that say what is in it.
 _OWN_FIELDS = {"primChildren", "comment"}
@@ -62,11 +63,10 @@ def stitch(chunks: Iterable[StrPath], output: StrPath) -> StitchReport:
         StageError: A chunk cannot be opened, or the layer not be written.
         StageProblems: The chunks do not fit together.
     """
-    files, stitched = [Path(chunk) for chunk in chunks], Path(output)
+    files, stitched = _given_chunks(chunks), given_output("output", output)
     check_output(stitched, EXTENSIONS)
-    if not files:
-        raise UsageError("there are no chunks to stitch")
     opened = [_Chunk(file) for file in files]
+    _refuse_repeated(files)
     if stitched.exists() and any(file.samefile(stitched) for file in files):
         raise UsageError(f"output {stitched}: is one of the chunks")
     blocked = {path for chunk in opened for path in chunk.blocked}
@@ -75,6 +75,24 @@ def stitch(chunks: Iterable[StrPath], output: StrPath) -> StitchReport:
         raise StageProblems(problems)
     _write(opened, sorted(blocked), stitched)
     return _report(opened, blocked)
+
+
+def _given_chunks(chunks: Iterable[StrPath]) -> list[Path]:
+    given = list(chunks) if isinstance(chunks, Iterable) and not isinstance(chunks, str) else None
+    if given is None or not all(isinstance(chunk, str | os.PathLike) for chunk in given):
+        raise UsageError(f"chunks is {chunks!r}; it must be paths of layers")
+    if not given:
+        raise UsageError("there are no chunks to stitch")
+    return [Path(chunk) for chunk in given]
+
+
+def _refuse_repeated(files: Sequence[Path]) -> None:
+    """Raises UsageError where several names are of one file."""
+    for i, file in enumerate(files):
+        for other in files[:i]:
+            if file.samefile(other):
+                same = "" if file == other else f", as {other}"
+                raise UsageError(f"chunk {file}: is given twice{same}")
 
 
 class _Chunk:
@@ -157,8 +175,7 @@ def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) 
 
 def _save(layer: Sdf.Layer, output: Path) -> None:
     with writing(output):
-        if not layer.Save():
-            raise OSError("USD could not save it")
+        saved(layer.Save())
 
 
 def _report(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> StitchReport:
