@@ -23,6 +23,8 @@
     .kind = SS_KIND_REST,                                                                                                      \
     .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, "primvars:", SKINSLIDE_STAGE_FIRST, 1, 0}
 
+static const char positive[] = "finite and above 0", not_negative[] = "0 or more";
+
 static const ss_input mesh_inputs[SS_MESH_ROWS] = {
     [SS_ROW_POINTS] = {OF_MESH("points", "point3f[]", SKINSLIDE_STAGE_FIRST), .kind = SS_KIND_POINTS},
     [SS_ROW_FACE_COUNTS] = {OF_MESH("faceVertexCounts", "int[]", SKINSLIDE_STAGE_STILL), .kind = SS_KIND_FACE_COUNTS},
@@ -36,7 +38,7 @@ static const ss_input mesh_inputs[SS_MESH_ROWS] = {
     [SS_ROW_DEFAULT_POINTS] = {OF_MESH("points", "point3f[]", SKINSLIDE_STAGE_DEFAULT_TIME), .kind = SS_KIND_REST},
     [SS_ROW_WELD] = {MESH_SETTING(SS_MESH_WELD), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_WELD_NUMBER},
     [SS_ROW_WELD_TOLERANCE] = {MESH_SETTING(SS_MESH_WELD_TOLERANCE), .kind = SS_KIND_NUMBER, .range = SS_RANGE_NOT_NEGATIVE,
-                               .wanted = "0 or more", .fallback = SS_MESH_WELD_TOLERANCE_NUMBER},
+                               .wanted = not_negative, .fallback = SS_MESH_WELD_TOLERANCE_NUMBER},
 };
 
 /* USD's own tokens, in the order of the core's enums; the fallbacks are USD's. */
@@ -67,8 +69,6 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
 #define CONTROL(declared) .shown = {declared, SKINSLIDE_STAGE_CONTROLS, SS_NAMESPACE, SKINSLIDE_STAGE_ANIMATED, 0, 0}
 #define PAINT(name)       PRIMVAR(name, "float[]", SKINSLIDE_STAGE_CONTROLS, SKINSLIDE_STAGE_ANIMATED, 1), .kind = SS_KIND_PAINT
 
-static const char positive[] = "finite and above 0";
-
 static const ss_input patch_inputs[SS_PATCH_ROWS] = {
     [SS_ROW_FACES] = {PRIMVAR("patch", "bool[]", SKINSLIDE_STAGE_PATCH, SKINSLIDE_STAGE_STILL, 0), .kind = SS_KIND_FACES},
     [SS_ROW_BOUNDARY] = {SETTING(SS_PATCH_BOUNDARY), .kind = SS_KIND_CHOICE},
@@ -95,7 +95,7 @@ static const ss_input control_inputs[SS_CONTROL_ROWS] = {
     [SS_ROW_WEIGHT] = {PAINT("weight"), .wanted = "a number", .place = offsetof(skinslide_controls, weight)},
     [SS_ROW_WEIGHT_MAP] = {CONTROL(SS_PATCH_WEIGHT_MAP), .kind = SS_KIND_TEXTURE, .multiplies = SS_ROW_WEIGHT,
                            .channel = SS_ROW_WEIGHT_CHANNEL},
-    [SS_ROW_MAX_DISTANCE] = {PAINT("maxDistance"), .range = SS_RANGE_NOT_NEGATIVE, .wanted = "0 or more",
+    [SS_ROW_MAX_DISTANCE] = {PAINT("maxDistance"), .range = SS_RANGE_NOT_NEGATIVE, .wanted = not_negative,
                              .place = offsetof(skinslide_controls, max_distance)},
     [SS_ROW_DENSITY] = {PAINT("forceDensity"), .range = SS_RANGE_DENSITY, .wanted = positive, .off_patch = 1,
                         .drops_constant = true, .place = offsetof(skinslide_controls, vertex_density),

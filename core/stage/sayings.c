@@ -6,6 +6,7 @@ const char *skinslide_stage_say(skinslide_saying saying) {
         [SKINSLIDE_SAYING_NO_TYPE] = "prim without a type",
         [SKINSLIDE_SAYING_NO_FILE] = "there is no such file",
         [SKINSLIDE_SAYING_IRREGULAR] = "is not a regular file",
+        [SKINSLIDE_SAYING_UNREADABLE] = "cannot be read",
     };
     return (unsigned)saying < sizeof sayings / sizeof *sayings ? sayings[saying] : NULL;
 }

@@ -259,8 +259,9 @@ static skinslide_status decode(const ss_texture *texture, const skinslide_stage_
     if (status)
         return of_map(texture, file->path, status, &inner, error);
     if (!file->bytes && !file->descriptor)
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": cannot be read%s%.160s", SS_NAME(texture->name),
-                       SS_FILE(file->path), file->reason ? ": " : "", file->reason ? file->reason : "");
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": %s%s%.160s", SS_NAME(texture->name),
+                       SS_FILE(file->path), skinslide_stage_say(SKINSLIDE_SAYING_UNREADABLE), file->reason ? ": " : "",
+                       file->reason ? file->reason : "");
     status = file->bytes ? skinslide_exr_decode(file->bytes, file->byte_count, channel, image, &inner)
                          : skinslide_exr_read(*file->descriptor, file->offset, file->byte_count, channel, image, &inner);
     return status ? of_map(texture, file->path, status, &inner, error) : SKINSLIDE_OK;

@@ -37,7 +37,7 @@ std::string readFile(const std::string &resolvedPath) {
         throw Fault("cannot be opened");
     std::string text(asset->GetSize(), '\0');
     if (!text.empty() && asset->Read(&text[0], text.size(), 0) != text.size())
-        throw Fault("cannot be read");
+        throw Fault(skinslide_stage_say(SKINSLIDE_SAYING_UNREADABLE));
     return text;
 }
 

@@ -155,9 +155,10 @@ SKINSLIDE_API skinslide_bool skinslide_stage_can_name_patch(const char *name);
 
 /* Words of sentences that readers say themselves. */
 typedef enum skinslide_saying {
-    SKINSLIDE_SAYING_NO_TYPE,  /* of a prim that has none, where its type would stand */
-    SKINSLIDE_SAYING_NO_FILE,  /* of a file that is missing */
-    SKINSLIDE_SAYING_IRREGULAR /* of a pipe, a socket or a device, behind its name */
+    SKINSLIDE_SAYING_NO_TYPE,   /* of a prim that has none, where its type would stand */
+    SKINSLIDE_SAYING_NO_FILE,   /* of a file that is missing */
+    SKINSLIDE_SAYING_IRREGULAR, /* of a pipe, a socket or a device, behind its name */
+    SKINSLIDE_SAYING_UNREADABLE /* of a file, or of a value in one, behind its name */
 } skinslide_saying;
 
 /* A static string; NULL for another number. */

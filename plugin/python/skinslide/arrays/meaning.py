@@ -113,7 +113,7 @@ def is_texture(source: Input) -> bool:
 
 
 def say(saying: str) -> str:
-    """Words that the core says too: no_type, no_file, irregular."""
+    """Words that the core says too: no_type, no_file, irregular, unreadable."""
     return text(lib.skinslide_stage_say(getattr(lib, f"SKINSLIDE_SAYING_{saying.upper()}")))
 
 

@@ -13,15 +13,14 @@ from pxr import Ar, Sdf, Tf, Usd, UsdUtils
 from skinslide.arrays.meaning import check_text, say
 from skinslide.problems import PATH_TOO_LONG, Fault, StageError, usd_message
 from skinslide.registration import registered
-from skinslide.stage.sources import EXTENSION, TEXT_ONLY, is_irregular, open_sources
+from skinslide.stage.sources import EXTENSION, TEXT_ONLY, check_regular, not_opened, open_sources
 
 
 def open_stage(path: str | Path) -> Usd.Stage:
     """Opens a stage with its payloads. A `.skinslide` file opens as its text, with the points of the cache."""
     path = str(path)
     try:
-        if is_irregular(path):
-            raise StageError(f"cannot open {path}: it {say('irregular')}")
+        check_regular(path)
         with Ar.ResolverContextBinder(Ar.GetResolver().CreateDefaultContextForAsset(path)):
             text = _text_of(Path(path)) if path.endswith(EXTENSION) else None
             root = text or Sdf.Layer.FindOrOpen(path)
@@ -31,7 +30,7 @@ def open_stage(path: str | Path) -> Usd.Stage:
         check_clocks(stage)
         return stage
     except (Tf.ErrorException, OSError, ValueError) as error:
-        raise StageError(f"cannot open {path}: {why_not_opened(path, error)}") from error
+        raise not_opened(path, why_not_opened(path, error)) from error
 
 
 def _text_of(path: Path) -> Sdf.Layer:
@@ -89,7 +88,7 @@ def read_text_layer(path: Path) -> Sdf.Layer:
     try:
         check_text(text)
     except Fault as fault:
-        raise StageError(f"cannot open {path}: it {fault}") from fault
+        raise not_opened(path, f"it {fault}") from fault
     layer = Sdf.Layer.CreateAnonymous(f"{path.name}.usda")
     layer.ImportFromString(text)
     return layer

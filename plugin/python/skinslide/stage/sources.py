@@ -20,6 +20,16 @@ EXTENSION = ".skinslide"
 TEXT_ONLY = {"live": "0"}
 
 
+def not_opened(what: object, why: str) -> StageError:
+    return StageError(f"cannot open {what}: {why}")
+
+
+def check_regular(file: str, named: str = "") -> None:
+    """Raises StageError for a file that is irregular; `named` says where it stands."""
+    if is_irregular(file):
+        raise not_opened(f"{file}{named}", f"it {say('irregular')}")
+
+
 def is_irregular(file: str) -> bool:
     """Whether a pipe, a socket or a device is there, which may be waited for without end once it is opened."""
     outer = Ar.SplitPackageRelativePathOuter(file)[0]
@@ -71,8 +81,7 @@ def _identifier(layer: Sdf.Layer, asset: str, variables: Mapping[str, Any]) -> s
 def _look_at(layer: Sdf.Layer, name: str, identifier: str) -> None:
     """Raises StageError for what cannot be opened without waiting."""
     file = Ar.GetResolver().Resolve(Sdf.Layer.SplitIdentifier(identifier)[0]).GetPathString() if identifier else ""
-    if is_irregular(file):
-        raise StageError(f"cannot open {file}, which {name} names: it {say('irregular')}")
+    check_regular(file, f", which {name} names")
 
 
 def _open(identifier: str) -> Sdf.Layer | None:

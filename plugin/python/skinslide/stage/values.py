@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom
 
-from skinslide.arrays.meaning import DEFAULT_TIME, NOTHING, STILL, Asset, Input, Other, Taker, Value
+from skinslide.arrays.meaning import DEFAULT_TIME, NOTHING, STILL, Asset, Input, Other, Taker, Value, say
 from skinslide.problems import MOST_FRAMES, Fault, UsageError, usd_message
 
 Span = tuple[float, float]  # first and last moment
@@ -102,7 +102,7 @@ def _get(attribute: Usd.Attribute, time: Usd.TimeCode) -> object:
     try:
         return attribute.Get(time)
     except Tf.ErrorException as error:
-        raise Fault(f"{attribute.GetName()} cannot be read: {usd_message(error)}") from error
+        raise Fault(f"{attribute.GetName()} {say('unreadable')}: {usd_message(error)}") from error
 
 
 def _plain(value: object, type_name: str) -> object:
