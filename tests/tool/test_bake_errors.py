@@ -109,8 +109,8 @@ def test_limits(shot, out, monkeypatch):
     out.write_text("old")
     slide = Slider.slide
 
-    def fold(self, points, controls):
-        frame = slide(self, points, controls)
+    def fold(self, points, controls, **words):
+        frame = slide(self, points, controls, **words)
         return frame._replace(patches=tuple(patch._replace(folded_faces=2) for patch in frame.patches))
 
     with monkeypatch.context() as patched:
