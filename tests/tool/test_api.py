@@ -117,6 +117,7 @@ def test_a_stage_that_was_open_before_the_import():
 SCHEMAS = Sdf.Layer.OpenAsAnonymous(str(ROOT / "schema" / "generatedSchema.usda"))
 # Values of each type, as they are given and as USD has them.
 VALUES = {
+    "bool": (False, False),
     "float": (np.float32(0.5), 0.5),
     "int[]": (np.array([3, 1, 2, 4]), Vt.IntArray([3, 1, 2, 4])),
     "float[]": ([1, 2.5], Vt.FloatArray([1, 2.5])),
