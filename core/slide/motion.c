@@ -1,5 +1,5 @@
 /* Velocities and accelerations of slid points: the cache's own, plus the rate at which the displacement changes. */
-#include "mesh.h"
+#include "slide.h"
 
 #include <math.h>
 
@@ -7,12 +7,8 @@ static double displacement(const skinslide_sample *sample, int64_t i) {
     return (double)sample->slid[i] - sample->cached[i];
 }
 
-/* The caller's samples, in samples [count]. */
-static skinslide_status take_samples(int32_t vertex_count, const skinslide_sample *given, int count, const float *rates,
-                                     skinslide_sample *samples, skinslide_error *error) {
+skinslide_status ss_take_samples(const skinslide_sample *given, int count, skinslide_sample *samples, skinslide_error *error) {
     const skinslide_sample standard = SKINSLIDE_SAMPLE_DEFAULT;
-    if (vertex_count < 0 || !given || !rates)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no samples, no rates to correct, or a negative count");
     skinslide_status status = ss_take_all(given, count, "skinslide_sample", samples, sizeof *samples, &standard, error);
     if (status)
         return status;
@@ -56,7 +52,9 @@ static skinslide_status check_rates(int32_t vertex_count, const skinslide_sample
 static skinslide_status correct(int32_t vertex_count, const skinslide_sample *given, int count, float *rates,
                                 skinslide_error *error) {
     skinslide_sample samples[3];
-    skinslide_status status = take_samples(vertex_count, given, count, rates, samples, error);
+    if (vertex_count < 0 || !given || !rates)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no samples, no rates to correct, or a negative count");
+    skinslide_status status = ss_take_samples(given, count, samples, error);
     if (!status)
         status = check_rates(vertex_count, samples, count, rates, error);
     for (int64_t i = 0; !status && i < 3 * (int64_t)vertex_count; i++)

@@ -101,6 +101,11 @@ void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls,
 skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
                                         skinslide_controls *controls, skinslide_error *error);
 
+/* ---- motion.c ---- */
+
+/* The caller's samples, in samples [count], and checked: each has points, and times ascend. */
+skinslide_status ss_take_samples(const skinslide_sample *given, int count, skinslide_sample *samples, skinslide_error *error);
+
 /* ---- inspect.c ---- */
 
 /* BAD_ARGUMENT before the first frame, and after one that failed. */

@@ -17,6 +17,7 @@ from cffi import FFI
 RECORDS = {
     "PatchInfo": ["skinslide_patch_info"],
     "PatchResult": ["skinslide_patch_result"],
+    "Roughness": ["skinslide_roughness"],
     "WeldInfo": ["skinslide_weld_info"],
     "DeviceInfo": ["skinslide_device_info"],
     "LookupInfo": ["skinslide_lookup_info", "skinslide_device_info"],

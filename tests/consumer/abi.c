@@ -59,6 +59,16 @@ static void measure(const skinslide_slider *slider) {
     UNKNOWN(info);
 }
 
+static void measure_motion(const skinslide_slider *slider) {
+    skinslide_sample samples[3] = {SKINSLIDE_SAMPLE_DEFAULT, SKINSLIDE_SAMPLE_DEFAULT, SKINSLIDE_SAMPLE_DEFAULT};
+    skinslide_roughness roughness[2] = {SKINSLIDE_ROUGHNESS_DEFAULT, SKINSLIDE_ROUGHNESS_DEFAULT};
+    for (int i = 0; i < 3; i++)
+        samples[i].seconds = i, samples[i].cached = i == 1 ? points : rest, samples[i].slid = i == 1 ? slid : rest;
+    if (said("roughness", skinslide_measure_roughness(slider, samples, roughness, &error)))
+        printf("roughness %g and %g\n", roughness[0].before, roughness[1].after);
+    UNKNOWN(roughness[0]), UNKNOWN(roughness[1]);
+}
+
 static void look_up(const skinslide_workspace *workspace) {
     skinslide_lookup_info info = SKINSLIDE_LOOKUP_INFO_DEFAULT;
     skinslide_device_info device = SKINSLIDE_DEVICE_INFO_DEFAULT;
@@ -86,6 +96,7 @@ static void slide_all(void) {
     if (said("workspace", skinslide_workspace_create(slider, &options, &workspace, &error))) {
         slide(workspace);
         measure(slider);
+        measure_motion(slider);
         look_up(workspace);
         skinslide_workspace_destroy(workspace);
     }

@@ -480,6 +480,8 @@ def test_every_patch_is_summed_up(shot, report):
         before, after = f"{worst.stretch_before:.4f}", f"{worst.stretch_after:.4f}"
         change = f"{100 * (worst.stretch_after / worst.stretch_before - 1):+.0f} %".replace("-", "\N{MINUS SIGN}")
         assert cells[3:5] == [before, after] and " ".join(cells[5:7]) == change
+        rough = [f"{patch.roughness:.2f}", f"{patch.roughest:g}"] if patch.motion else ["-"]
+        assert cells[7 : 7 + len(rough)] == rough
         lead = shot.one(".lead", section).text
         assert lead.startswith(f"{before} → {after}") and change in lead
 

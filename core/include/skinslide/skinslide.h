@@ -641,6 +641,32 @@ SKINSLIDE_API skinslide_status skinslide_velocities(int32_t vertex_count, const 
 SKINSLIDE_API skinslide_status skinslide_accelerations(int32_t vertex_count, const skinslide_sample *samples,
                                                        float *accelerations, skinslide_error *error);
 
+/* ---- How smoothly skin moves -------------------------------------------------------------------------------------------- */
+
+/* How roughly a patch moves at a time between two others: by the largest second difference in time of any of its vertices, in
+ * object units. Over a shot, the largest in the result over the largest in the cache says whether skin pops: it is 1 where skin
+ * moves as smoothly as what it slides on. Start from SKINSLIDE_ROUGHNESS_DEFAULT. */
+typedef struct skinslide_roughness {
+    size_t size;     /* sizeof(skinslide_roughness) */
+    double before;   /* in the cache: |p0 - 2 p1 + p2|, and where steps are uneven, twice the distance of p1 from where even
+                              motion from p0 to p2 would have it */
+    double after;    /* and in the result */
+    double rounding; /* what the rounding of points to float may come to in either; no more is no motion */
+    int32_t vertex_before; /* the mesh vertex that has the largest in the cache */
+    int32_t vertex_after;  /* and in the result */
+} skinslide_roughness;
+
+#define SKINSLIDE_ROUGHNESS_DEFAULT                                                                                            \
+    { sizeof(skinslide_roughness), 0, 0, 0, 0, 0 }
+
+/* Measures the middle of three times.
+ *   samples    in  [3], ascending in time, their points those of the slider's mesh
+ *   roughness  out [patch_count]; only the first need have its size
+ * Fails with BAD_ARGUMENT (NULL, times that are not finite or do not ascend), BAD_POINTS (a vertex of a patch that is not
+ * finite: names patch and vertex), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_measure_roughness(const skinslide_slider *slider, const skinslide_sample *samples,
+                                                           skinslide_roughness *roughness, skinslide_error *error);
+
 #ifndef SKINSLIDE_CDEF
 #ifdef __cplusplus
 }

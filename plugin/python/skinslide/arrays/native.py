@@ -15,10 +15,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult, WeldInfo
+from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult, Roughness, WeldInfo
 from skinslide.problems import SliderError, not_one_of
 
-Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo, WeldInfo)
+Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo, WeldInfo, Roughness)
 Kind = TypeVar("Kind")
 
 
@@ -191,6 +191,14 @@ class Sizes(NamedTuple):
     faces: int
 
 
+class Sample(NamedTuple):
+    """Points of one time, before and after sliding, each (V, 3)."""
+
+    seconds: float
+    cached: np.ndarray
+    slid: np.ndarray
+
+
 class Arguments:
     """Fills the core's structs from arrays, and holds the memory they point into for as long as this object lives."""
 
@@ -292,6 +300,16 @@ class Arguments:
         self._alive.append(targets)
         for target, patch, name in zip(targets, controls, names, strict=True):
             self.fill_controls(target, patch, sizes, f"patch {name}: ")
+        return targets
+
+    def samples(self, samples: Sequence[Sample], count: int, vertex_count: int, what: str) -> Any:
+        if len(samples) != count:
+            raise SliderError("BAD_ARGUMENT", f"{what} need {count} samples, not {len(samples)}")
+        targets = new_array("sample", count)
+        for target, sample in zip(targets, samples, strict=True):
+            target.seconds = sample.seconds
+            target.cached = self.points(sample.cached, vertex_count, "cached")
+            target.slid = self.points(sample.slid, vertex_count, "slid")
         return targets
 
 

@@ -20,6 +20,7 @@ from skinslide.arrays.native import (
     Handle,
     Lookup,
     PatchSetup,
+    Sample,
     Sizes,
     Subdivision,
     all_of,
@@ -34,7 +35,7 @@ from skinslide.arrays.native import (
     tokens,
     writable,
 )
-from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
+from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
 from skinslide.problems import SliderError
 
 __all__ = [
@@ -46,6 +47,7 @@ __all__ = [
     "PatchInfo",
     "PatchResult",
     "PatchSetup",
+    "Roughness",
     "Sample",
     "Slider",
     "SliderError",
@@ -223,6 +225,23 @@ class Slider:
             setattr(arrays, name, buffer)
         call(lib.skinslide_diagnose, self._slider.pointer, given, wanted, before, after, arrays)
         return result
+
+    def roughness(self, samples: Sequence[Sample]) -> tuple[Roughness, ...]:
+        """How roughly each patch moves at the middle of three times.
+
+        Args:
+            samples: Of the three times, ascending.
+
+        Returns:
+            One a patch.
+
+        Raises:
+            SliderError: Samples that cannot be.
+        """
+        native, results = Arguments(), new_array("roughness", len(self.patches))
+        given = native.samples(samples, 3, self._sizes.vertices, "roughness")
+        call(lib.skinslide_measure_roughness, self._slider.pointer, given, results)
+        return tuple(read(Roughness, result) for result in results)
 
     def vertices(self, patch: int) -> np.ndarray:
         """The mesh vertices of a patch.
@@ -441,14 +460,6 @@ def carry(
     return result
 
 
-class Sample(NamedTuple):
-    """Points of one time, before and after sliding, each (V, 3)."""
-
-    seconds: float
-    cached: np.ndarray
-    slid: np.ndarray
-
-
 def velocities(samples: Sequence[Sample], velocities: np.ndarray) -> np.ndarray:
     """The cache's velocities (V, 3), units per second, corrected by the rate of change over two samples."""
     return _rates(lib.skinslide_velocities, 2, samples, velocities, "velocities")
@@ -460,15 +471,9 @@ def accelerations(samples: Sequence[Sample], accelerations: np.ndarray) -> np.nd
 
 
 def _rates(function: Any, sample_count: int, samples: Sequence[Sample], rates: np.ndarray, what: str) -> np.ndarray:
-    if len(samples) != sample_count:
-        raise SliderError("BAD_ARGUMENT", f"{what} need {sample_count} samples, not {len(samples)}")
     native = Arguments()
-    vertex_count = len(samples[0].cached)
-    given = new_array("sample", sample_count)
-    for target, sample in zip(given, samples, strict=True):
-        target.seconds = sample.seconds
-        target.cached = native.points(sample.cached, vertex_count, "cached")
-        target.slid = native.points(sample.slid, vertex_count, "slid")
+    vertex_count = len(samples[0].cached) if samples else 0
+    given = native.samples(samples, sample_count, vertex_count, what)
     result = as_array(rates, np.float32, (vertex_count, 3), what).copy()
     call(function, vertex_count, given, writable("float[]", result))
     return result

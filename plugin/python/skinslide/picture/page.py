@@ -20,7 +20,7 @@ from markupsafe import Markup
 from PIL import Image
 
 from skinslide.picture.plots import charts
-from skinslide.shot.report import BakeReport, PatchReport, milliseconds_text, stretch_text, time_text
+from skinslide.shot.report import BakeReport, PatchReport, milliseconds_text, roughness_text, stretch_text, time_text
 
 _SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
 _PICTURE_WIDTH = 1920  # more than a page shows, unless on a screen of twice the pixels
@@ -120,6 +120,7 @@ def _templates() -> Environment:
         milliseconds=milliseconds_text,
         moment=_moment,
         path=_path,
+        roughness=roughness_text,
         stretch=stretch_text,
         time=time_text,
         units=lambda number: f"{number:.2f}",

@@ -19,7 +19,7 @@ from skinslide.shot.loop import slide
 from skinslide.shot.options import Frames, LayerOptions, Prims, SlideOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
-from skinslide.shot.report import BakeReport, MeshReport
+from skinslide.shot.report import BakeReport, MeshReport, roughness_text
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.schema import SLIDE, STRETCH
@@ -43,6 +43,7 @@ def bake_to_file(
     progress: Progress | None = None,
     max_folded: int | None = None,
     max_clamped: int | None = None,
+    max_roughness: float | None = None,
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
@@ -62,6 +63,8 @@ def bake_to_file(
         progress: Called after each frame with the frames done and in all.
         max_folded: Faces turned over that a patch may have at a frame; None: any number.
         max_clamped: Vertices looked up outside every face that a patch may have at a frame; None: any number.
+        max_roughness: How many times as roughly as its cache a patch may move, by the largest second difference in
+            time; None: any number.
         diagnostics: Writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points.
         also: What else is made of the frames, each of which is slid once: `Pictures`, `Maps`.
 
@@ -73,10 +76,10 @@ def bake_to_file(
         UsageError: Arguments that cannot be.
         StageError: The stage cannot be opened, or the layer not be written.
         StageProblems: The stage cannot be slid.
-        FrameProblem: A frame cannot be slid, or has more than max_folded or max_clamped.
+        FrameProblem: A frame cannot be slid, or has more than max_folded, max_clamped or max_roughness.
     """
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    layer = _Layer(LayerOptions(max_folded, max_clamped, diagnostics), given_output("output", output))
+    layer = _Layer(LayerOptions(max_folded, max_clamped, max_roughness, diagnostics), given_output("output", output))
     return slide(Shot.of(stage), options, [layer, *given_products("also", also)], progress)
 
 
@@ -90,6 +93,7 @@ def bake(
     progress: Progress | None = None,
     max_folded: int | None = None,
     max_clamped: int | None = None,
+    max_roughness: float | None = None,
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
@@ -108,6 +112,7 @@ def bake(
         progress: As for `bake_to_file`.
         max_folded: As for `bake_to_file`.
         max_clamped: As for `bake_to_file`.
+        max_roughness: As for `bake_to_file`.
         diagnostics: As for `bake_to_file`.
         also: As for `bake_to_file`.
 
@@ -118,11 +123,11 @@ def bake(
         TypeError: Something else than a stage or prims.
         UsageError: Arguments that cannot be, or an edit target that takes nothing.
         StageProblems: The stage cannot be slid.
-        FrameProblem: A frame cannot be slid, or has more than max_folded or max_clamped.
+        FrameProblem: A frame cannot be slid, or has more than max_folded, max_clamped or max_roughness.
     """
     check_target(stage)
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    wanted, others = LayerOptions(max_folded, max_clamped, diagnostics), given_products("also", also)
+    wanted, others = LayerOptions(max_folded, max_clamped, max_roughness, diagnostics), given_products("also", also)
     with replacing_earlier_bake(stage, options.prims) as earlier:
         report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *others], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))
@@ -167,12 +172,12 @@ class _Baking(Making):
     def __init__(self, options: LayerOptions, place: AbstractContextManager[OverLayer], *, in_stage: bool):
         self.options, self._place, self._in_stage = options, place, in_stage
 
-    def of_mesh(self, planned: PlannedMesh, _report: MeshReport) -> MeshMaking:
+    def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking:
         if self.options.diagnostics:
             _check_primvars(planned.mesh.prim)
         if self._in_stage:
             spec_path(planned.mesh.stage, planned.mesh.prim.GetPath())
-        return _MeshBake(planned, self)
+        return _MeshBake(planned, report, self)
 
     @contextmanager
     def running(self, _report: BakeReport) -> Iterator[None]:
@@ -183,8 +188,8 @@ class _Baking(Making):
 class _MeshBake(MeshMaking):
     """Bakes one mesh."""
 
-    def __init__(self, planned: PlannedMesh, baking: _Baking):
-        self._mesh, self._patches, self._baking = planned.mesh, planned.slider.patches, baking
+    def __init__(self, planned: PlannedMesh, report: MeshReport, baking: _Baking):
+        self._mesh, self._patches, self._report, self._baking = planned.mesh, planned.slider.patches, report, baking
         self._derived = Derived(planned.mesh)
         self.turns = self._derived.carries
         self._diagnostics = baking.options.diagnostics
@@ -208,6 +213,7 @@ class _MeshBake(MeshMaking):
             overs.set(attribute, value, sample)
 
     def end(self) -> list[Problem]:
+        self._check_roughness()
         indices = _indices(self._mesh.prim) if self._diagnostics else []
         for attribute in [*self._derived.blocked, *indices]:
             self._baking.overs.block(attribute)
@@ -221,6 +227,15 @@ class _MeshBake(MeshMaking):
                 if most is not None and count > most:
                     message = f"{count} {field.replace('_', ' ')}, where at most {most} are allowed"
                     raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
+
+    def _check_roughness(self) -> None:
+        """Of all frames: a cache may be rough where the skin is not."""
+        most = self._baking.options.max_roughness
+        for patch in self._report.patches:
+            if most is not None and patch.roughness is not None and patch.roughness > most:
+                ratio = f"{roughness_text(patch.roughness)} times as roughly as the cache"
+                message = f"skin moves {ratio}, where at most {most:g} times are allowed"
+                raise FrameProblem(Problem("error", self._mesh.path, patch.label, patch.roughest, message))
 
 
 def _indices(prim: Usd.Prim) -> list[Usd.Attribute]:

@@ -8,12 +8,13 @@ for each mesh of which something is made:
     for each time in order, and the times beside it that velocities need, each once, several at once:
         points, controls, and what products read        on this thread
         slide; what products make of the frame          on a thread of the pool
-    for each time in order: each product takes what it has made
+    for each time in order: each product takes what it has made; how roughly the skin moves at the time before
 end each product                            a layer is put in place, a page is written
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -21,6 +22,7 @@ from typing import Any, NamedTuple
 
 from pxr import Usd
 
+from skinslide.arrays.native import Sample
 from skinslide.problems import Problem, StageProblems
 from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
@@ -95,6 +97,7 @@ class _Mesh(NamedTuple):
         slid = work_ahead(self.planned.mesh, sorted(last_use), self._reader(set(times)), pool, jobs + 1)
         frames: dict[Usd.TimeCode, SlidFrame] = {}
         made: dict[Usd.TimeCode, list[Any]] = {}
+        recent: deque[tuple[Usd.TimeCode, SlidFrame]] = deque(maxlen=3)
         for index, (time, wanted) in enumerate(zip(times, needed, strict=True)):
             while not wanted <= frames.keys():
                 at, (frame, results) = next(slid)
@@ -102,9 +105,17 @@ class _Mesh(NamedTuple):
             for making, result in zip(self.makings, made.pop(time), strict=True):
                 making.take(time, frames, result)
             self.report.add(frame_of(time), frames[time].patches)
+            recent.append((time, frames[time]))
+            self._measure_motion(recent)
             yield time
             for old in [other for other in frames if last_use[other] <= index]:
                 del frames[old]
+
+    def _measure_motion(self, recent: Sequence[tuple[Usd.TimeCode, SlidFrame]]) -> None:
+        """At the time before the last, once there is one before it. Time codes do for seconds: only ratios count."""
+        if len(recent) == 3:
+            samples = [Sample(time.GetValue(), frame.cached, frame.slid) for time, frame in recent]
+            self.report.add_motion(frame_of(recent[1][0]), self.planned.slider.roughness(samples))
 
     def _reader(self, wanted: set[Usd.TimeCode]) -> Callable[[Usd.TimeCode], Callable[[], tuple[SlidFrame, list[Any]]]]:
         """Reads a time, and what is made of it where it is wanted and not only needed for another."""

@@ -73,7 +73,7 @@ class SlideOptions(Options):
 
 @dataclass(frozen=True)
 class LayerOptions(Options):
-    """What a bake writes beside points, and how much of what is bad a patch may have at a frame; None is any number."""
+    """What a bake writes beside points, and how much of what is bad a patch may have; None is any number."""
 
     max_folded: int | None = option(
         None,
@@ -90,6 +90,15 @@ class LayerOptions(Options):
         type=checks.count_text,
         metavar="N",
         help="fail, and write nothing, where a patch has more than N vertices looked up outside every face at a frame",
+    )
+    max_roughness: float | None = option(
+        None,
+        or_none(checks.positive),
+        "--max-roughness",
+        type=float,
+        metavar="X",
+        help="fail, and write nothing, where a patch moves more than X times as roughly as its cache: by the largest "
+        "second difference in time, between the frames that are made",
     )
     diagnostics: bool = option(
         False,

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from skinslide.arrays.records import PatchInfo, PatchResult
+from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
 from skinslide.problems import Problem, frame_text, lines_text
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
@@ -40,11 +40,13 @@ class PatchReport:
         info: What the patch is.
         frames: Stage times, ascending; None is the default time.
         results: What happened at each of them.
+        motion: How roughly the patch moves at each of them that is between two others.
     """
 
     info: PatchInfo
     frames: list[float | None] = field(default_factory=list)
     results: list[PatchResult] = field(default_factory=list)
+    motion: dict[float | None, Roughness] = field(default_factory=dict)
 
     def column(self, name: str) -> np.ndarray:
         """A field of the results, frame by frame.
@@ -68,6 +70,23 @@ class PatchReport:
         worst = self.results[self.worst]
         return worst.stretch_after / worst.stretch_before - 1 if worst.stretch_before > _NO_STRETCH else None
 
+    @property
+    def roughness(self) -> float | None:
+        """The largest second difference in time of the result over that of the cache; None of fewer than three frames.
+
+        Differences that rounding may explain count as what it may come to, so that skin at rest has a roughness of 1.
+        """
+        if not self.motion:
+            return None
+        least = max(each.rounding for each in self.motion.values()) or 1.0
+        after = max(each.after for each in self.motion.values())
+        return max(least, after) / max(least, max(each.before for each in self.motion.values()))
+
+    @property
+    def roughest(self) -> float | None:
+        """The frame at which the result moves most roughly; None of fewer than three frames."""
+        return max(self.motion, key=lambda frame: self.motion[frame].after, default=None)
+
     def milliseconds(self) -> dict[str, np.ndarray]:
         """Time by stage of the walk and in total, frame by frame, (frames,) each."""
         stages = {stage: 1e3 * self.column(f"{stage}_seconds") for stage in STAGES}
@@ -87,10 +106,21 @@ class PatchReport:
             **self.info._asdict(),
             "max": {name: values.max().item() for name, values in fields.items()},
             "mean": {name: values.mean().item() for name, values in fields.items()},
-            "frames": [_frame_dict(*each) for each in zip(self.frames, self.results, strict=True)],
+            "frames": [self._frame_dict(*each) for each in zip(self.frames, self.results, strict=True)],
+            "roughness": self.roughness,
+            "roughest_frame": self.roughest,
             "worst_frame": self.frames[self.worst],
             "worst_frame_stretch_before": worst.stretch_before,
             "worst_frame_stretch_after": worst.stretch_after,
+        }
+
+    def _frame_dict(self, frame: float | None, result: PatchResult) -> dict[str, Any]:
+        motion = self.motion.get(frame)
+        return {
+            "frame": frame,
+            **{name: getattr(result, name) for name in _OF_A_FRAME},
+            "second_difference_before": motion.before if motion else None,
+            "second_difference_after": motion.after if motion else None,
         }
 
     def problems(self, prim: str) -> list[Problem]:
@@ -137,6 +167,10 @@ def stretch_text(stretch: float) -> str:
     return f"{stretch:.4f}"
 
 
+def roughness_text(roughness: float | None) -> str:
+    return "-" if roughness is None else f"{roughness:.2f}"
+
+
 def milliseconds_text(milliseconds: float) -> str:
     return f"{milliseconds:.2f}"
 
@@ -146,10 +180,6 @@ def time_text(frame: float | None) -> str:
 
 
 _OF_A_FRAME = ("stretch_before", "stretch_after", "slid_vertices", "largest_slide", "clamped_vertices", "folded_faces")
-
-
-def _frame_dict(frame: float | None, result: PatchResult) -> dict[str, Any]:
-    return {"frame": frame, **{name: getattr(result, name) for name in _OF_A_FRAME}}
 
 
 @dataclass
@@ -198,6 +228,16 @@ class MeshReport:
         for patch, result in zip(self.patches, results, strict=True):
             patch.frames.append(frame)
             patch.results.append(result)
+
+    def add_motion(self, frame: float | None, roughness: Sequence[Roughness]) -> None:
+        """Takes in how it moves at a frame, once it has been slid before and after it, too.
+
+        Args:
+            frame: The stage time.
+            roughness: Of each patch.
+        """
+        for patch, own in zip(self.patches, roughness, strict=True):
+            patch.motion[frame] = own
 
     @property
     def frame_count(self) -> int:
@@ -250,7 +290,10 @@ class BakeReport:
         return self.warnings + [problem for prim, patch in patches for problem in patch.problems(prim)]
 
     def as_dict(self) -> dict[str, Any]:
-        """What `--json` prints. Frame None is the default time; stretch is RMS log(length / rest length)."""
+        """What `--json` prints. Frame None is the default time; stretch is RMS log(length / rest length).
+
+        Roughness is the largest second difference in time of the result over that of the cache, between these frames.
+        """
         return {
             "meshes": [mesh.as_dict() for mesh in self.meshes],
             "problems": [problem.as_dict() for problem in self.problems],
@@ -270,11 +313,23 @@ class BakeReport:
         return lines_text([*lines, *map(str, self.problems), *made])
 
 
-_HEADINGS = ["patch", "vertices", "edges", *STAGES, "ms/frame", "stretch", "slid", "at frame", "folded", "clamped"]
+_HEADINGS = [
+    "patch",
+    "vertices",
+    "edges",
+    *STAGES,
+    "ms/frame",
+    "stretch",
+    "slid",
+    "at frame",
+    "rough",
+    "folded",
+    "clamped",
+]
 
 
 def _row(patch: PatchReport) -> list[str]:
-    """Mean ms a frame by stage; stretch in the cache and slid, at the worst frame; the most folds and clamps."""
+    """Mean ms a frame by stage; stretch in the cache and slid, at the worst frame; roughness; most folds and clamps."""
     worst = patch.results[patch.worst]
     return [
         f"  {patch.label}",
@@ -284,6 +339,7 @@ def _row(patch: PatchReport) -> list[str]:
         stretch_text(worst.stretch_before),
         stretch_text(worst.stretch_after),
         time_text(patch.frames[patch.worst]),
+        roughness_text(patch.roughness),
         str(patch.column("folded_faces").max()),
         str(patch.column("clamped_vertices").max()),
     ]
