@@ -207,6 +207,14 @@ static bool say_why_not(search *own) {
     return own->finding.problem_count == before;
 }
 
+static void warn_of_variant(search *own) {
+    if (own->prim.variant && own->prim.variant_set)
+        say(own, SKINSLIDE_SEVERITY_WARNING, NULL,
+            "points come from the variant %s of %s, and what is slid stands whichever is selected; bake into that variant, or "
+            "keep it selected",
+            own->prim.variant, own->prim.variant_set);
+}
+
 /* ---- The finding ---- */
 
 static skinslide_status prepare(search *own, const skinslide_stage_prim *prim, skinslide_error *error) {
@@ -234,6 +242,8 @@ static void look(search *own) {
             say_unknown(own, own->patches[i], space);
     if (own->finding.patch_count)
         own->finding.slides = say_why_not(own) && named;
+    if (own->finding.slides)
+        warn_of_variant(own);
     own->finding.patches = own->patches;
     own->finding.problems = own->problems;
 }

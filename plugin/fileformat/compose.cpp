@@ -303,6 +303,19 @@ TfTokenVector Prim::propertyNames() const {
     return order;
 }
 
+namespace {
+
+// The innermost variant that a node is in: its set, its name.
+std::pair<std::string, std::string> variantOf(PcpNodeRef node) {
+    for (; node; node = node.GetParentNode()) {
+        if (node.GetArcType() == PcpArcTypeVariant)
+            return node.GetPathAtIntroduction().GetVariantSelection();
+    }
+    return {};
+}
+
+} // namespace
+
 Attribute Prim::attribute(const TfToken &name) const {
     Attribute found;
     found._name = name.GetString();
@@ -322,6 +335,8 @@ Attribute Prim::attribute(const TfToken &name) const {
                 toRoot = toRoot * *offset;
             found.takeOpinion(layer, path, toRoot);
         }
+        if (!before && found._resolved)
+            found._variant = variantOf(node);
         // Clips are weaker than samples and splines of the site they are authored at, and stronger than its defaults.
         bool timed = found._source == Attribute::Source::Samples || found._source == Attribute::Source::Spline;
         found._clipped = found._clipped || (!before && !(found._resolved && timed) && clipsApply(node, path));

@@ -19,6 +19,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace skinslide {
@@ -59,6 +60,10 @@ class Attribute {
     }
     // The layer of an earlier bake that its value, or its default, comes from; null where there is none.
     SdfLayerRefPtr bakedLayer() const;
+    // The variant that its value comes from, as set and name; empty where there is none.
+    const std::pair<std::string, std::string> &variant() const {
+        return _variant;
+    }
     VtValue metadata(const TfToken &field) const;
     TfToken token(const TfToken &field, const TfToken &fallback) const;
 
@@ -73,6 +78,7 @@ class Attribute {
     bool _resolved = false, _defaultResolved = false, _clipped = false;
     SdfLayerRefPtr _root, _layer, _defaultLayer; // root: of the composition
     SdfPath _path, _defaultPath;
+    std::pair<std::string, std::string> _variant;
     SdfLayerOffset _toRoot;
     std::vector<std::pair<SdfLayerRefPtr, SdfPath>> _specs; // strong to weak
 };

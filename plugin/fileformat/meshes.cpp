@@ -108,6 +108,7 @@ Finding find(Composition &composition, const Found &found, const Prim &prim, con
     facts.point_samples = points.source() == Attribute::Source::Samples || points.clipped();
     facts.has_joint_indices = ownerOf(composition, prim, names().jointIndices).attribute(names().jointIndices).authored();
     facts.blend_shape_count = blendShapes(composition, prim);
+    facts.variant_set = orNull(points.variant().first), facts.variant = orNull(points.variant().second);
     facts.schema_count = static_cast<int32_t>(schemas.size()), facts.schemas = schemas.data();
     return make<Finding>(skinslide_stage_find, &facts);
 }

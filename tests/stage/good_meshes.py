@@ -107,6 +107,22 @@ def variants(scene: Scene) -> None:
             stages.set_property(scene.mesh, "envelope", envelope)
 
 
+def points_of_a_variant(scene: Scene) -> None:
+    """Each variant of the parent has its own cache, behind a payload."""
+    chosen = scene.parent.GetVariantSets().AddVariantSet("lod")
+    for name, size in (("low", 0.5), ("high", 1.0)):
+        cache = Usd.Stage.CreateNew(str(scene.folder / f"{name}.usda"))
+        points = cache.OverridePrim("/char/geo/skin_GEO").CreateAttribute("points", Types.Point3fArray, False)
+        for time in (Usd.TimeCode.Default(), *FRAMES):
+            points.Set(stages.vectors(size * np.array(scene.points.Get(time))), time)
+        cache.Save()
+        chosen.AddVariant(name)
+        chosen.SetVariantSelection(name)
+        with chosen.GetVariantEditContext():
+            scene.parent.GetPayloads().AddPayload(f"./{name}.usda", "/char")
+    scene.prim.RemoveProperty("points")
+
+
 def skinned_earlier(scene: Scene) -> None:
     """The skinning was baked: there are samples."""
     UsdSkel.BindingAPI.Apply(scene.prim).CreateJointIndicesPrimvar(False, 1).Set([0] * 49)
@@ -220,6 +236,12 @@ CHOSEN = [
     Good("prim: invisible", lambda scene: scene.mesh.MakeInvisible()),
     Good("prim: opinions of a class", class_with_opinions),
     Good("prim: opinions of a variant", variants),
+    Good(
+        "prim: points of a variant",
+        points_of_a_variant,
+        warns="points come from the variant high of lod, and what is slid stands whichever is selected; bake into that "
+        "variant, or keep it selected",
+    ),
     Good("prim: point instancer that is inactive", inactive_instancer),
 ]
 

@@ -182,10 +182,12 @@ typedef struct skinslide_stage_prim {
     const char *const *schemas;       /* [schema_count] their names, in order */
     const char *const *properties;    /* [property_count] their names */
     const char *uncomposed;           /* what USD says that it could not compose of it, in one line; or NULL */
+    const char *variant_set;          /* of the variant that its points come from; NULL: of none, or they are written there */
+    const char *variant;              /* its name */
 } skinslide_stage_prim;
 
 #define SKINSLIDE_STAGE_PRIM_DEFAULT                                                                                           \
-    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 typedef enum skinslide_severity { SKINSLIDE_SEVERITY_WARNING, SKINSLIDE_SEVERITY_ERROR } skinslide_severity;
 

@@ -187,6 +187,8 @@ class PrimFacts:
     schemas: Sequence[str] = ()
     properties: Sequence[str] = ()
     uncomposed: str | None = None
+    variant_set: str | None = None
+    variant: str | None = None
 
 
 class Said(NamedTuple):

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
-from pxr import Sdf, Usd, UsdGeom, UsdSkel
+from pxr import Pcp, Sdf, Usd, UsdGeom, UsdSkel
 
 from skinslide.arrays.meaning import SCHEMA, PrimFacts, find, nothing_to_slide
 from skinslide.problems import NO_SUCH_PRIM, Problem
 from skinslide.stage import schema
-from skinslide.stage.marks import baked_layer
+from skinslide.stage.marks import baked_layer, has_values
 from skinslide.stage.opening import is_live
+
+_Variant: TypeAlias = tuple[str, str]  # its set, its name
 
 
 def find_meshes(
@@ -107,6 +110,7 @@ def _facts(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> PrimFacts:
     )
     if not any(name.startswith(SCHEMA) for name in names):
         return facts
+    variant_set, variant = _variant_of(prim) or (None, None)
     points, baked = UsdGeom.PointBased(prim).GetPointsAttr(), baked_layer(prim)
     return replace(
         facts,
@@ -117,6 +121,8 @@ def _facts(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> PrimFacts:
         point_samples=points.GetNumTimeSamples() if points else 0,
         has_joint_indices=_has_joint_indices(prim),
         blend_shape_count=_blend_shape_count(prim),
+        variant_set=variant_set,
+        variant=variant,
     )
 
 
@@ -141,6 +147,25 @@ def _instance_of(prim: Usd.Prim) -> str | None:
     while not prim.IsInstance():
         prim = prim.GetParent()
     return str(prim.GetPath())
+
+
+def _variant_of(prim: Usd.Prim) -> _Variant | None:
+    """The variant that the points of a mesh come from, unless the edit target is in it."""
+    points = UsdGeom.PointBased(prim).GetPointsAttr()
+    strongest = next(filter(has_values, points.GetPropertyStack() if points else []), None)
+    found = _variant_below(prim.GetPrimIndex().rootNode, strongest) if strongest else None
+    target = prim.GetStage().GetEditTarget().MapToSpecPath(prim.GetPath())
+    edited = [path.GetVariantSelection() for path in target.GetPrefixes() if path.IsPrimVariantSelectionPath()]
+    return None if found in edited else found
+
+
+def _variant_below(node: Pcp.NodeRef, spec: Sdf.PropertySpec, variant: _Variant | None = None) -> _Variant | None:
+    """The last variant on the way to the node that an opinion is from."""
+    if node.arcType == Pcp.ArcTypeVariant:
+        variant = node.GetPathAtIntroduction().GetVariantSelection()
+    if node.path == spec.owner.path and spec.layer in node.layerStack.layers:
+        return variant
+    return next(filter(None, (_variant_below(child, spec, variant) for child in node.children)), None)
 
 
 def _slid_by(prim: Usd.Prim) -> str | None:
