@@ -60,6 +60,6 @@ double ss_measure(ss_meter *meter, int32_t triangle, const double rates[3], doub
     ss_vector_along(&meter->pose->facet[triangle], rates, vector);
     double length = part * ss_length(vector), allowed = meter->limit - meter->walked;
     bool too_far = length > allowed;
-    meter->walked += too_far ? allowed : length;
+    meter->walked = too_far ? meter->limit : meter->walked + length; /* where a walk ends it says so to the bit */
     return too_far ? part * (allowed / length) : part;
 }

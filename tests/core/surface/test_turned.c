@@ -82,6 +82,20 @@ static void nothing_and_a_meter(void **state) {
     free_scene(&s);
 }
 
+/* A meter that a walk comes to the end of says so exactly, whatever sums round to on the way: else nobody could tell. */
+static void a_meter_ends_at_its_limit(void **state) {
+    (void)state;
+    walk_scene s = scene_of(triangle_grid(3, 3));
+    dice d = {7};
+    const double rates[3] = {-1e3, 1e3, 0};
+    for (int i = 0; i < 1000; i++) {
+        ss_meter meter = {&s.ground.pose, roll_between(&d, 0, 0.5), roll_between(&d, 1, 2)};
+        assert_true(ss_measure(&meter, 0, rates, 1) < 1);
+        assert_near(meter.walked, meter.limit, 0);
+    }
+    free_scene(&s);
+}
+
 /* Weights stay a place's on every fixture, however long the walk. */
 static void places_stay_places(void **state) {
     (void)state;
@@ -120,7 +134,8 @@ static void walks_go_round(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(straight_in_a_plane), cmocka_unit_test(straight_from_a_place), cmocka_unit_test(nothing_and_a_meter),
+        cmocka_unit_test(straight_in_a_plane), cmocka_unit_test(straight_from_a_place),
+        cmocka_unit_test(nothing_and_a_meter), cmocka_unit_test(a_meter_ends_at_its_limit),
         cmocka_unit_test(places_stay_places),  cmocka_unit_test(walks_go_round),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
