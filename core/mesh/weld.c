@@ -203,6 +203,18 @@ static skinslide_status check_tolerance(const skinslide_mesh *mesh, double toler
                    "weld: the tolerance is %g; it must be 0 to %g, a thousandth of the size of the mesh", tolerance, most);
 }
 
+/* The mesh without its weld, which is what is to be found. */
+static skinslide_status take_bare(const skinslide_mesh **mesh, ss_taken_mesh *taken, skinslide_error *error) {
+    skinslide_mesh bare = SKINSLIDE_MESH_DEFAULT;
+    skinslide_status status = ss_take(*mesh, "skinslide_mesh", &bare, sizeof bare, error);
+    bare.weld = NULL;
+    const skinslide_mesh *given = *mesh ? &bare : NULL;
+    if (!status)
+        status = ss_take_mesh(&given, taken, error);
+    *mesh = given ? &taken->mesh : NULL;
+    return status;
+}
+
 /* Faces that are not the mesh's are passed over: the slider names them. */
 static void mark_faces(const skinslide_mesh *mesh, const skinslide_patch_setup *setups, int32_t setup_count, uint8_t *chosen) {
     for (int32_t i = 0; i < setup_count; i++)
@@ -309,7 +321,7 @@ skinslide_status skinslide_weld_create(const skinslide_mesh *mesh, const skinsli
     if (!out || setup_count < 0 || (setup_count > 0 && !setups))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the weld, or no patches");
     ss_taken_mesh taken;
-    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
+    skinslide_status status = take_bare(&mesh, &taken, error);
     if (!status)
         status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
     if (!status)
