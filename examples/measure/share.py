@@ -9,8 +9,10 @@ relaxed result is from the deformed patch, as a share of the patch's size, beyon
 """
 
 import sys
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import igl
 import numpy as np
@@ -18,6 +20,10 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from pxr import Usd
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from sliders import sliders_of
+
+from skinslide.arrays.slider import Frame, Slider
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 RULES = ("unit", "fast", "even", "relaxed")
@@ -105,27 +111,47 @@ class Search:
         return stretch
 
 
-def rows(path: Path) -> list[list[str]]:
-    """The cells of one example, a row a frame."""
-    stage = Usd.Stage.Open(str(path))
-    mesh = read_meshes(stage)[0][0]
-    patch = mesh.patches[0]
-    skin = Skin.of(mesh, patch.faces)
-    search, found = Search(skin), []
-    plain = replace(patch, interpolation="linear", controls=replace(patch.controls, weight=None, max_distance=None))
-    sliders = [mesh.build([replace(plain, rule=rule)]) for rule in RULES]
+class Found(NamedTuple):
+    """What a frame came to."""
+
+    time: float
+    cache: float  # stretch of the cache
+    best: float  # and the least there is; NaN where it was not searched for
+    stretch: dict[str, float]  # and slid, by rule
+    frames: dict[str, Frame]  # by rule
+    off: float  # of the last rule
+
+    def share(self, rule: str) -> float:
+        """Of the stretch that can be removed, what a rule removes; NaN where none can, or it was not searched for."""
+        return (self.cache - self.stretch[rule]) / (self.cache - self.best) if self.best < self.cache else np.nan
+
+
+def frames(mesh: PatchedMesh, sliders: dict[str, Slider], *, search: bool = True) -> Iterator[Found]:
+    """Each frame of the first patch."""
+    skin = Skin.of(mesh, mesh.patches[0].faces)
+    walk = Search(skin) if search else None
     for time in mesh.sample_times():
         cached = mesh.points_at(Usd.TimeCode(time))
-        frames = [slider.slide(cached) for slider in sliders]
-        deformed = cached[skin.vertices].astype(float)
-        slid = [frame.points[skin.vertices].astype(float) for frame in frames]
-        cache, result = skin.stretch(deformed), frames[-1].patches[0]
-        best = min(search.lowest(start, deformed) for start in (deformed, *slid)) if cache else 0.0
-        shares = [f"{(cache - skin.stretch(points)) / (cache - best):.3f}" if best < cache else "-" for points in slid]
-        where = [path.parent.name, f"{time:g}", f"{cache:.4f}", f"{best:.4f}"]
-        quality = [str(result.relax_steps), f"{skin.off(slid[-1], deformed):.0e}", str(result.folded_faces)]
-        found.append([*where, *shares, *quality])
-    return found
+        slid = {rule: slider.slide(cached) for rule, slider in sliders.items()}
+        deformed, points = cached[skin.vertices].astype(float), {}
+        for rule, frame in slid.items():
+            points[rule] = frame.points[skin.vertices].astype(float)
+        cache, stretch = skin.stretch(deformed), {rule: skin.stretch(each) for rule, each in points.items()}
+        starts = (deformed, *points.values())
+        best = min(walk.lowest(start, deformed) for start in starts) if walk and cache else cache if walk else np.nan
+        yield Found(time, cache, best, stretch, slid, skin.off(list(points.values())[-1], deformed))
+
+
+def rows(path: Path) -> list[list[str]]:
+    """The cells of one example, a row a frame."""
+    mesh, cells = read_meshes(Usd.Stage.Open(str(path)))[0][0], []
+    for found in frames(mesh, sliders_of(mesh, RULES)):
+        shares = [found.share(rule) if rule in found.stretch else np.nan for rule in RULES]
+        result = found.frames["relaxed"].patches[0]
+        where = [path.parent.name, f"{found.time:g}", f"{found.cache:.4f}", f"{found.best:.4f}"]
+        quality = [str(result.relax_steps), f"{found.off:.0e}", str(result.folded_faces)]
+        cells.append([*where, *("-" if np.isnan(share) else f"{share:.3f}" for share in shares), *quality])
+    return cells
 
 
 def main() -> None:

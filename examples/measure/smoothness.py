@@ -13,12 +13,15 @@ rule itself: interpolation linear, slide weights and largest distances left out.
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from pxr import Usd
 from scipy.interpolate import CubicSpline
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from sliders import sliders_of
 
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
@@ -66,10 +69,9 @@ def motions(mesh: PatchedMesh) -> tuple[np.ndarray, np.ndarray, dict[str, Motion
     """Mesh vertices of the first patch, the times of its sub-frames, and what moves it: "cache" or a rule."""
     samples = np.array(mesh.sample_times())
     spline = CubicSpline(samples, np.stack([mesh.points_at(Usd.TimeCode(time)) for time in samples]).astype(float))
-    patch = mesh.patches[0]
-    plain = replace(patch, interpolation="linear", controls=replace(patch.controls, weight=None, max_distance=None))
-    sliders = {rule: mesh.build([replace(plain, rule=rule)]) for rule in RULES}
-    vertices = sliders[RULES[0]].vertices(0)
+    sliders = sliders_of(mesh, RULES)
+    any_slider = sliders["even"]
+    vertices = np.unique(np.concatenate([any_slider.vertices(piece) for piece in range(len(any_slider.patches))]))
 
     def cached(time: float) -> np.ndarray:
         return spline(time).astype(np.float32)
@@ -93,7 +95,7 @@ def rows(path: Path) -> list[list[str]]:
     vertices, times, moves = motions(mesh)
     edge, cache = mean_edge(mesh, mesh.patches[0].faces), Rough.of(moves["cache"], times)
     found = []
-    for rule in RULES:
+    for rule in [each for each in moves if each != "cache"]:
         rough = Rough.of(moves[rule], times)
         (time, vertex), above = rough.worst, (rough.lengths.max(axis=1) > 2 * cache.most).mean()
         sizes = [f"{rough.most / cache.most:.2f}", f"{100 * above:.0f} %", f"{100 * rough.most / edge:.2f} %"]

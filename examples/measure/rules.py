@@ -1,0 +1,93 @@
+"""Prints what each rule makes of the examples: one line an example and a rule that can slide it.
+
+usage: rules.py STAGE...        (needs libigl)
+`gone` is the share of the cache's stretch that is gone at the frame where it has most; `share min` and `median` over
+the frames are of the stretch that can be removed, as share.py finds it, for patches of few enough vertices to search.
+`whole` and `quarter` are the ratios in time of smoothness.py, at whole frames and at quarters; `worst` is the largest
+second difference at quarters, as a share of the mean rest edge. `folds` are the most faces turned over at a frame, `ms`
+the median of a frame in the core, on one thread, and `x unit` in frames of unit. Measured is the rule itself, on the
+first patch: interpolation linear, slide weights and largest distances left out.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from pxr import Usd
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import share
+from sliders import sliders_of
+from smoothness import RULES, Rough, mean_edge, motions
+
+from skinslide.arrays.slider import Frame
+from skinslide.stage.mesh import PatchedMesh, read_meshes
+
+HEADINGS = (
+    "example",
+    "rule",
+    "vertices",
+    "gone",
+    "share min",
+    "median",
+    "whole",
+    "quarter",
+    "worst",
+    "folds",
+    "ms",
+    "x unit",
+)
+MOST_SEARCHED = 5000  # vertices
+SECONDS = ("density_seconds", "embed_seconds", "relax_seconds", "locate_seconds", "interpolate_seconds")
+
+
+def milliseconds(frame: Frame) -> float:
+    return 1e3 * sum(getattr(patch, name) for patch in frame.patches for name in SECONDS)
+
+
+def shares(frames: list[share.Found], rule: str) -> tuple[str, str]:
+    """The least and the median of those frames that have any."""
+    found = [each.share(rule) for each in frames if np.isfinite(each.share(rule))]
+    return (f"{min(found):.2f}", f"{np.median(found):.2f}") if found else ("-", "-")
+
+
+def roughness(mesh: PatchedMesh) -> dict[str, list[str]]:
+    """By rule: the ratios at whole frames and at quarters, and the worst."""
+    _, times, moves = motions(mesh)
+    edge, found = mean_edge(mesh, mesh.patches[0].faces), {}
+    whole, quarter = ({name: Rough.of(move, times[::step]).most for name, move in moves.items()} for step in (4, 1))
+    for rule in moves:
+        ratios = [f"{most[rule] / most['cache']:.2f}" for most in (whole, quarter)]
+        found[rule] = [*ratios, f"{100 * quarter[rule] / edge:.2f} %"]
+    return found
+
+
+def rows(path: Path) -> list[list[str]]:
+    """The cells of one example, a row a rule."""
+    mesh = read_meshes(Usd.Stage.Open(str(path)))[0][0]
+    sliders, rough = sliders_of(mesh, RULES), roughness(mesh)
+    count = sum(patch.vertex_count for patch in sliders["even"].patches)
+    frames = list(share.frames(mesh, sliders, search=count <= MOST_SEARCHED))
+    worst = max(frames, key=lambda found: found.cache)
+    cost = {rule: float(np.median([milliseconds(found.frames[rule]) for found in frames])) for rule in sliders}
+    cells = []
+    for rule in sliders:
+        gone = f"{100 * (1 - worst.stretch[rule] / worst.cache):.0f} %"
+        folds = max(patch.folded_faces for found in frames for patch in found.frames[rule].patches)
+        times = [f"{cost[rule]:.2f}", f"{cost[rule] / cost['unit']:.1f}" if "unit" in cost else "-"]
+        cells.append(
+            [path.parent.name, rule, str(count), gone, *shares(frames, rule), *rough[rule], str(folds), *times]
+        )
+    return cells
+
+
+def main() -> None:
+    table = [list(HEADINGS), *(row for path in sys.argv[1:] for row in rows(Path(path)))]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for cells in table:
+        print("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+
+
+if __name__ == "__main__":
+    with np.errstate(divide="ignore"):  # an edge of no length has endless stretch, and is never taken
+        main()
