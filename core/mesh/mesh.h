@@ -151,6 +151,18 @@ typedef struct ss_vectors {
 skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout, ss_vectors vectors,
                           skinslide_error *error);
 
+/* ---- grow.c: what is near on the mesh at rest ---- */
+
+/* How much is left at each vertex of the ways that begin where left [vertex_count] is not below 0, with so much to go: the most of
+ * any way, below 0 where none comes. False where memory is short. */
+bool ss_spread(const skinslide_mesh *mesh, double *left);
+/* left [vertex_count] for ways that begin at the faces inside [face_count]. */
+void ss_start_at(const skinslide_mesh *mesh, const uint8_t *inside, double way, double *left);
+/* Adds the faces that ways come to all vertices of. */
+void ss_add_reached(const skinslide_mesh *mesh, const double *left, uint8_t *inside);
+/* Adds the faces that are, as a whole, within that way of those inside. False where memory is short. */
+bool ss_add_near_faces(const skinslide_mesh *mesh, double way, uint8_t *inside);
+
 /* ---- patch.c: one connected patch ---- */
 
 /* The triangles of the fans of its faces, and how they meet. Side k of a triangle goes from its vertex k to the next. */
