@@ -453,6 +453,11 @@ static void put_numbers(const skinslide_stage_controls *controls, skinslide_cont
     }
 }
 
+bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row) {
+    const control *own = &controls->controls[row];
+    return own->values || ss_texture_wanted(own->texture) || own->number != inputs()[row].fallback;
+}
+
 skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given,
                                   skinslide_error *error) {
     skinslide_controls *out = &controls->given;

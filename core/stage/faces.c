@@ -90,10 +90,8 @@ skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_re
     if (!patch->faces_by_primvar)
         return SKINSLIDE_OK;
     skinslide_status status = choose(patch, record, &patch->memory, &faces, error);
-    if (!status) {
-        patch->faces = faces;
-        ss_mark_inside(patch);
-    }
+    if (!status)
+        patch->painted = faces;
     return status;
 }
 
@@ -103,8 +101,8 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
     ss_memory scratch = {0};
     ss_array faces = {0};
     skinslide_status status = choose(patch, record, &scratch, &faces, error);
-    bool same = faces.count == patch->faces.count &&
-                (!faces.count || memcmp(faces.values, patch->faces.values, (size_t)faces.count * sizeof(int32_t)) == 0);
+    bool same = faces.count == patch->painted.count &&
+                (!faces.count || memcmp(faces.values, patch->painted.values, (size_t)faces.count * sizeof(int32_t)) == 0);
     if (!status && !same) {
         char text[32];
         skinslide_stage_frame_text(frame, text);
@@ -196,11 +194,8 @@ static skinslide_status take_indices(skinslide_stage_patch *patch, const ss_reco
         return status;
     sort_faces(&faces);
     status = check_faces(&faces, face_count_of(patch), patch->subset, error);
-    if (!status) {
-        patch->indices = authored;
-        patch->faces = faces;
-        ss_mark_inside(patch);
-    }
+    if (!status)
+        patch->indices = authored, patch->painted = faces;
     return status;
 }
 
@@ -284,13 +279,48 @@ static void mark_face(skinslide_stage_patch *patch, int32_t face) {
         patch->vertex_inside[indices[c]] = 1;
 }
 
-void ss_mark_inside(skinslide_stage_patch *patch) {
+static void mark_inside(skinslide_stage_patch *patch) {
     memset(patch->face_inside, 0, (size_t)face_count_of(patch));
     memset(patch->vertex_inside, 0, (size_t)patch->mesh->vertex_count);
     for (int32_t i = 0; i < patch->faces.count; i++)
         mark_face(patch, ((const int32_t *)patch->faces.values)[i]);
     for (int32_t face = 0; !patch->faces.count && face < face_count_of(patch); face++)
         mark_face(patch, face);
+}
+
+/* How far around what was chosen the patch reaches. Without rest points it does not. */
+static double way_of(const skinslide_stage_patch *patch) {
+    int32_t count;
+    const ss_input *grow = &ss_inputs(SKINSLIDE_STAGE_PATCH, &count)[SS_ROW_GROW];
+    bool counts = patch->mesh->rest && ss_is_read_by(grow, patch->taken[SS_ROW_RULE].choice);
+    return counts ? patch->taken[SS_ROW_GROW].number : 0;
+}
+
+/* Makes the faces of the patch those that are inside. */
+static skinslide_status list_inside(skinslide_stage_patch *patch, skinslide_error *error) {
+    int32_t *faces = SS_NEW(&patch->memory, int32_t, face_count_of(patch)), count = 0;
+    if (!faces)
+        return ss_out_of_memory(error);
+    for (int32_t face = 0; face < face_count_of(patch); face++)
+        if (patch->face_inside[face])
+            faces[count++] = face;
+    patch->faces = (ss_array){faces, count};
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *error) {
+    skinslide_mesh mesh = ss_faces_of(patch->mesh);
+    mesh.rest_points = patch->mesh->rest;
+    patch->faces = patch->painted;
+    mark_inside(patch);
+    if (!patch->painted.count || !(way_of(patch) > 0))
+        return SKINSLIDE_OK;
+    if (!ss_add_near_faces(&mesh, way_of(patch), patch->face_inside))
+        return ss_out_of_memory(error);
+    skinslide_status status = list_inside(patch, error);
+    if (!status)
+        mark_inside(patch);
+    return status;
 }
 
 const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count) {

@@ -65,20 +65,24 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
 #define PRIMVAR(name, type, group, when, inherited)                                                                            \
     .shown = {name, type, NULL, NULL, group, "primvars:" SS_NAMESPACE, when, 1, inherited}
 #define SETTING(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0}
-#define INDICES(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
+#define STEADY(declared)  .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
 #define CONTROL(declared) .shown = {declared, SKINSLIDE_STAGE_CONTROLS, SS_NAMESPACE, SKINSLIDE_STAGE_ANIMATED, 0, 0}
+#define RESPONSE          .kind = SS_KIND_NUMBER, .range = SS_RANGE_SHARE, .wanted = "0 to 1", .rules = SS_NO_PLANE
 #define PAINT(name)       PRIMVAR(name, "float[]", SKINSLIDE_STAGE_CONTROLS, SKINSLIDE_STAGE_ANIMATED, 1), .kind = SS_KIND_PAINT
 
 static const ss_input patch_inputs[SS_PATCH_ROWS] = {
     [SS_ROW_FACES] = {PRIMVAR("patch", "bool[]", SKINSLIDE_STAGE_PATCH, SKINSLIDE_STAGE_STILL, 0), .kind = SS_KIND_FACES},
-    [SS_ROW_BOUNDARY] = {SETTING(SS_PATCH_BOUNDARY), .kind = SS_KIND_CHOICE},
+    [SS_ROW_BOUNDARY] = {SETTING(SS_PATCH_BOUNDARY), .kind = SS_KIND_CHOICE, .rules = SS_PLANE},
     [SS_ROW_HOLES] = {SETTING(SS_PATCH_HOLES), .kind = SS_KIND_CHOICE},
     [SS_ROW_RULE] = {SETTING(SS_PATCH_FORCE_DENSITY_RULE), .kind = SS_KIND_CHOICE},
     [SS_ROW_INTERPOLATION] = {SETTING(SS_PATCH_INTERPOLATION), .kind = SS_KIND_CHOICE},
-    [SS_ROW_CORNERS] = {INDICES(SS_PATCH_CORNERS), .kind = SS_KIND_CORNERS},
-    [SS_ROW_EDGES] = {INDICES(SS_PATCH_EDGES), .kind = SS_KIND_EDGES},
+    [SS_ROW_GROW] = {STEADY(SS_PATCH_GROW), .kind = SS_KIND_NUMBER, .range = SS_RANGE_NOT_NEGATIVE, .wanted = not_negative,
+                     .fallback = SS_PATCH_GROW_NUMBER, .rules = SS_NO_PLANE},
+    [SS_ROW_CORNERS] = {STEADY(SS_PATCH_CORNERS), .kind = SS_KIND_CORNERS, .rules = SS_PLANE},
+    [SS_ROW_EDGES] = {STEADY(SS_PATCH_EDGES), .kind = SS_KIND_EDGES},
     [SS_ROW_WEIGHT_CHANNEL] = {SETTING(SS_PATCH_WEIGHT_MAP_CHANNEL), .kind = SS_KIND_WORD},
     [SS_ROW_DENSITY_CHANNEL] = {SETTING(SS_PATCH_FORCE_DENSITY_MAP_CHANNEL), .kind = SS_KIND_WORD},
+    [SS_ROW_HOLD_CHANNEL] = {SETTING(SS_PATCH_HOLD_MAP_CHANNEL), .kind = SS_KIND_WORD},
     [SS_ROW_ST] = {SETTING(SS_PATCH_MAP_ST), .kind = SS_KIND_WORD},
 };
 
@@ -104,6 +108,15 @@ static const ss_input control_inputs[SS_CONTROL_ROWS] = {
                             .channel = SS_ROW_DENSITY_CHANNEL},
     [SS_ROW_EDGE_DENSITIES] = {CONTROL(SS_PATCH_EDGE_FORCE_DENSITIES), .kind = SS_KIND_FACTORS, .range = SS_RANGE_DENSITY,
                                .wanted = positive, .place = offsetof(skinslide_controls, edge_density)},
+    [SS_ROW_HOLD] = {PAINT("hold"), .range = SS_RANGE_DENSITY, .wanted = positive, .off_patch = 1, .rules = SS_NO_PLANE,
+                     .place = offsetof(skinslide_controls, hold)},
+    [SS_ROW_HOLD_MAP] = {CONTROL(SS_PATCH_HOLD_MAP), .kind = SS_KIND_TEXTURE, .multiplies = SS_ROW_HOLD,
+                         .channel = SS_ROW_HOLD_CHANNEL, .rules = SS_NO_PLANE},
+    [SS_ROW_STRETCH_RESPONSE] = {CONTROL(SS_PATCH_STRETCH_RESPONSE), RESPONSE, .fallback = SS_PATCH_STRETCH_RESPONSE_NUMBER,
+                                 .place = offsetof(skinslide_controls, stretch_response)},
+    [SS_ROW_COMPRESSION_RESPONSE] = {CONTROL(SS_PATCH_COMPRESSION_RESPONSE), RESPONSE,
+                                     .fallback = SS_PATCH_COMPRESSION_RESPONSE_NUMBER,
+                                     .place = offsetof(skinslide_controls, compression_response)},
 };
 
 /* ---- What follows from points, and what a shot sets ---- */
@@ -201,6 +214,8 @@ bool ss_in_range(ss_range range, double number) {
     switch (range) {
     case SS_RANGE_NOT_NEGATIVE:
         return number >= 0;
+    case SS_RANGE_SHARE:
+        return number >= 0 && number <= 1;
     case SS_RANGE_DENSITY:
         return isfinite(number) && number > 0;
     default:

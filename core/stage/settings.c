@@ -94,6 +94,8 @@ skinslide_status ss_take_plain(const ss_input *input, const ss_record *record, s
         return take_choice(input, record, status, taken, error);
     case SS_KIND_WORD:
         return take_word(input, record, status, memory, taken, error);
+    case SS_KIND_NUMBER:
+        return ss_take_number(input, record, &taken->number, error);
     default:
         return copy_array(input, record, status, memory, &taken->array, error);
     }
@@ -104,7 +106,7 @@ skinslide_status ss_take_fallbacks(const ss_input *inputs, int32_t count, ss_mem
     ss_record none;
     skinslide_status status = ss_open(NULL, &none, error);
     for (int32_t row = 0; row < count && !status; row++)
-        if (inputs[row].kind == SS_KIND_CHOICE || inputs[row].kind == SS_KIND_WORD)
+        if (inputs[row].kind == SS_KIND_CHOICE || inputs[row].kind == SS_KIND_WORD || inputs[row].kind == SS_KIND_NUMBER)
             status = ss_take_plain(&inputs[row], &none, SKINSLIDE_BAD_CONTROL, memory, &taken[row], error);
     return status;
 }
@@ -115,6 +117,8 @@ static bool is_same(const ss_input *input, const ss_taken *a, const ss_taken *b)
         return a->choice == b->choice;
     case SS_KIND_WORD:
         return strcmp(a->word, b->word) == 0;
+    case SS_KIND_NUMBER:
+        return a->number == b->number;
     default:
         return a->array.count == b->array.count &&
                (!a->array.count || memcmp(a->array.values, b->array.values, (size_t)a->array.count * sizeof(int32_t)) == 0);
@@ -179,8 +183,8 @@ static skinslide_status fill_patch(skinslide_stage_patch *patch, const char *nam
     if (patch->memory.failed)
         return ss_out_of_memory(error);
     set_coordinates(patch, "primvars:st");
-    ss_mark_inside(patch);
-    return ss_take_fallbacks(patch_inputs(), SS_PATCH_ROWS, &patch->memory, patch->taken, error);
+    status = ss_settle_faces(patch, error);
+    return status ? status : ss_take_fallbacks(patch_inputs(), SS_PATCH_ROWS, &patch->memory, patch->taken, error);
 }
 
 skinslide_status skinslide_stage_patch_create(const skinslide_stage_mesh *mesh, const char *name,
@@ -300,13 +304,14 @@ skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const 
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch, or no input of one");
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
-    if (row < 0)
-        return status ? status : ss_take_subset_faces(patch, of_subset, &record, error);
     if (!status)
-        status = take_setting(patch, row, &record, error);
+        status = row < 0 ? ss_take_subset_faces(patch, of_subset, &record, error) : take_setting(patch, row, &record, error);
     if (!status && row == SS_ROW_ST)
         status = name_coordinates(patch, error);
-    patch->taken[row].refused = status != SKINSLIDE_OK;
+    if (!status && (row < 0 || row == SS_ROW_FACES || row == SS_ROW_RULE || row == SS_ROW_GROW))
+        status = ss_settle_faces(patch, error);
+    if (row >= 0)
+        patch->taken[row].refused = status != SKINSLIDE_OK;
     return status;
 }
 

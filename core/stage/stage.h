@@ -93,8 +93,12 @@ typedef enum ss_kind {
     SS_KIND_RATE     /* of change of the points */
 } ss_kind;
 
+/* The rules that read an input, as bits. */
+#define SS_RULE(rule) (1u << SKINSLIDE_RULE_##rule)
+enum { SS_PLANE = SS_RULE(UNIT) | SS_RULE(FAST), SS_NO_PLANE = SS_RULE(RELAXED) | SS_RULE(EVEN) };
+
 /* What a number must be. */
-typedef enum ss_range { SS_RANGE_FINITE, SS_RANGE_NOT_NEGATIVE, SS_RANGE_DENSITY } ss_range;
+typedef enum ss_range { SS_RANGE_FINITE, SS_RANGE_NOT_NEGATIVE, SS_RANGE_SHARE, SS_RANGE_DENSITY } ss_range;
 
 typedef struct ss_input {
     skinslide_stage_input shown;
@@ -109,7 +113,12 @@ typedef struct ss_input {
     int32_t multiplies;  /* of a texture: the paint, among the inputs of its group */
     int32_t channel;     /* of a texture: its channel, among the inputs of the patch */
     int32_t pose_count;  /* of what is derived */
+    unsigned rules;      /* that read it; 0: all */
 } ss_input;
+
+static inline bool ss_is_read_by(const ss_input *input, int32_t rule) {
+    return !input->rules || input->rules & 1u << rule;
+}
 
 /* Places in the tables of the groups. */
 enum {
@@ -145,10 +154,12 @@ enum {
     SS_ROW_HOLES,
     SS_ROW_RULE,
     SS_ROW_INTERPOLATION,
+    SS_ROW_GROW,
     SS_ROW_CORNERS,
     SS_ROW_EDGES,
     SS_ROW_WEIGHT_CHANNEL,
     SS_ROW_DENSITY_CHANNEL,
+    SS_ROW_HOLD_CHANNEL,
     SS_ROW_ST,
     SS_PATCH_ROWS
 };
@@ -160,6 +171,10 @@ enum {
     SS_ROW_DENSITY,
     SS_ROW_DENSITY_MAP,
     SS_ROW_EDGE_DENSITIES,
+    SS_ROW_HOLD,
+    SS_ROW_HOLD_MAP,
+    SS_ROW_STRETCH_RESPONSE,
+    SS_ROW_COMPRESSION_RESPONSE,
     SS_CONTROL_ROWS
 };
 enum { SS_ROW_NORMALS_PRIMVAR, SS_ROW_NORMALS, SS_ROW_VELOCITIES, SS_ROW_ACCELERATIONS, SS_DERIVED_ROWS };
@@ -189,6 +204,7 @@ typedef struct ss_array {
 typedef struct ss_taken {
     ss_array array;
     const char *word;
+    double number;
     int32_t choice;
     bool refused;
 } ss_taken;
@@ -242,7 +258,8 @@ struct skinslide_stage_patch {
     const char *st;                    /* "primvars:st" */
     skinslide_stage_input coordinates; /* the same, to be fetched */
     bool faces_by_primvar;
-    ss_array faces;     /* ascending; none: every face counts */
+    ss_array painted;   /* those that were chosen, ascending */
+    ss_array faces;     /* those, with what grows them; ascending; none: every face counts */
     const char *subset; /* the path of the child that has the faces; NULL: none */
     const char *indices_name;
     ss_array indices;       /* of that, as authored */
@@ -259,10 +276,13 @@ skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row,
                                       skinslide_error *error);
 skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
                                        skinslide_error *error);
-/* Marks the faces and vertices of the patch as inside. */
-void ss_mark_inside(skinslide_stage_patch *patch);
+/* Marks every face and vertex as inside, where there are no faces yet, else those of the patch: what was chosen, and what joins
+ * that within its grow, under a rule that takes any faces. */
+skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *error);
 
-/* controls.c: as the slider takes them; they are the handle's. */
+/* controls.c: whether an input says something, at the time of the controls. */
+bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row);
+/* As the slider takes them; they are the handle's. */
 skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given, skinslide_error *error);
 
 /* ---- textures.c: one map ---- */

@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Those that make a slide in one step, and that which goes without a plane. */
+static const skinslide_rule rules[] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_FAST, SKINSLIDE_RULE_EVEN};
+
 static void expect_finite(const float *points, int32_t vertex_count) {
     for (int32_t k = 0; k < 3 * vertex_count; k++)
         assert_true(isfinite(points[k]));
@@ -80,8 +83,8 @@ static void edges_of_no_length(void **state) {
     assert_int_equal(result.zero_length_edges, 7);
     free(slid);
     free_rig(&r);
-    for (int32_t rule = 0; rule < 2; rule++)
-        check_poses(&mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule});
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
+        check_poses(&mesh, (skinslide_patch_setup){.rule = rules[i]});
     free_mesh(&mesh);
 }
 
@@ -115,9 +118,9 @@ static void edges_of_no_length_do_not_fold(void **state) {
 static void a_pose_in_one_place(void **state) {
     (void)state;
     for (int32_t i = 0; i < FIXTURE_COUNT; i++)
-        for (int32_t rule = 0; rule < 2; rule++) {
+        for (size_t rule = 0; rule < sizeof rules / sizeof *rules; rule++) {
             fixture f = make_fixture(i);
-            rig r = rig_of(&f.mesh, (skinslide_patch_setup){.rule = (skinslide_rule)rule});
+            rig r = rig_of(&f.mesh, (skinslide_patch_setup){.rule = rules[rule]});
             float *points = copy_points(&f.mesh);
             for (int32_t k = 0; k < 3 * f.mesh.vertex_count; k++)
                 points[k] = 2.7f;

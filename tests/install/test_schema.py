@@ -22,6 +22,9 @@ FALLBACKS = {
     "holes": "pinned",
     "forceDensityRule": "unit",
     "interpolation": "auto",
+    "grow": 0.0,
+    "stretchResponse": 1.0,
+    "compressionResponse": 1.0,
     "corners": None,
     "edges": None,
     "edgeForceDensities": None,
@@ -29,6 +32,8 @@ FALLBACKS = {
     "forceDensityMapChannel": None,
     "weightMap": None,
     "weightMapChannel": None,
+    "holdMap": None,
+    "holdMapChannel": None,
     "mapSt": "st",
 }
 
@@ -121,7 +126,7 @@ def test_fallbacks(patch):
         attr = mesh.GetAttribute(f"skinSlide:{patch}:{name}")
         assert attr.IsDefined() and attr.Get() == fallback
         shown = next(each for each in all_inputs if each.name == name).fallback
-        assert shown == (None if fallback is None else f"{fallback:g}" if name == "envelope" else fallback)
+        assert shown == (None if fallback is None else f"{fallback:g}" if isinstance(fallback, float) else fallback)
 
 
 def test_every_property_is_documented():

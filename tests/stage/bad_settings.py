@@ -257,11 +257,11 @@ SETTINGS = [
         f"{PLACE}:boundary is 'Square'; it must be one of auto, square, circle",
     ),
     Bad("token: empty", setting("boundary", ""), f"{PLACE}:boundary is ''; it must be one of auto, square, circle"),
-    Bad("token: holes", setting("holes", "open"), f"{PLACE}:holes is 'open'; it must be one of pinned, free"),
+    Bad("token: holes", setting("holes", "open"), f"{PLACE}:holes is 'open'; it must be one of pinned, free, freeAll"),
     Bad(
         "token: rule",
         setting("forceDensityRule", "slow"),
-        f"{PLACE}:forceDensityRule is 'slow'; it must be one of unit, fast, relaxed",
+        f"{PLACE}:forceDensityRule is 'slow'; it must be one of unit, fast, relaxed, even",
     ),
     Bad(
         "token: interpolation",

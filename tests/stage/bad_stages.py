@@ -1,5 +1,6 @@
 """The table of stages that cannot be slid, each with the sentence that both readers say of it."""
 
+import bad_even
 import bad_meshes
 import bad_settings
 import bad_textures
@@ -13,4 +14,5 @@ BAD = [
     *bad_settings.CONTROLS,
     *bad_settings.SETTINGS,
     *bad_textures.TEXTURES,
+    *bad_even.EVEN,
 ]

@@ -15,7 +15,9 @@ from stages import FRAMES, MESH, PATCH
 Types = Sdf.ValueTypeNames
 NAN, INFINITY = float("nan"), float("inf")
 PLACE = f"skinSlide:{PATCH}"  # before the name of a setting
-FACES, DENSITY, WEIGHT, FARTHEST = (f"{PLACE}:{name}" for name in ("patch", "forceDensity", "weight", "maxDistance"))
+FACES, DENSITY, WEIGHT, FARTHEST, HOLD = (
+    f"{PLACE}:{name}" for name in ("patch", "forceDensity", "weight", "maxDistance", "hold")
+)
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,11 @@ def over(properties: str) -> str:
 def setting(name: str, value, time: float | None = None, patch: str = PATCH) -> Edit:
     """A property that the schema declares."""
     return lambda scene: stages.set_property(scene.mesh, name, value, time, patch)
+
+
+def even(scene: Scene) -> None:
+    """The rule even."""
+    setting("forceDensityRule", "even")(scene)
 
 
 def sampled(name: str, values: dict[float, object]) -> Edit:

@@ -1,6 +1,7 @@
 """The table of stages that slide. Baked, and opened as a .skinslide file, they are the same bytes."""
 
 import good_derived
+import good_even
 import good_meshes
 import good_settings
 import good_textures
@@ -14,4 +15,5 @@ GOOD = [
     *good_settings.SETTINGS,
     *good_textures.TEXTURES,
     *good_derived.DERIVED,
+    *good_even.EVEN,
 ]

@@ -83,6 +83,16 @@ def box() -> Shape:
     return from_faces(points, faces)
 
 
+def torus(around: int = 12, across: int = 8) -> Shape:
+    """A closed surface with a handle, face by face along the way around: vertex (i, j) is j * around + i."""
+    j, i = np.divmod(np.arange(around * across), around)
+    long, short = 2 * np.pi * i / around, 2 * np.pi * j / across
+    ring = 2 + np.cos(short)
+    right, up = j * around + (i + 1) % around, (j + 1) % across * around
+    faces = np.stack([j * around + i, right, up + (i + 1) % around, up + i], axis=1)
+    return from_faces(np.stack([ring * np.cos(long), ring * np.sin(long), np.sin(short)], axis=1), faces.tolist())
+
+
 def fin() -> Shape:
     """Three triangles on the edge 0-1."""
     return from_faces([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1)], [(0, 1, 2), (1, 0, 3), (0, 1, 4)])

@@ -162,7 +162,7 @@ def test_every_attribute(api, spec, name, prim):
 @pytest.mark.parametrize(
     ("method", "value", "message"),
     [
-        ("CreateHolesAttr", "open", "holes is 'open'; it must be one of pinned, free"),
+        ("CreateHolesAttr", "open", "holes is 'open'; it must be one of pinned, free, freeAll"),
         ("CreateHolesAttr", 1, "holes is 1; it must be one of"),
         ("CreateEnvelopeAttr", "half", "envelope is 'half'; it must be a number"),
         ("CreateCornersAttr", [0.5, 1, 2, 3], "corners: float64 values do not fit int32"),
@@ -190,13 +190,15 @@ def test_painted_primvars(prim):
         "weight": patch.CreateWeightPrimvar("constant", [0.5]),
         "maxDistance": patch.CreateMaxDistancePrimvar(defaultValue=np.ones(49)),
         "forceDensity": patch.CreateForceDensityPrimvar("uniform", range(1, 37)),
+        "hold": patch.CreateHoldPrimvar("constant", [2]),
         "patch": patch.CreatePatchPrimvar(defaultValue=np.arange(36) < 6),
     }
     assert set(made) == {each.name for group in ("patch", "controls") for each in inputs(group) if each.is_primvar}
     for name, primvar in made.items():
         assert primvar.GetName() == f"primvars:skinSlide:{PATCH}:{name}"
         assert getattr(patch, f"Get{name[0].upper()}{name[1:]}Primvar")().GetAttr() == primvar.GetAttr()
-    assert [primvar.GetInterpolation() for primvar in made.values()] == ["constant", "vertex", "uniform", "uniform"]
+    expected = ["constant", "vertex", "uniform", "constant", "uniform"]
+    assert [primvar.GetInterpolation() for primvar in made.values()] == expected
     assert list(made["forceDensity"].Get()) == list(range(1, 37)) and made["weight"].Get()[0] == 0.5
     with pytest.raises(UsageError, match="patch: int64 values do not fit bool"):
         patch.CreatePatchPrimvar(defaultValue=[1, 0])

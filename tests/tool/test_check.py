@@ -224,6 +224,24 @@ def test_a_misspelt_setting_is_told():
     assert told == [f"{where}: {name} is no setting of a patch, and counts for nothing" for name in misspelt]
 
 
+UNREAD = {
+    "even": ("boundary", "corners"),
+    "relaxed": ("boundary", "corners"),
+    "unit": ("grow", "stretchResponse"),
+}
+
+
+@pytest.mark.parametrize(("rule", "names"), UNREAD.items(), ids=UNREAD)
+def test_what_the_rule_does_not_read_is_told(rule, names):
+    stage, mesh = stages.patched_stage()
+    settings = {"boundary": "square", "corners": [0, 6, 48, 42], "grow": 0.1, "stretchResponse": 0.5}
+    for name, value in {"forceDensityRule": rule, **settings}.items():
+        stages.set_property(mesh, name, value)
+    told = [line for line in said(skinslide.check(stage), "warning") if "counts for nothing" in line]
+    where = f"warning: {MESH}: patch {PATCH}: skinSlide:{PATCH}"
+    assert told == [f"{where}:{name} counts for nothing under the rule {rule}" for name in names]
+
+
 @pytest.mark.parametrize(("frames", "outside"), [("900", 1), ("1002,1004:1006", 3), ("1001-1003", 0)])
 def test_frames_beyond_the_samples_are_told(frames, outside):
     stage, _mesh = stages.patched_stage()

@@ -88,6 +88,25 @@ def mirrored(stage: Usd.Stage, folder, **options) -> Read:
 # ---- What is copied ----
 
 
+def test_what_the_rule_even_has(tmp_path):
+    """Faces that join a patch are joined on the other side, and not chosen there."""
+    stage, mesh = new_shot()
+    hold = np.linspace(0.5, 4, 63)
+    primvar(mesh, "hold", "vertex", hold)
+    prop(mesh, "forceDensityRule", "even")
+    prop(mesh, "stretchResponse", 0.5)
+    prop(mesh, "grow", 0.145)  # more than a column is wide, and less than a row
+    patch, *_ = mirrored(stage, tmp_path)
+    grown = stages.block(COLUMNS, range(4, 8), range(1, 5))
+    assert patch.faces.tolist() == sorted(grown.tolist()) and patch.rule == "even"
+    there = np.flatnonzero((VERTEX_COLUMN <= 4) & (VERTEX_ROW >= 1) & (VERTEX_ROW <= 5))
+    assert patch.controls.hold[ACROSS[there]] == pytest.approx(hold[there])
+    assert patch.controls.stretch_response == 0.5
+    both = open_stage(tmp_path / "both.skinslide")
+    chosen = both.GetPrimAtPath(MESH).GetAttribute(f"primvars:skinSlide:{RIGHT}:patch")
+    assert np.flatnonzero(chosen.Get()).tolist() == sorted(ACROSS_FACES.tolist())
+
+
 def test_everything_of_a_patch(tmp_path):
     stage, mesh = new_shot()
     weight, density = np.linspace(0.1, 1, 63), np.linspace(1, 4, 63)
@@ -348,7 +367,7 @@ FAULTS = {
     "density by face and by map": (density_of_both_kinds, {}, "painted by face and has a map"),
     "corner": (corner_off_the_patch, {}, f"skinSlide:{LEFT}:corners has point 62, which is not of the patch"),
     "edge": (edge_off_the_patch, {}, f"skinSlide:{LEFT}:edges has point 0, which is not of the patch"),
-    "token": (lambda mesh: prop(mesh, "holes", "open"), {}, "'open'; it must be one of pinned, free"),
+    "token": (lambda mesh: prop(mesh, "holes", "open"), {}, "'open'; it must be one of pinned, free, freeAll"),
     "envelope": (lambda mesh: prop(mesh, "envelope", float("nan")), {}, "envelope is nan"),
 }
 

@@ -356,7 +356,8 @@ typedef struct skinslide_stage_subset {
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
 
-/* The faces chosen so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before.
+/* The faces of the patch so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before. They are
+ * those chosen and, once its grow and its rule are taken, those that join them.
  *   face_count  out or NULL */
 SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
 
@@ -458,6 +459,13 @@ SKINSLIDE_API const skinslide_stage_texture *skinslide_stage_controls_texture(co
  * a texture is not complete), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
                                                             skinslide_error *error);
+
+/* What is said of a patch that its rule has no use for, such as corners under the rule even: the first of its inputs, of the
+ * groups PATCH and CONTROLS, for NULL; then the one after each; NULL after the last. What says the schema's fallback says
+ * nothing. */
+SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_unread(const skinslide_stage_patch *patch,
+                                                                       const skinslide_stage_controls *controls,
+                                                                       const skinslide_stage_input *before);
 
 /* The set-up as the slider takes it, with these controls; its arrays, its name and its controls are those of the handles.
  * Fails as skinslide_stage_controls_get, and with BAD_ARGUMENT where the patch has no faces, or refused a value. */

@@ -76,6 +76,33 @@ static void indexed(void **state) {
     tear_down(&s);
 }
 
+/* The face at the end of a row of three, and those within a distance of it: whatever comes first, and only where the rule takes any
+ * faces. */
+static void grown(void **state) {
+    (void)state;
+    static const uint8_t chosen[6] = {1, 0, 0, 0, 0, 0};
+    for (int first = 0; first < 3; first++) {
+        scene s = set_up();
+        for (int i = 0; i < 3; i++) {
+            if ((first + i) % 3 == 0)
+                assert_ok(patch_takes(s.patch, "grow", NUMBER("grow", 1), &error), &error);
+            if ((first + i) % 3 == 1)
+                assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "even"), &error), &error);
+            if ((first + i) % 3 == 2)
+                assert_ok(patch_takes(s.patch, "patch",
+                                      painted_as(array_of(PRIMVAR, SKINSLIDE_VALUE_BOOL, 1, 6, chosen), "uniform"), &error),
+                          &error);
+        }
+        expect_faces(&s, 3, (int32_t[]){0, 1, 3});
+        assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "unit"), &error), &error);
+        expect_faces(&s, 1, (int32_t[]){0});
+        assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "relaxed"), &error), &error);
+        assert_ok(patch_takes(s.patch, "grow", NUMBER("grow", 2.5f), &error), &error);
+        expect_faces(&s, 6, (int32_t[]){0, 1, 2, 3, 4, 5});
+        tear_down(&s);
+    }
+}
+
 static void expect(scene *s, skinslide_value value, const char *text) {
     assert_fails(patch_takes(s->patch, "patch", value, &error), &error, SKINSLIDE_BAD_PATCH, text);
 }
@@ -208,6 +235,7 @@ int main(void) {
         cmocka_unit_test(by_face_of_every_type),
         cmocka_unit_test(by_vertex),
         cmocka_unit_test(indexed),
+        cmocka_unit_test(grown),
         cmocka_unit_test(bad_primvars_are_named),
         cmocka_unit_test(faces_must_stay_the_same),
         cmocka_unit_test(faces_of_a_subset),

@@ -47,9 +47,11 @@ static void tokens_are_in_the_order_of_enums(void **state) {
     expect_token(patch, "boundary", SKINSLIDE_BOUNDARY_CIRCLE, "circle");
     expect_token(patch, "holes", SKINSLIDE_HOLES_PINNED, "pinned");
     expect_token(patch, "holes", SKINSLIDE_HOLES_FREE, "free");
+    expect_token(patch, "holes", SKINSLIDE_HOLES_FREE_ALL, "freeAll");
     expect_token(patch, "forceDensityRule", SKINSLIDE_RULE_UNIT, "unit");
     expect_token(patch, "forceDensityRule", SKINSLIDE_RULE_FAST, "fast");
     expect_token(patch, "forceDensityRule", SKINSLIDE_RULE_RELAXED, "relaxed");
+    expect_token(patch, "forceDensityRule", SKINSLIDE_RULE_EVEN, "even");
     const skinslide_stage_group both[] = {patch, SKINSLIDE_STAGE_LIVE};
     for (int32_t i = 0; i < 2; i++) {
         expect_token(both[i], "interpolation", SKINSLIDE_INTERPOLATION_AUTO, "auto");
@@ -105,7 +107,7 @@ static void what_may_be_authored_whatever_the_mesh(void **state) {
     accepted(corners, array_of("corners", SKINSLIDE_VALUE_INT32, 1, 4, points));
     accepted(edges, array_of("edges", SKINSLIDE_VALUE_INT32, 1, 4, points));
     accepted(input_of(SKINSLIDE_STAGE_LIVE, NULL, "envelope"), text_of("envelope", "of another kind"));
-    refused(holes, text_of("holes", "open"), SKINSLIDE_BAD_CONTROL, "holes is 'open'; it must be one of pinned, free");
+    refused(holes, text_of("holes", "open"), SKINSLIDE_BAD_CONTROL, "holes is 'open'; it must be one of pinned, free, freeAll");
     refused(lookup, text_of("lookup", "open"), SKINSLIDE_BAD_CONTROL, "lookup is 'open'; it must be one of auto, egl, exact");
     refused(corners, array_of("corners", SKINSLIDE_VALUE_INT32, 1, 3, points), SKINSLIDE_BAD_CONTROL,
             "corners has 3 values; it must have 4");

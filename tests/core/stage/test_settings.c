@@ -111,8 +111,8 @@ static void bad_tokens_are_named(void **state) {
     (void)state;
     expect("boundary", text_of("skinSlide:elbow:boundary", "oval"),
            "skinSlide:elbow:boundary is 'oval'; it must be one of auto, square, circle");
-    expect("holes", text_of("holes", ""), "holes is ''; it must be one of pinned, free");
-    expect("forceDensityRule", text_of("rule", "slow"), "rule is 'slow'; it must be one of unit, fast, relaxed");
+    expect("holes", text_of("holes", ""), "holes is ''; it must be one of pinned, free, freeAll");
+    expect("forceDensityRule", text_of("rule", "slow"), "rule is 'slow'; it must be one of unit, fast, relaxed, even");
     expect("interpolation", text_of("interpolation", "Linear"),
            "interpolation is 'Linear'; it must be one of auto, linear, meanValue, limit");
     expect("boundary", text_of("boundary", "z\n\x1b[2J\xc3\xa9"),
@@ -121,6 +121,43 @@ static void bad_tokens_are_named(void **state) {
     expect("boundary", other_of("boundary", "token[]"), "boundary is token[]; it must be one of auto, square, circle");
     expect("mapSt", NUMBER("mapSt", 3), "mapSt is 3; it must be a token");
     expect("weightMapChannel", other_of("weightMapChannel", "string[]"), "weightMapChannel is string[]; it must be a token");
+}
+
+static void bad_numbers_are_named(void **state) {
+    (void)state;
+    expect("grow", NUMBER("grow", -1), "grow is -1; it must be 0 or more");
+    expect("grow", NUMBER("grow", NAN), "grow is nan; it must be 0 or more");
+    expect("grow", text_of("grow", "far"), "grow is 'far'; it must be a float");
+}
+
+static void expect_unread(const scene *s, const char *first, const char *second) {
+    const skinslide_stage_input *input = NULL;
+    const char *names[] = {first, second};
+    for (int i = 0; i < 2 && names[i]; i++) {
+        input = skinslide_stage_next_unread(s->patch, s->controls, input);
+        assert_non_null(input);
+        assert_string_equal(input->name, names[i]);
+    }
+    assert_null(skinslide_stage_next_unread(s->patch, s->controls, input));
+}
+
+static void what_a_rule_does_not_read_is_known(void **state) {
+    (void)state;
+    scene s = set_up(NULL);
+    expect_unread(&s, NULL, NULL);
+    assert_ok(patch_takes(s.patch, "boundary", text_of("boundary", "square"), &error), &error);
+    assert_ok(patch_takes(s.patch, "corners", INTS("corners", 0, 2, 8, 6), &error), &error);
+    expect_unread(&s, NULL, NULL);
+    assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "even"), &error), &error);
+    expect_unread(&s, "boundary", "corners");
+    assert_ok(patch_takes(s.patch, "boundary", text_of("boundary", "auto"), &error), &error);
+    assert_ok(patch_takes(s.patch, "corners", nothing_of("corners"), &error), &error);
+    assert_ok(patch_takes(s.patch, "grow", NUMBER("grow", 1), &error), &error);
+    assert_ok(controls_take(s.controls, "hold", painted_as(FLOATS("hold", 2), "constant"), &error), &error);
+    expect_unread(&s, NULL, NULL);
+    assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "unit"), &error), &error);
+    expect_unread(&s, "grow", "hold");
+    tear_down(&s);
 }
 
 static void bad_corners_and_edges_are_named(void **state) {
@@ -156,7 +193,7 @@ static void indices_must_stay_the_same(void **state) {
 }
 
 /* Of what is a choice or a word the first sample counts, whatever comes after it. */
-static void only_indices_must_stay_the_same(void **state) {
+static void only_tokens_may_change(void **state) {
     (void)state;
     const skinslide_stage_input *input = NULL;
     while ((input = skinslide_stage_next_input(SKINSLIDE_STAGE_PATCH, input)) != NULL) {
@@ -233,11 +270,18 @@ static void what_cannot_be_live_is_named_and_left(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fallbacks_are_those_of_the_schema),         cmocka_unit_test(what_was_authored_comes_back),
-        cmocka_unit_test(only_some_interpolations_need_subdivision), cmocka_unit_test(bad_tokens_are_named),
-        cmocka_unit_test(bad_corners_and_edges_are_named),           cmocka_unit_test(indices_must_stay_the_same),
-        cmocka_unit_test(only_indices_must_stay_the_same),           cmocka_unit_test(a_patch_without_faces_gives_nothing),
-        cmocka_unit_test(inputs_of_another_group_are_refused),       cmocka_unit_test(what_is_live_is_taken),
+        cmocka_unit_test(fallbacks_are_those_of_the_schema),
+        cmocka_unit_test(what_was_authored_comes_back),
+        cmocka_unit_test(only_some_interpolations_need_subdivision),
+        cmocka_unit_test(bad_tokens_are_named),
+        cmocka_unit_test(bad_numbers_are_named),
+        cmocka_unit_test(what_a_rule_does_not_read_is_known),
+        cmocka_unit_test(bad_corners_and_edges_are_named),
+        cmocka_unit_test(indices_must_stay_the_same),
+        cmocka_unit_test(only_tokens_may_change),
+        cmocka_unit_test(a_patch_without_faces_gives_nothing),
+        cmocka_unit_test(inputs_of_another_group_are_refused),
+        cmocka_unit_test(what_is_live_is_taken),
         cmocka_unit_test(what_cannot_be_live_is_named_and_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -378,10 +378,18 @@ class PatchMeaning(Taker):
 
     @property
     def faces(self) -> np.ndarray:
-        """Those chosen so far, int32, ascending."""
+        """Those of the patch so far, int32, ascending."""
         count = ffi.new("int32_t *")
         faces = lib.skinslide_stage_patch_faces(self.handle.pointer, count)
         return _copied(faces, np.int32, count[0])
+
+    def unread(self, controls: ControlsMeaning) -> list[Input]:
+        """What is said of the patch that its rule has no use for."""
+        found = list[Input]()
+        known = self.handle.pointer, controls.handle.pointer
+        while each := lib.skinslide_stage_next_unread(*known, found[-1].pointer if found else ffi.NULL):
+            found.append(_input(each))
+        return found
 
     @property
     def needs_subdivision(self) -> bool:
@@ -487,6 +495,9 @@ class ControlsMeaning(Taker):
             weight=_optional(out.weight, np.float32, vertices),
             envelope=out.envelope,
             max_distance=_optional(out.max_distance, np.float32, vertices),
+            hold=_optional(out.hold, np.float32, vertices),
+            stretch_response=out.stretch_response,
+            compression_response=out.compression_response,
         )
 
 

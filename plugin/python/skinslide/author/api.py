@@ -28,6 +28,9 @@ class SkinSlideAPI(AppliedPatch):
       float, 0 or more, vertex or constant; may be animated. Absent: no limit.
     - primvars:skinSlide:NAME:forceDensity: how hard edges pull. float above 0; vertex (an edge takes the mean of its
       ends), uniform (the mean of its faces) or constant; may be animated. Only ratios matter. Absent: 1.
+    - primvars:skinSlide:NAME:hold: how much each point keeps to how its neighbours slide, under the rules relaxed
+      and even: low where surplus skin is to come from, high where it must not. float above 0, vertex or constant;
+      may be animated. Absent: 1.
 
     A bake with --diagnostics writes what it did to each point of the mesh beside the points:
     primvars:skinSlide:stretch, the RMS of log(length / rest length) over the edges of patches at the point, and
@@ -125,6 +128,7 @@ class SkinSlideAPI(AppliedPatch):
         """What happens at the rims of holes in the patch, such as eyes, nostrils and mouth.
 
         pinned: rims stay on the cached points. free: rims slide too, and faces near them may fold, which is counted.
+        freeAll: the outer boundary slides along itself too, under the rules relaxed and even.
 
         Returns:
             The attribute skinSlide:NAME:holes, token, uniform; not valid where there is none.
@@ -132,7 +136,7 @@ class SkinSlideAPI(AppliedPatch):
         return self._attribute("holes")
 
     def CreateHolesAttr(
-        self, defaultValue: Literal["pinned", "free"] | None = None, writeSparsely: bool = False
+        self, defaultValue: Literal["pinned", "free", "freeAll"] | None = None, writeSparsely: bool = False
     ) -> Usd.Attribute:
         """Authors skinSlide:NAME:holes in the edit target.
 
@@ -152,9 +156,10 @@ class SkinSlideAPI(AppliedPatch):
         """Where skin slides to.
 
         unit and fast balance the pull of edges in a flat layout of the patch; an edge of length l pulls with 1/l, or
-        with the largest l*l of the patch less l*l. relaxed: to where every edge is as near its rest length as the
-        deformed surface allows, on a patch of any shape, open or closed; force density is then how much an edge
-        counts, and corners and boundary count for nothing.
+        with the largest l*l of the patch less l*l. relaxed and even go over the rest surface itself, and take a
+        patch of any shape, open or closed, as large as a whole character. even: to where stretch is balanced,
+        smoothly over time. relaxed: to where every edge is as near its rest length as the deformed surface allows.
+        Under both, force density is how much an edge counts, and corners and boundary count for nothing.
 
         Returns:
             The attribute skinSlide:NAME:forceDensityRule, token, uniform; not valid where there is none.
@@ -162,7 +167,7 @@ class SkinSlideAPI(AppliedPatch):
         return self._attribute("forceDensityRule")
 
     def CreateForceDensityRuleAttr(
-        self, defaultValue: Literal["unit", "fast", "relaxed"] | None = None, writeSparsely: bool = False
+        self, defaultValue: Literal["unit", "fast", "relaxed", "even"] | None = None, writeSparsely: bool = False
     ) -> Usd.Attribute:
         """Authors skinSlide:NAME:forceDensityRule in the edit target.
 
@@ -177,6 +182,82 @@ class SkinSlideAPI(AppliedPatch):
             UsageError: The value is of another kind.
         """
         return self._create_attribute("forceDensityRule", defaultValue, writeSparsely)
+
+    def GetGrowAttr(self) -> Usd.Attribute:
+        """How far around the faces that were chosen skin joins the patch, under the rules relaxed and even.
+
+        Faces of which every point is within this distance along the rest surface, in the mesh's units. A wider patch
+        has more skin to give than one that is pinned close by.
+
+        Returns:
+            The attribute skinSlide:NAME:grow, float, uniform; not valid where there is none.
+        """
+        return self._attribute("grow")
+
+    def CreateGrowAttr(self, defaultValue: float | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:NAME:grow in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("grow", defaultValue, writeSparsely)
+
+    def GetStretchResponseAttr(self) -> Usd.Attribute:
+        """How much of stretch the rules relaxed and even take out, 0 to 1.
+
+        Returns:
+            The attribute skinSlide:NAME:stretchResponse, float; not valid where there is none.
+        """
+        return self._attribute("stretchResponse")
+
+    def CreateStretchResponseAttr(
+        self, defaultValue: float | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:stretchResponse in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("stretchResponse", defaultValue, writeSparsely)
+
+    def GetCompressionResponseAttr(self) -> Usd.Attribute:
+        """How much of compression the rules relaxed and even take out, 0 to 1.
+
+        Returns:
+            The attribute skinSlide:NAME:compressionResponse, float; not valid where there is none.
+        """
+        return self._attribute("compressionResponse")
+
+    def CreateCompressionResponseAttr(
+        self, defaultValue: float | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:compressionResponse in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, float; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("compressionResponse", defaultValue, writeSparsely)
 
     def GetInterpolationAttr(self) -> Usd.Attribute:
         """How a place within a face becomes a point on the deformed surface.
@@ -366,8 +447,60 @@ class SkinSlideAPI(AppliedPatch):
         """
         return self._create_attribute("weightMapChannel", defaultValue, writeSparsely)
 
+    def GetHoldMapAttr(self) -> Usd.Attribute:
+        """An OpenEXR image, one file or a UDIM (body.<UDIM>.exr): its values multiply the painted hold by point.
+
+        Sampled as forceDensityMap is. Values must be above 0. May be animated. Absent: none.
+
+        Returns:
+            The attribute skinSlide:NAME:holdMap, asset; not valid where there is none.
+        """
+        return self._attribute("holdMap")
+
+    def CreateHoldMapAttr(
+        self, defaultValue: Sdf.AssetPath | str | os.PathLike[str] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:holdMap in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, asset; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("holdMap", defaultValue, writeSparsely)
+
+    def GetHoldMapChannelAttr(self) -> Usd.Attribute:
+        """The channel of holdMap to use: its name, or PART.NAME in a file of several parts.
+
+        Absent: R, else Y, else the first but A.
+
+        Returns:
+            The attribute skinSlide:NAME:holdMapChannel, token, uniform; not valid where there is none.
+        """
+        return self._attribute("holdMapChannel")
+
+    def CreateHoldMapChannelAttr(self, defaultValue: str | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:NAME:holdMapChannel in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("holdMapChannel", defaultValue, writeSparsely)
+
     def GetMapStAttr(self) -> Usd.Attribute:
-        """The primvar with the texture coordinates at which both maps are sampled.
+        """The primvar with the texture coordinates at which all maps are sampled.
 
         Two floats each; faceVarying, vertex or varying. Beyond 0 to 1 an image goes on as its attribute wrapmodes
         says, else clamped.
@@ -503,6 +636,34 @@ class SkinSlideAPI(AppliedPatch):
             UsageError: The values are of another kind.
         """
         return self._create_primvar("forceDensity", "float[]", interpolation, defaultValue)
+
+    def GetHoldPrimvar(self) -> UsdGeom.Primvar:
+        """How much each point keeps to how its neighbours slide, under the rules relaxed and even.
+
+        Low where surplus skin is to come from, high where it must not. float above 0, vertex or constant; may be
+        animated. Absent: 1.
+
+        Returns:
+            The primvar primvars:skinSlide:NAME:hold; not valid where there is none.
+        """
+        return self._primvar("hold")
+
+    def CreateHoldPrimvar(
+        self, interpolation: str = "vertex", defaultValue: npt.ArrayLike | None = None
+    ) -> UsdGeom.Primvar:
+        """Authors primvars:skinSlide:NAME:hold in the edit target.
+
+        Args:
+            interpolation: What each value is of.
+            defaultValue: The values at no time, float[], and not indexed; None: none.
+
+        Returns:
+            The primvar.
+
+        Raises:
+            UsageError: The values are of another kind.
+        """
+        return self._create_primvar("hold", "float[]", interpolation, defaultValue)
 
 
 class SkinSlideMeshAPI(AppliedSchema):

@@ -17,7 +17,7 @@ from skinslide.problems import Fault, SliderError, UsageError, not_one_of
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath
-from skinslide.stage.patch import Animation, read_patch
+from skinslide.stage.patch import Animation, read_chosen, read_patch
 
 _SIDES = {"L": "R", "l": "r", "left": "right", "Left": "Right", "LEFT": "RIGHT"}
 _OTHER_SIDE = _SIDES | {right: left for left, right in _SIDES.items()}
@@ -30,6 +30,8 @@ _OF_ONE_SIDE = {
     "forceDensityMapChannel",
     "weightMap",
     "weightMapChannel",
+    "holdMap",
+    "holdMapChannel",
     "mapSt",
 }
 
@@ -85,7 +87,7 @@ def mirror(
         if animation is None:
             raise Fault(faults[0])
         across = _across(mesh, animation.setup.faces, axis, plane, tolerance)
-        _Copy(mesh, patch, animation, across).run()
+        _Copy(mesh, patch, animation, across).run(read_chosen(mesh.prim, patch, mesh.meaning))
         return mesh.checked()
 
 
@@ -157,8 +159,10 @@ class _Copy:
         self._mesh, self._patch, self._name = mesh.prim, patch, mesh.patch
         self._animation, self._setup, self._across = animation, animation.setup, across
 
-    def run(self) -> None:
-        SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(self._across.faces)
+    def run(self, chosen: np.ndarray) -> None:
+        """With the counterparts of the faces that were chosen; what grows them is a setting."""
+        faces = self._across.faces[np.isin(self._setup.faces, chosen)]
+        SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(faces)
         self._paint()
         self._points("corners", self._setup.corners)
         self._points("edges", self._setup.controls.edges)
@@ -176,6 +180,7 @@ class _Copy:
             raise Fault("force density is painted by face and has a map; paint it by point to mirror it")
         self._primvar("weight", "weight")
         self._primvar("maxDistance", "max_distance")
+        self._primvar("hold", "hold")
         self._primvar("forceDensity", "vertex_density" if density.face_density is None else "face_density")
 
     def _primvar(self, name: str, field: str) -> None:
@@ -190,7 +195,7 @@ class _Copy:
         self._mesh.RemoveProperty(full)
         primvars = UsdGeom.PrimvarsAPI(self._mesh)
         primvar = primvars.CreatePrimvar(full, Sdf.ValueTypeNames.FloatArray, interpolation)
-        move, fallback = self._by_face if by_face else self._by_vertex, 1.0 if name == "forceDensity" else 0.0
+        move, fallback = self._by_face if by_face else self._by_vertex, 1.0 if name in ("forceDensity", "hold") else 0.0
         times = self._animation.times(names={name, f"{name}Map"})
         for time in map(Usd.TimeCode, times) if times else [Usd.TimeCode.Default()]:
             controls = self._animation.at(time) if times else self._setup.controls

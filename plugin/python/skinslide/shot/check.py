@@ -256,6 +256,7 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     patches = [_checked(info) for each in ([slider] if slider else _good_sliders(mesh)) for info in each.patches]
     for name in dict.fromkeys(patch.name for patch in patches):
         problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
+    problems += _unread(mesh)
     problems += _overlaps(mesh)
     problems += _neighbours(mesh, slider) if slider else ()
     problems += _cache_problems(mesh)
@@ -313,6 +314,13 @@ def _patch_problems(mesh: PatchedMesh, pieces: list[CheckedPatch]) -> Iterator[P
     for message, count in told.items():
         if count:
             yield Problem("warning", mesh.path, pieces[0].name, None, message.format(count))
+
+
+def _unread(mesh: PatchedMesh) -> Iterator[Problem]:
+    for patch, animation in zip(mesh.patches, mesh.animation, strict=True):
+        for name in animation.unread():
+            message = f"{name} counts for nothing under the rule {patch.rule}"
+            yield Problem("warning", mesh.path, patch.name, None, message)
 
 
 def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:

@@ -54,6 +54,10 @@ class Animation:
     def needs_subdivision(self) -> bool:
         return self._meaning.needs_subdivision
 
+    def unread(self) -> list[str]:
+        """The properties that say something for which the rule of the patch has no use, at the first time."""
+        return [each.property(self._meaning.name) for each in self._meaning.unread(self._base)]
+
     def times(self, span: Span | None = None, names: Collection[str] | None = None) -> list[float]:
         """When controls were authored that vary; names: of these inputs alone, with the coordinates of textures."""
         chosen = [source for source in self._controls if names is None or source.wanted.name in names]
@@ -105,11 +109,19 @@ def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation 
 
 def read_faces(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> PatchMeaning:
     """A patch that knows of its faces and edges alone. Raises Fault."""
-    meaning = PatchMeaning(mesh, name)
-    faults = take_settings(meaning, prim, [each for each in inputs("patch") if each.name in ("patch", "edges")])
+    meaning, wanted = PatchMeaning(mesh, name), ("patch", "forceDensityRule", "grow", "edges")
+    faults = take_settings(meaning, prim, [each for each in inputs("patch") if each.name in wanted])
     if faults:
         raise Fault(faults[0])
     return meaning
+
+
+def read_chosen(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> np.ndarray:
+    """The faces that were chosen for a patch, int32, ascending, without those that join them. Raises Fault."""
+    meaning = PatchMeaning(mesh, name)
+    for fault in take_settings(meaning, prim, [input_of("patch", "patch")]):
+        raise Fault(fault)
+    return meaning.faces
 
 
 def read_pairs(attribute: Usd.Attribute, mesh: MeshMeaning) -> np.ndarray:
