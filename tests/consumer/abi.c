@@ -230,6 +230,15 @@ static void weld(void) {
     skinslide_weld_destroy(weld);
 }
 
+static void choose_skin(void) {
+    skinslide_mask_options options = SKINSLIDE_MASK_OPTIONS_DEFAULT;
+    float stretch[CORNERS] = {0};
+    uint8_t chosen[FACES];
+    if (said("stretch", skinslide_note_stretch(&mesh, points, stretch, &error)) &&
+        said("mask", skinslide_mask_stretched(&mesh, stretch, &options, chosen, &error)))
+        printf("face 0 is chosen: %d\n", chosen[0]);
+}
+
 static void refine(void) {
     skinslide_subdivision subdivision = SKINSLIDE_SUBDIVISION_DEFAULT;
     skinslide_mesh smooth = mesh;
@@ -253,5 +262,6 @@ int main(void) {
     take_values();
     refine();
     weld();
+    choose_skin();
     return 0;
 }

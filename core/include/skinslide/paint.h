@@ -1,4 +1,5 @@
-/* skinslide/paint.h: what artists paint patches with. OpenEXR files as bytes, textures, curves, and the other side of a mesh.
+/* skinslide/paint.h: what artists paint patches with. OpenEXR files as bytes, textures, curves, the other side of a mesh, and
+ * where a mesh stretches.
  *
  * Conventions are those of skinslide.h. */
 #ifndef SKINSLIDE_PAINT_H
@@ -189,6 +190,38 @@ SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t
 SKINSLIDE_API skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
                                                 const int32_t *faces, int32_t face_count, int32_t *mirror_faces,
                                                 int32_t *mirror_vertices, skinslide_error *error);
+
+/* ---- A set-up that nobody painted: where skin stretches ----------------------------------------------------------------- */
+
+/* Notes how far the sides of faces are from their rest lengths in a pose, beside what was noted of the poses before.
+ *   points   in       [vertex_count][3]
+ *   stretch  in, out  [index_count] the largest |log(length / rest length)| of the side from each corner to the next; all 0
+ *                     before the first pose. A side of no length at rest has none
+ * Fails with BAD_MESH, BAD_POINTS (not finite: names the vertex), BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_note_stretch(const skinslide_mesh *mesh, const float *points, float *stretch,
+                                                      skinslide_error *error);
+
+/* How a mask is made of what was noted. Start from SKINSLIDE_MASK_OPTIONS_DEFAULT. */
+typedef struct skinslide_mask_options {
+    size_t size;   /* sizeof(skinslide_mask_options) */
+    double least;  /* a side counts whose stretch is above this */
+    double grow;   /* how far a region grows, as a share of its radius: the root of its area at rest over pi */
+    int64_t rings; /* and by how many rings of faces at least */
+} skinslide_mask_options;
+
+#define SKINSLIDE_MASK_OPTIONS_DEFAULT                                                                                         \
+    { sizeof(skinslide_mask_options), 0.02, 0.5, 3 }
+
+/* Chooses the faces that a patch needs so that skin may slide wherever it stretched: regions, each of faces that meet and have
+ * an end of a side that counts, and what is near them on the mesh at rest. A patch takes more from the skin around it than it
+ * loses by the pins that end it there.
+ *   stretch  in   [index_count] of skinslide_note_stretch
+ *   options  in, or NULL: the default
+ *   faces    out  [face_count] 1 for those chosen, else 0
+ * Fails with BAD_MESH, BAD_POINTS (rest points not finite), BAD_ARGUMENT (a stretch or an option below 0), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_mask_stretched(const skinslide_mesh *mesh, const float *stretch,
+                                                        const skinslide_mask_options *options, uint8_t *faces,
+                                                        skinslide_error *error);
 
 #ifndef SKINSLIDE_CDEF
 #ifdef __cplusplus
