@@ -5,7 +5,6 @@ import sys
 import textwrap
 from dataclasses import fields
 from pathlib import Path
-from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -358,7 +357,7 @@ def test_a_layer_and_an_edit_target_get_the_same(chain, tmp_path):
 
 BAD = {
     "no such face": (setup.setup, dict(faces=[36]), "there is no face 36"),
-    "pinched": (setup.setup, dict(faces=[1, 2, 6, 8, 12, 13, 14]), "touches itself"),
+    "pinched": (setup.setup, dict(faces=[1, 2, 6, 8, 12, 13, 14], rule="unit"), "touches itself"),
     "no such subset": (setup.setup, dict(subset="gone"), "no GeomSubset gone"),
     "paint no edge": (paint.paint, dict(value=2, edges=[[0, 8]]), "edges has 0-8, which is no edge of the mesh"),
     "paint off the patch": (paint.paint, dict(value=2, edges=[[47, 48]]), "edges chooses no edge of the patch"),
@@ -380,7 +379,7 @@ def test_what_fails_leaves_the_edit_target_as_it_was(function, choice, message, 
 def test_what_fails_leaves_no_prims_in_an_empty_edit_target(stage, prim):
     before = text(stage)
     with pytest.raises(StageProblems, match="touches itself"):
-        skinslide.setup(stage, prim, PATCH, faces=[1, 2, 6, 8, 12, 13, 14])
+        skinslide.setup(stage, prim, PATCH, faces=[1, 2, 6, 8, 12, 13, 14], rule="unit")
     assert text(stage) == before and not prim.GetAppliedSchemas()
 
 
@@ -416,13 +415,14 @@ def test_an_edit_target_that_takes_nothing(stage, prim):
 
 @pytest.mark.parametrize(
     ("module", "keywords", "function"),
-    [(setup, "FaceChoice", "setup"), (paint, "EdgeChoice", "paint"), (mirror, "Reflection", "mirror")],
+    [(setup, "PatchChoice", "setup"), (paint, "EdgeChoice", "paint"), (mirror, "Reflection", "mirror")],
 )
 def test_keywords_are_those_of_the_function(module, keywords, function):
     """What type checkers know of **choice."""
-    hints = get_type_hints(getattr(module, function))
+    hints = getattr(module, function).__annotations__
     fixed = {"stage", "prim", "patch", "value", "return"}
-    assert get_type_hints(getattr(module, keywords)) == {name: hints[name] for name in hints if name not in fixed}
+    told = {name: reference.__forward_arg__ for name, reference in getattr(module, keywords).__annotations__.items()}
+    assert told == {name: hints[name] for name in hints if name not in fixed}
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,41 @@ def test_faces_of_a_primvar(cache, tmp_path):
     assert patches(tmp_path / "shot.usda") == {"elbow_L": [0, 1, 2, 3, 4, 5]}
 
 
+def test_a_new_patch_is_even(cache, tmp_path):
+    output = tmp_path / "shot.usda"
+    for patch, choice in {"one": {}, "two": dict(rule="fast")}.items():
+        setup_to_file(cache, output, MESH, patch, faces="0-2", **choice)
+    setup_to_file(cache, output, MESH, "two", faces="3")
+    (mesh,) = read_meshes(open_stage(output))[0]
+    assert {patch.name: patch.rule for patch in mesh.patches} == {"one": "even", "two": "fast"}
+
+
+def test_settings(cache, tmp_path):
+    output = tmp_path / "shot.usda"
+    given = dict(holes="freeAll", interpolation="meanValue", grow=0.2, weight=0.25)
+    setup_to_file(cache, output, MESH, "elbow_L", faces="14", **given)
+    ((patch,),) = (mesh.patches for mesh in read_meshes(open_stage(output))[0])
+    assert (patch.holes, patch.interpolation) == ("freeAll", "meanValue")
+    assert patch.faces.tolist() == [8, 13, 14, 15, 20]
+    assert patch.controls.weight.tolist() == [0.25] * 49
+
+
+WEIGHTS = {
+    "of the points of a subset of faces": (dict(pin="elbow"), {8, 9, 10, 15, 16, 17, 22, 23, 24}),
+    "of points by a primvar": (dict(pin=["mask"]), set(range(14))),
+    "of both": (dict(pin=["mask", "elbow"]), {*range(14), 15, 16, 17, 22, 23, 24}),
+}
+
+
+@pytest.mark.parametrize(("choice", "pinned"), WEIGHTS.values(), ids=WEIGHTS.keys())
+@pytest.mark.parametrize("weight", [None, 0.5, "mask"])
+def test_pins(choice, pinned, weight, cache, tmp_path):
+    setup_to_file(cache, tmp_path / "shot.usda", MESH, "skin", faces="0-35", weight=weight, **choice)
+    ((patch,),) = (mesh.patches for mesh in read_meshes(open_stage(tmp_path / "shot.usda"))[0])
+    before = {None: [1.0] * 49, 0.5: [0.5] * 49, "mask": [1.0] * 14 + [0.0] * 35}[weight]
+    assert patch.controls.weight.tolist() == [0.0 if v in pinned else before[v] for v in range(49)]
+
+
 def test_again_adds_and_replaces(cache, tmp_path):
     output = tmp_path / "shot.skinslide"
     setup_to_file(cache, output, MESH, "elbow_L", faces="0-2")
@@ -111,6 +146,14 @@ FAULTS = {
     "no such face": (dict(faces="30-36"), "there is no face 36: the mesh has 36 faces"),
     "no such subset": (dict(subset="gone"), "there is no GeomSubset gone"),
     "no such primvar": (dict(primvar="gone"), "there is no primvar gone"),
+    "no such pin": (
+        dict(faces="0-2", pin="gone"),
+        "there is neither a GeomSubset gone under the mesh nor a primvar gone on it",
+    ),
+    "pin by corner": (dict(faces="0-2", pin="st"), "is texCoord2f[]"),
+    "no such weight": (dict(faces="0-2", weight="gone"), "there is no primvar gone"),
+    "grow": (dict(faces="0-2", grow=-1), "skinSlide:elbow_L:grow is -1; it must be 0 or more"),
+    "all free by a rule in the plane": (dict(faces="0-2", rule="unit", holes="freeAll"), "needs rule relaxed or even"),
     "primvar of another kind": (dict(primvar="st"), "is texCoord2f[]"),
     "pinched": (dict(faces="0,7,1,2,8"), None),
 }
@@ -124,7 +167,7 @@ def test_a_patch_that_could_not_be_slid_is_not_written(choice, message, cache, t
     stage.GetRootLayer().Save()
     output = tmp_path / "shot.usda"
     if message is None:
-        choice, message = dict(faces=",".join(map(str, pinched_faces()))), "touches itself"
+        choice, message = dict(faces=",".join(map(str, pinched_faces())), rule="unit"), "touches itself"
     with pytest.raises(StageProblems, match=message.replace("[", r"\[")) as raised:
         setup_to_file(cache, output, MESH, "elbow_L", **choice)
     assert all(problem.prim == MESH and problem.patch == "elbow_L" for problem in raised.value.problems)
@@ -156,6 +199,10 @@ USAGE = {
     "faces: words": dict(faces="all"),
     "faces: backwards": dict(faces="9-3"),
     "faces: empty": dict(faces=""),
+    "rule": dict(rule="stiff"),
+    "holes": dict(holes="open"),
+    "interpolation": dict(interpolation="cubic"),
+    "frames without whole": dict(frames="1001"),
 }
 
 

@@ -87,3 +87,33 @@ def mirror_faces(
         writable("int32_t[]", found.vertices),
     )
     return found
+
+
+def note_stretch(
+    face_counts: np.ndarray, face_indices: np.ndarray, rest_points: np.ndarray, points: np.ndarray, stretch: np.ndarray
+) -> None:
+    """Notes how far sides of faces are from their rest lengths in a pose (V, 3).
+
+    stretch  float32 (sum of counts,): the largest |log(length / rest length)| of the side from each corner, of the
+             poses before, and then of this one too; 0 at first
+    """
+    native = Arguments()
+    mesh = native.mesh(face_counts, face_indices, rest_points)
+    posed = native.points(points, len(rest_points), "points")
+    call(lib.skinslide_note_stretch, ffi.addressof(mesh), posed, writable("float[]", stretch))
+
+
+def least_stretch() -> float:
+    """The |log(length / rest length)| above which a side counts as stretched."""
+    return float(new("mask_options").least)
+
+
+def mask_stretched(
+    face_counts: np.ndarray, face_indices: np.ndarray, rest_points: np.ndarray, stretch: np.ndarray
+) -> np.ndarray:
+    """The faces that a patch needs so that skin may slide wherever it stretched: bool (F,)."""
+    native, chosen = Arguments(), np.zeros(len(face_counts), np.uint8)
+    mesh = native.mesh(face_counts, face_indices, rest_points)
+    given = native.pointer(stretch, np.float32, (mesh.index_count,), "stretch")
+    call(lib.skinslide_mask_stretched, ffi.addressof(mesh), given, ffi.NULL, writable("uint8_t[]", chosen))
+    return chosen.astype(bool)

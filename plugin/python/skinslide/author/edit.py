@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -41,21 +41,27 @@ class EditedMesh:
 
     def checked(self) -> CheckReport:
         """What `check` says of the mesh. Raises StageProblems where the patch cannot be slid."""
-        stage, path = self.prim.GetStage(), str(self.prim.GetPath())
-        with without_earlier_bake(stage, [path]):
-            report = check(stage, [path])
-        bad = [problem for problem in errors(report.problems) if problem.patch in (self.patch, None)]
-        if bad:
-            raise StageProblems(bad)
-        return replace(report, problems=[*report.problems, *self._hidden()])
+        return checked([self])
 
-    def _hidden(self) -> Iterator[Problem]:
+    def hidden(self) -> Iterator[Problem]:
         """Warns of what a stronger opinion than the edit target's hides."""
         for each in self.prim.GetAuthoredProperties():
             stronger = hidden_by(each) if schema.is_of_patch(each.GetName(), self.patch) else None
             if stronger:
                 message = f"{each.GetName()} is hidden by that in {stronger}, which is stronger"
                 yield Problem("warning", str(self.prim.GetPath()), self.patch, None, message)
+
+
+def checked(meshes: Sequence[EditedMesh]) -> CheckReport:
+    """What `check` says of one or more meshes of a stage. Raises StageProblems where a patch cannot be slid."""
+    stage, paths = meshes[0].prim.GetStage(), [str(mesh.prim.GetPath()) for mesh in meshes]
+    patches = {None, *(mesh.patch for mesh in meshes)}
+    with without_earlier_bake(stage, paths):
+        report = check(stage, paths)
+    bad = [problem for problem in errors(report.problems) if problem.patch in patches]
+    if bad:
+        raise StageProblems(bad)
+    return replace(report, problems=[*report.problems, *(each for mesh in meshes for each in mesh.hidden())])
 
 
 @contextmanager

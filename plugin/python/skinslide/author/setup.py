@@ -1,8 +1,10 @@
-"""Makes a patch of some faces of a mesh."""
+"""Makes a patch of some faces of a mesh, or one of every mesh that stretches."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import TypedDict, Unpack
 
@@ -10,81 +12,170 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Usd
 
+from skinslide.arrays.geometry import least_stretch
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
-from skinslide.author.edit import edited
+from skinslide.author.edit import EditedMesh, checked, edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import UsageError
+from skinslide.author.settings import Settings, has_pin
+from skinslide.author.whole import moving_meshes, stretched_faces
+from skinslide.problems import Problem, StageProblems, UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.stage.given import PrimLike, StageLike, StrPath, check_face, given_faces, given_primvar, given_subset
+from skinslide.shot.checks import texts
+from skinslide.shot.frames import FramesLike, checked_frames
+from skinslide.stage import schema
+from skinslide.stage.given import (
+    PrimLike,
+    StageLike,
+    StrPath,
+    check_face,
+    given_faces,
+    given_paths,
+    given_primvar,
+    given_subset,
+)
 from skinslide.stage.patch import primvar_faces, subset_faces
 
 _RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
 
-class FaceChoice(TypedDict, total=False):
+class PatchChoice(TypedDict, total=False):
     """The keywords of `setup`."""
 
     faces: npt.ArrayLike | str | None
     subset: str | None
     primvar: str | None
+    whole: bool
+    frames: FramesLike | None
+    pin: Sequence[str] | str
+    weight: npt.ArrayLike | str | None
+    rule: str | None
+    holes: str | None
+    interpolation: str | None
+    grow: float | None
 
 
 def setup(
     stage: Usd.Stage,
-    prim: PrimLike,
-    patch: str,
+    prim: PrimLike | None = None,
+    patch: str | None = None,
     *,
     faces: npt.ArrayLike | str | None = None,
     subset: str | None = None,
     primvar: str | None = None,
+    whole: bool = False,
+    frames: FramesLike | None = None,
+    pin: Sequence[str] | str = (),
+    weight: npt.ArrayLike | str | None = None,
+    rule: str | None = None,
+    holes: str | None = None,
+    interpolation: str | None = None,
+    grow: float | None = None,
 ) -> CheckReport:
     """Makes a patch of some faces of a mesh, in the stage's edit target; one that is there has other faces then.
 
-    One of faces, subset and primvar says which faces.
+    One of faces, subset, primvar and whole says which faces. What of weight, rule, holes, interpolation and grow is
+    None is not authored, but for the rule of a new patch.
 
     Args:
         stage: The stage.
-        prim: The mesh.
-        patch: The patch's name, such as elbow_L.
+        prim: The mesh. With `whole` it may be any prim, for the meshes at and below it, or None, for all of the stage.
+        patch: The patch's name, such as elbow_L; with `whole` None is skin.
         faces: Indices (n,), a bool for each face of the mesh (F,), or a spec such as "0-120,140".
         subset: The name of a GeomSubset under the mesh.
         primvar: The name of a primvar of the mesh, read as the primvar of a patch is.
+        whole: The faces whose edges ever stretch over 2 %, and so much around them as lets them give. One patch for
+            each mesh that is rendered and has such edges.
+        frames: With `whole`, where stretch is looked for: a spec such as 1001:1024, or numbers; None: every sample.
+        pin: Names of GeomSubsets under the mesh, or of primvars of it, of points that stay, such as lips, lids and
+            nails: their weight is 0. With `whole` those that a mesh has count.
+        weight: How far points slide, 0 to 1: a number, one for each point (V,), or the name of a primvar by point.
+        rule: unit, fast, relaxed or even; None: even for a patch that is new.
+        holes: pinned, free or freeAll.
+        interpolation: auto, linear, meanValue or limit.
+        grow: How far around its faces skin joins the patch, in the mesh's units.
 
     Returns:
-        What `check` says of the mesh.
+        What `check` says of the meshes.
 
     Raises:
         TypeError: Something else than a stage or a prim.
         UsageError: Arguments that cannot be, or an edit target that takes nothing.
-        StageProblems: The patch could not be slid. Nothing is authored then.
+        FrameProblem: Points that cannot be looked at, with `whole`. Nothing is authored then.
+        StageProblems: The patch could not be slid, or nothing stretches. Nothing is authored then.
     """
-    if sum(source is not None for source in (faces, subset, primvar)) != 1:
-        raise UsageError("one of faces, subset and primvar is needed")
+    if sum(source is not None for source in (faces, subset, primvar)) + whole != 1:
+        raise UsageError("one of faces, subset, primvar and whole is needed")
+    settings = Settings(texts("pin", pin), weight, rule, holes, interpolation, grow)
+    if whole:
+        return _setup_whole(stage, prim, patch or "skin", None if frames is None else checked_frames(frames), settings)
+    if prim is None or patch is None or frames is not None:
+        raise UsageError("a prim and a patch are needed, and no frames, where whole is not asked for")
     with edited(stage, prim, patch) as mesh:
-        applied = SkinSlideAPI.Apply(mesh.prim, patch)
-        chosen: np.ndarray | None = None
+        own, chosen = SkinSlideAPI(mesh.prim, patch), None
         if isinstance(faces, str):
             chosen = _expand(parse_faces(faces), mesh.topology.face_count)
         elif faces is not None:
             chosen = given_faces("faces", faces, mesh.topology.face_count)
         elif subset is not None:
-            chosen = _of_subset(applied, subset, mesh.meaning)
+            chosen = _of_subset(own, subset, mesh.meaning)
         elif primvar is not None:
-            chosen = _of_primvar(applied, primvar, mesh.meaning)
-        if chosen is not None:
-            applied.SetFaces(chosen)
+            chosen = _of_primvar(own, primvar, mesh.meaning)
+        _make(mesh, patch, chosen, settings)
         return mesh.checked()
+
+
+def _setup_whole(
+    stage: Usd.Stage, prim: PrimLike | None, patch: str, frames: list[float] | None, settings: Settings
+) -> CheckReport:
+    """One patch for each mesh that stretches; all of them, or none."""
+    paths = None if prim is None else given_paths("prim", prim)
+    moving, made, left = moving_meshes(stage, paths), list[EditedMesh](), list[Problem]()
+    _check_pins(moving, settings.pins)
+    with ExitStack() as authoring:
+        for each in moving:
+            mesh = authoring.enter_context(edited(stage, each, patch))
+            faces = stretched_faces(mesh.prim, mesh.meaning, frames)
+            if faces.any():
+                _make(mesh, patch, faces, settings.for_mesh(each))
+                made.append(mesh)
+            else:
+                left.append(Problem("note", str(each.GetPath()), None, None, f"has no patch: {_never('no edge')}"))
+        if not made:
+            message = _never("no edge of any mesh") if left else "no mesh is rendered and has points that move"
+            raise StageProblems([Problem("error", paths[0] if paths else "", None, None, message)])
+        report = checked(made)
+    return replace(report, problems=[*report.problems, *left])
+
+
+def _never(what: str) -> str:
+    return f"{what} ever stretches by over {least_stretch():.0%}"
+
+
+def _check_pins(meshes: Sequence[Usd.Prim], pins: Sequence[str]) -> None:
+    for name in pins:
+        if not any(has_pin(mesh, name) for mesh in meshes):
+            message = f"no mesh that moves has a GeomSubset or a primvar {name}"
+            raise StageProblems([Problem("error", "", None, None, message)])
+
+
+def _make(mesh: EditedMesh, patch: str, faces: np.ndarray | None, settings: Settings) -> None:
+    """Authors the patch, of these faces or, for None, of those that it finds by itself."""
+    is_new = patch not in schema.patch_names(mesh.prim)
+    applied = SkinSlideAPI.Apply(mesh.prim, patch)
+    if faces is not None:
+        applied.SetFaces(faces)
+    settings.author(applied, mesh, is_new=is_new)
 
 
 def setup_to_file(
     stage: StageLike,
     output: StrPath,
-    prim: PrimLike,
-    patch: str,
+    prim: PrimLike | None = None,
+    patch: str | None = None,
     *,
     force: bool = False,
-    **choice: Unpack[FaceChoice],
+    **choice: Unpack[PatchChoice],
 ) -> CheckReport:
     """Makes a patch as `setup` does, in a layer that sublayers the stage.
 
@@ -92,19 +183,20 @@ def setup_to_file(
         stage: The stage, or its path; never written.
         output: The layer: .skinslide, .usda, .usdc or .usd, written whole or not at all. One that sits on the stage
             already gains the patch.
-        prim: The mesh.
-        patch: The patch's name, such as elbow_L.
+        prim: The mesh, as for `setup`.
+        patch: The patch's name, as for `setup`.
         force: Replaces any layer at `output`, where without it one that does not sit on the stage is an error.
         **choice: As for `setup`.
 
     Returns:
-        What `check` says of the mesh.
+        What `check` says of the meshes.
 
     Raises:
         TypeError: Something else than a stage or a prim.
         UsageError: Arguments that cannot be.
         StageError: The stage cannot be opened, or the layer not be written.
-        StageProblems: The patch could not be slid. Nothing is written then.
+        FrameProblem: Points that cannot be looked at, with `whole`. Nothing is written then.
+        StageProblems: The patch could not be slid, or nothing stretches. Nothing is written then.
     """
     report = author_layer(stage, output, force, lambda layered: setup(layered, prim, patch, **choice))
     return replace(report, stage=str(output))

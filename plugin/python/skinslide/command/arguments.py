@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from skinslide.command.outcome import EXIT_CODES, tell
 from skinslide.problems import UsageError
-from skinslide.shot.checks import Options, count_text, described, positive_text
+from skinslide.shot.checks import Options, count_text, described, number_or_name, positive_text
 from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
 
 _MAP_SIZE = "--map-size"  # of bake, whose --size is that of pictures; maps understands it too
@@ -232,13 +232,18 @@ def _add_layer(command: argparse.ArgumentParser) -> None:
         "If it exists and sublayers STAGE this is written into it, and it keeps everything else but comments in its "
         "text; any other existing file is an error",
     )
+    command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
+
+
+def _add_patch(command: argparse.ArgumentParser) -> None:
     command.add_argument("--prim", required=True, metavar="PATH", help="the mesh")
     command.add_argument("--patch", required=True, metavar="NAME", help="the patch's name, such as elbow_L")
-    command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
 
 
 def _add_setup(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
+    command.add_argument("--prim", metavar="PATH", help="the mesh; with --whole any prim (default: the whole stage)")
+    command.add_argument("--patch", metavar="NAME", help="the patch's name, such as elbow_L; with --whole: skin")
     faces = command.add_mutually_exclusive_group(required=True)
     faces.add_argument("--faces", metavar="SPEC", help="faces by index, such as 0-120,140; both ends count")
     faces.add_argument("--subset", metavar="NAME", help="the faces of the GeomSubset NAME under the mesh")
@@ -247,10 +252,34 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="the faces where the primvar NAME is above 0, by face (uniform) or on all points (vertex)",
     )
+    faces.add_argument(
+        "--whole",
+        action="store_true",
+        help="every mesh that is rendered, where its edges ever stretch by over 2 %%, and so much around that as lets "
+        "it give: nothing need be painted",
+    )
+    command.add_argument("--frames", metavar="SPEC", help="of --whole, such as 1001:1024 (default: every sample)")
+    command.add_argument(
+        "--pin",
+        action="append",
+        metavar="NAME",
+        help="points of a GeomSubset, or where a primvar is above 0, that stay, such as lips, lids and nails; more by "
+        "repeating it",
+    )
+    command.add_argument(
+        "--weight", type=number_or_name, metavar="X", help="how far points slide, 0 to 1, or a primvar of it by point"
+    )
+    command.add_argument("--rule", metavar="RULE", help="unit, fast, relaxed or even (default of a new patch: even)")
+    command.add_argument("--holes", metavar="HOLES", help="pinned, free or freeAll")
+    command.add_argument("--interpolation", metavar="WAY", help="auto, linear, meanValue or limit")
+    command.add_argument(
+        "--grow", type=float, metavar="D", help="how far around its faces skin joins the patch, in the mesh's units"
+    )
 
 
 def _add_paint(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
+    _add_patch(command)
     command.add_argument("--value", type=float, required=True, metavar="X", help="the factor, above 0")
     edges = command.add_mutually_exclusive_group(required=True)
     edges.add_argument("--subset", metavar="NAME", help="the edges of the GeomSubset NAME, of elementType edge")
@@ -274,6 +303,7 @@ def _add_paint(command: argparse.ArgumentParser) -> None:
 
 def _add_mirror(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
+    _add_patch(command)
     command.add_argument("--to", metavar="NAME", help="the new patch's name (default: elbow_R for elbow_L)")
     command.add_argument(
         "--axis",

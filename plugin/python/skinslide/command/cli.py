@@ -148,8 +148,8 @@ def _maps(
     return "" if quiet else report.text(), DONE
 
 
-def _author(function: Callable[..., Any], stage: str, output: str, *, prim: str, patch: str, **options: Any) -> Result:
-    return "\n".join([function(stage, output, prim, patch, **options).text(), *_written(output)]), DONE
+def _author(function: Callable[..., Any], stage: str, output: str, **options: Any) -> Result:
+    return "\n".join([function(stage, output, **options).text(), *_written(output)]), DONE
 
 
 def _stitch(stitch: Callable[..., Any], chunks: list[str], output: str) -> Result:

@@ -172,6 +172,13 @@ def positive_text(text: str) -> int:
     return int(text)
 
 
+def number_or_name(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def size_text(text: str) -> tuple[int, int]:
     found = re.fullmatch(r"(\d{1,9})[xX](\d{1,9})", text, re.ASCII)
     if not found:

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdSkel
 
 from skinslide.arrays.meaning import SCHEMA, PrimFacts, find, nothing_to_slide
-from skinslide.problems import NO_SUCH_PRIM, Problem
+from skinslide.problems import NO_SUCH_PRIM, Problem, StageProblems
 from skinslide.stage import schema
 from skinslide.stage.marks import baked_layer, has_values
 from skinslide.stage.opening import is_live
@@ -45,6 +45,15 @@ def find_meshes(
 def patched_prims(stage: Usd.Stage) -> list[Usd.Prim]:
     """Every prim of a stage that carries a patch, whether it can be slid or not."""
     return [prim for prim in _prims_below(stage.GetPseudoRoot()) if schema.patch_names(prim)]
+
+
+def prims_at(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> list[Usd.Prim]:
+    """Every prim of a stage, or those at paths and below, each once. Raises StageProblems for a path of none."""
+    problems: list[Problem] = []
+    found = [prim for root in _roots(stage, prim_paths, problems) for prim in _prims_below(root)]
+    if problems:
+        raise StageProblems(problems)
+    return list(dict.fromkeys(found))
 
 
 def composition_problems(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> Iterator[Problem]:

@@ -1,0 +1,94 @@
+"""What a new patch has beside its faces: its rule and other settings, and a weight, which is 0 where skin is pinned."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+from pxr import Sdf, Usd, UsdGeom
+
+from skinslide.author.api import SkinSlideAPI
+from skinslide.author.edit import EditedMesh
+from skinslide.problems import Fault
+from skinslide.stage.given import given_array, given_number, given_primvar
+from skinslide.stage.patch import primvar_faces, subset_faces
+from skinslide.stage.values import FIRST, read_value
+
+RULE = "even"  # of patches that are new
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is None is not authored, but for the rule of a new patch."""
+
+    pins: Sequence[str] = ()
+    weight: npt.ArrayLike | str | None = None
+    rule: str | None = None
+    holes: str | None = None
+    interpolation: str | None = None
+    grow: float | None = None
+
+    def for_mesh(self, prim: Usd.Prim) -> Self:
+        """With those of the pins that the mesh has."""
+        return replace(self, pins=[name for name in self.pins if has_pin(prim, name)])
+
+    def author(self, patch: SkinSlideAPI, mesh: EditedMesh, *, is_new: bool) -> None:
+        """Raises UsageError and Fault."""
+        creates: list[tuple[Callable[..., Usd.Attribute], object]] = [
+            (patch.CreateForceDensityRuleAttr, self.rule or (RULE if is_new else None)),
+            (patch.CreateHolesAttr, self.holes),
+            (patch.CreateInterpolationAttr, self.interpolation),
+            (patch.CreateGrowAttr, self.grow),
+        ]
+        for create, value in creates:
+            if value is not None:
+                create(value)
+        if self.weight is not None or self.pins:
+            weight = self._weight(mesh)
+            interpolation = UsdGeom.Tokens.vertex if weight.ndim else UsdGeom.Tokens.constant
+            patch.CreateWeightPrimvar(interpolation, weight.reshape(-1))
+
+    def _weight(self, mesh: EditedMesh) -> np.ndarray:
+        """One for the patch, or one for each point (V,)."""
+        weight = _weight(self.weight, mesh)
+        for name in self.pins:
+            weight = np.where(_pinned(name, mesh), np.float32(0), weight)
+        return weight
+
+
+def has_pin(prim: Usd.Prim, name: str) -> bool:
+    """Whether a mesh has a GeomSubset or a primvar of a name."""
+    return _subset(prim, name) is not None or bool(UsdGeom.PrimvarsAPI(prim).GetPrimvar(name))
+
+
+def _subset(prim: Usd.Prim, name: str) -> UsdGeom.Subset | None:
+    child = prim.GetChild(name) if Sdf.Path.IsValidIdentifier(name) else None
+    return UsdGeom.Subset(child) if child and child.IsA(UsdGeom.Subset) else None
+
+
+def _weight(given: npt.ArrayLike | str | None, mesh: EditedMesh) -> np.ndarray:
+    if isinstance(given, str):
+        return _painted(given_primvar(mesh.prim, given), mesh).astype(np.float32)
+    if given is None or np.ndim(given) == 0:
+        return np.array(1.0 if given is None else given_number("weight", given), np.float32)
+    return given_array("weight", given, np.float32, (mesh.topology.vertex_count,))
+
+
+def _painted(primvar: UsdGeom.Primvar, mesh: EditedMesh) -> np.ndarray:
+    return mesh.meaning.painted(read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr()))
+
+
+def _pinned(name: str, mesh: EditedMesh) -> np.ndarray:
+    """Which points (V,) a GeomSubset or a primvar chooses: those of its faces, or its own. Raises Fault."""
+    subset = _subset(mesh.prim, name)
+    if subset is not None:
+        return mesh.topology.vertices_of(subset_faces(subset.GetPrim(), mesh.meaning))
+    if not has_pin(mesh.prim, name):
+        raise Fault(f"there is neither a GeomSubset {name} under the mesh nor a primvar {name} on it")
+    primvar = given_primvar(mesh.prim, name)
+    if primvar.GetInterpolation() == UsdGeom.Tokens.uniform:
+        return mesh.topology.vertices_of(primvar_faces(primvar, mesh.meaning))
+    return _painted(primvar, mesh) > 0

@@ -1,0 +1,48 @@
+"""Set-ups that nobody painted: which meshes of a stage move, and the faces that a patch needs where they stretch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from skinslide.arrays.geometry import mask_stretched, note_stretch
+from skinslide.arrays.meaning import MeshMeaning, merge_times
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError
+from skinslide.stage.finding import prims_at
+from skinslide.stage.values import read_value
+
+PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
+
+
+def moving_meshes(stage: Usd.Stage, prims: Sequence[str] | None) -> list[Usd.Prim]:
+    """The meshes at and below prims, or on the stage, that are rendered and whose points move."""
+    found = (prim for prim in prims_at(stage, prims) if prim.IsA(UsdGeom.Mesh) and not prim.IsInstanceProxy())
+    return [prim for prim in found if _moves(prim) and _is_rendered(prim)]
+
+
+def _moves(prim: Usd.Prim) -> bool:
+    return prim.IsDefined() and UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying()
+
+
+def _is_rendered(prim: Usd.Prim) -> bool:
+    return UsdGeom.Imageable(prim).ComputePurpose() in PURPOSES
+
+
+def stretched_faces(prim: Usd.Prim, mesh: MeshMeaning, frames: Sequence[float] | None) -> np.ndarray:
+    """A bool for each face (F,): whether a patch needs it. Of the frames given, or of every sample.
+
+    Raises Fault, and FrameProblem for points that cannot be looked at.
+    """
+    points = UsdGeom.Mesh(prim).GetPointsAttr()
+    times = merge_times(points.GetTimeSamples()) if frames is None else frames
+    counts, indices, rest = mesh.face_counts, mesh.face_indices, mesh.rest_points()
+    stretch = np.zeros(len(indices), np.float32)
+    for time in times:
+        try:
+            posed = mesh.points(read_value(points, Usd.TimeCode(time)))
+            note_stretch(counts, indices, rest, posed, stretch)
+        except (Fault, SliderError) as error:
+            raise FrameProblem(Problem("error", str(prim.GetPath()), None, time, str(error))) from error
+    return mask_stretched(counts, indices, rest, stretch)

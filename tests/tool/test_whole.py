@@ -1,0 +1,133 @@
+"""`setup --whole` makes one patch of every mesh that stretches, where it does and so far around that it can give."""
+
+import numpy as np
+import pytest
+from pxr import Gf, Sdf, Usd, UsdGeom, Vt
+
+import skinslide
+import stages
+from skinslide.author.setup import setup_to_file
+from skinslide.command.cli import main
+from skinslide.problems import FrameProblem, StageProblems, UsageError
+from skinslide.stage.mesh import read_meshes
+from skinslide.stage.opening import open_stage
+from stages import FRAMES
+
+SIDE = 24
+SKIN, ROD, HIDDEN, STILL = (f"/World/char/geo/{name}_GEO" for name in ("skin", "rod", "hidden", "still"))
+
+
+def bulging(shape: stages.Shape) -> dict[float, np.ndarray]:
+    """Points of a flat sheet at each frame: a cone on the six squares around its middle grows in the last two."""
+    away = np.linalg.norm(shape.points[:, :2] - SIDE / 2, axis=1)
+    cone = np.maximum(3 - away, 0)[:, None] * (0, 0, 1)
+    return {frame: shape.points + amount * cone for frame, amount in zip(FRAMES, (0, 0.1, 0.5), strict=True)}
+
+
+def add(stage: Usd.Stage, path: str, poses: dict[float, np.ndarray]) -> UsdGeom.Mesh:
+    shape = stages.squares(SIDE)
+    mesh = stages.add_mesh(stage, shape, path, frames=())
+    for frame, points in poses.items():
+        mesh.GetPointsAttr().Set(stages.vectors(points.astype(np.float32)), frame)
+    return mesh
+
+
+@pytest.fixture
+def shot(tmp_path):
+    """A sheet that bulges, one that only moves, one that is a guide, and one that stays."""
+    stage, shape = stages.new_stage(), stages.squares(SIDE)
+    skin = add(stage, SKIN, bulging(shape))
+    stages.set_primvar(skin, "lips", Sdf.ValueTypeNames.FloatArray, "vertex", [0.0] * 312 + [1.0] + [0.0] * 312)
+    add(stage, ROD, {frame: shape.points + frame for frame in FRAMES})
+    add(stage, HIDDEN, bulging(shape)).CreatePurposeAttr(UsdGeom.Tokens.guide)
+    add(stage, STILL, {})
+    return stages.save(stage, tmp_path / "cache.usda")
+
+
+def whole(path) -> dict[str, dict[str, np.ndarray]]:
+    """The faces of each patch of each mesh."""
+    return {mesh.path: {patch.name: patch.faces for patch in mesh.patches} for mesh in read_meshes(open_stage(path))[0]}
+
+
+def expected(reach: int) -> list[int]:
+    """The faces of a square around the middle."""
+    low, high = SIDE // 2 - reach, SIDE // 2 + reach
+    return stages.block(SIDE, range(low, high), range(low, high)).tolist()
+
+
+def test_where_skin_stretches_and_around(shot, tmp_path):
+    report = setup_to_file(shot, tmp_path / "x.skinslide", whole=True)
+    found = whole(tmp_path / "x.skinslide")
+    assert list(found) == [SKIN] and list(found[SKIN]) == ["skin"]
+    faces = found[SKIN]["skin"].tolist()
+    # The cone's own squares, three around them at least, and no more than half as far again as it is wide.
+    assert set(expected(5)) <= set(faces) <= set(expected(8))
+    notes = [problem for problem in report.problems if problem.severity == "note"]
+    assert [note.prim for note in notes] == [ROD] and "no edge ever stretches by over 2%" in notes[0].message
+
+
+def test_it_slides_and_is_even(shot, tmp_path):
+    stage = open_stage(shot)
+    skinslide.setup(stage, whole=True)
+    report = skinslide.bake(stage)
+    assert stage.GetPrimAtPath(SKIN).GetAttribute("skinSlide:skin:forceDensityRule").Get() == "even"
+    ((patch,),) = (mesh.patches for mesh in report.meshes)
+    before, after = patch.column("stretch_before"), patch.column("stretch_after")
+    assert before[0] == after[0] == 0 and after[-1] < 0.8 * before[-1]
+
+
+@pytest.mark.parametrize(("frames", "stretches"), [("1001", False), ("1001-1002", False), ([1003], True)])
+def test_only_frames_that_are_asked_for(frames, stretches, shot, tmp_path):
+    """In the second a side of the cone is log(1 + 0.1^2) / 2 longer, half a hundredth."""
+    output = tmp_path / "x.usda"
+    if stretches:
+        setup_to_file(shot, output, whole=True, frames=frames)
+        assert list(whole(output)) == [SKIN]
+        return
+    with pytest.raises(StageProblems, match="no edge of any mesh ever stretches by over 2%"):
+        setup_to_file(shot, output, whole=True, frames=frames)
+    assert not output.exists()
+
+
+def test_of_a_prim_and_below(shot, tmp_path):
+    setup_to_file(shot, tmp_path / "a.usda", SKIN, "own", whole=True, rule="relaxed")
+    setup_to_file(shot, tmp_path / "b.usda", "/World/char", "own", whole=True)
+    a, b = whole(tmp_path / "a.usda"), whole(tmp_path / "b.usda")
+    assert list(a) == list(b) == [SKIN] and a[SKIN]["own"].tolist() == b[SKIN]["own"].tolist()
+    with pytest.raises(StageProblems, match="no mesh is rendered and has points that move"):
+        setup_to_file(shot, tmp_path / "c.usda", STILL, whole=True)
+
+
+def test_pins(shot, tmp_path):
+    setup_to_file(shot, tmp_path / "x.usda", whole=True, pin="lips")
+    skinslide.bake(stage := open_stage(tmp_path / "x.usda"))
+    points = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN)).GetPointsAttr().Get(FRAMES[-1])
+    assert points[312] == Gf.Vec3f(*map(float, bulging(stages.squares(SIDE))[FRAMES[-1]][312]))
+    with pytest.raises(StageProblems, match="no mesh that moves has a GeomSubset or a primvar nails"):
+        setup_to_file(shot, tmp_path / "x.usda", whole=True, pin=["lips", "nails"])
+
+
+def test_a_frame_that_cannot_be_looked_at(shot, tmp_path):
+    stage = Usd.Stage.Open(str(shot))
+    points = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN)).GetPointsAttr()
+    values = np.array(points.Get(FRAMES[1]))
+    values[7] = np.nan
+    points.Set(Vt.Vec3fArray.FromNumpy(values), FRAMES[1])
+    before = stage.GetRootLayer().ExportToString()
+    with pytest.raises(FrameProblem, match=rf"{SKIN}: frame 1002: points: vertex 7 is not finite"):
+        skinslide.setup(stage, whole=True)
+    assert stage.GetRootLayer().ExportToString() == before
+
+
+def test_usage(shot, tmp_path):
+    stage = open_stage(shot)
+    for given in (dict(whole=True, faces="0"), dict(), dict(patch="elbow", faces="0"), dict(prim=SKIN, faces="0")):
+        with pytest.raises(UsageError):
+            skinslide.setup(stage, **given)
+
+
+def test_the_command(shot, tmp_path, capfd):
+    output = tmp_path / "x.skinslide"
+    assert main(["setup", str(shot), "-o", str(output), "--whole", "--pin", "lips", "--weight", "0.5"]) == 0
+    assert f"{output}: written" in capfd.readouterr().out
+    assert list(whole(output)) == [SKIN]
