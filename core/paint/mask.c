@@ -31,7 +31,7 @@ skinslide_status skinslide_note_stretch(const skinslide_mesh *mesh, const float 
             int32_t a = mesh->face_indices[begin + k], b = mesh->face_indices[begin + (k + 1) % mesh->face_counts[f]];
             double rest = distance(mesh->rest_points, a, b), posed = distance(points, a, b);
             if (rest > 0)
-                stretch[begin + k] = fmaxf(stretch[begin + k], (float)fabs(log(fmax(posed / rest, 1e-6))));
+                stretch[begin + k] = fmaxf(stretch[begin + k], (float)fabs(ss_log(fmax(posed / rest, 1e-6))));
         }
     return status;
 }

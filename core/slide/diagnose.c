@@ -71,7 +71,7 @@ static bool counted_before(const diagnosis *d, int32_t part, int32_t first, int3
 }
 
 static double squared_stretch(double length, double rest) {
-    double stretch = log(length / rest);
+    double stretch = ss_log(length / rest);
     return stretch * stretch;
 }
 

@@ -142,7 +142,7 @@ static void measure_slide(const ss_patch *patch, const double (*displacement)[4]
 static double stretch(const ss_patch *patch, const double *lengths) {
     double sum = 0;
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-        double stretched = log(lengths[e] / patch->rest_length[e]);
+        double stretched = ss_log(lengths[e] / patch->rest_length[e]);
         sum += stretched * stretched;
     }
     return sqrt(sum / patch->faces.edge_count);

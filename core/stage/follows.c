@@ -4,7 +4,6 @@
 
 #include "schema.inc"
 
-#include <ctype.h>
 #include <string.h>
 
 static const struct {
@@ -59,12 +58,17 @@ static bool is_directional(const char *type) {
 
 enum { LONGEST = 64 };
 
+/* Not tolower, for which I has no lower case where a host speaks Turkish. */
+static char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
 /* The last part of a primvar's name, in lower case. */
 static void read_name(const char *primvar, char name[LONGEST]) {
     const char *last = strrchr(primvar, ':');
     size_t length = 0;
     for (const char *c = last ? last + 1 : primvar; *c && length + 1 < LONGEST; c++)
-        name[length++] = (char)tolower((unsigned char)*c);
+        name[length++] = lower(*c);
     name[length] = 0;
 }
 
