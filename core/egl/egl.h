@@ -138,9 +138,9 @@ typedef struct ss_egl_before {
     EGLint failure; /* of an enter that failed */
 } ss_egl_before;
 
-/* Makes a context, which is not current yet. Fails with NO_DEVICE, naming all that was tried and EGL's error for each. */
 /* A number that one of EGL's devices can have, or SKINSLIDE_ANY_DEVICE. */
 skinslide_status ss_egl_check_device(int32_t device, skinslide_error *error);
+/* Makes a context, which is not current yet. Fails with NO_DEVICE, naming all that was tried and EGL's error for each. */
 skinslide_status ss_egl_open(const ss_device_request *request, ss_egl **out, skinslide_error *error);
 /* NULL does nothing. Never ends the display, which the process shares. */
 void ss_egl_close(ss_egl *egl);

@@ -1,7 +1,7 @@
 /* Steps that turn no face over. In the plane of each face at rest, where its corners slide on straight lines, its area is
  * quadratic in the part of the step that is taken: no face may lose more than a share of what it has over the least, which is a
- * share of its area at rest. What that leaves a face is shared with all faces about each vertex, smoothly, so that steps shrink before they must;
- * what is still too far is cut, easing off over the neighbours, and in the end for all vertices alike. */
+ * share of its area at rest. What that leaves a face is shared with all faces about each vertex, smoothly, so that steps shrink
+ * before they must; what is still too far is cut, easing off over the neighbours, and in the end for all vertices alike. */
 #include "even.h"
 
 #define FAR    30.0 /* parts of a step beyond which a face has no say */

@@ -1,6 +1,6 @@
 /* A mesh as triangles to look at, and from where. */
-#ifndef SKINSLIDE_DRAW_H
-#define SKINSLIDE_DRAW_H
+#ifndef SS_PICTURE_H
+#define SS_PICTURE_H
 
 #include "limit.h"
 #include "skinslide/picture.h"

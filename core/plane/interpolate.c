@@ -1,6 +1,7 @@
 /* From a point in a face laid flat, that of the embedding or that of rest, to a point on the deformed mesh (paper, section 3.4):
- * the weights of the face's corners there, applied to the corners of the deformed face. `linear`: barycentric in a triangle of the fan. `meanValue`: mean
- * value coordinates in the polygon (Floater 2003; Hormann and Floater 2006), smooth across the fan's diagonals. */
+ * the weights of the face's corners there, applied to the corners of the deformed face. `linear`: barycentric in a triangle of the
+ * fan. `meanValue`: mean value coordinates in the polygon (Floater 2003; Hormann and Floater 2006), smooth across the fan's
+ * diagonals. */
 #include "plane.h"
 
 #include <math.h>

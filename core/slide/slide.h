@@ -1,6 +1,6 @@
 /* What is made once a shot, once a thread, and used in every frame. */
-#ifndef SKINSLIDE_SLIDER_H
-#define SKINSLIDE_SLIDER_H
+#ifndef SKINSLIDE_SLIDE_H
+#define SKINSLIDE_SLIDE_H
 
 #include "even.h"
 #include "limit.h"

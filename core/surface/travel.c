@@ -1,4 +1,5 @@
-/* How far each vertex goes along its way: no farther than the artist lets it, measured along the deformed surface. The way is the straight line in the embedding from the vertex's own place to where it belongs. */
+/* How far each vertex goes along its way: no farther than the artist lets it, measured along the deformed surface. The way is the
+ * straight line in the embedding from the vertex's own place to where it belongs. */
 #include "surface.h"
 
 #include <stdlib.h>
