@@ -7,8 +7,13 @@ cd "$root"
 
 out=build/examples
 examples=(elbow fine_elbow bicep face finger sleeve chequer bump)
+unpainted=(body trunk torus)
 stage() { echo "$out/$1/stage.usda"; }
 step() { printf ' %s' "$1"; }
+bake() {
+    "$venv/bin/skinslide" check "$(stage "$1")" >"$out/$1/check.txt"
+    "$venv/bin/skinslide" bake "$(stage "$1")" -o "$out/$1/slid.usdc" --json --quiet >"$out/$1/bake.json"
+}
 measure() {
     step "$1"
     "$python" "examples/measure/$1.py" "${@:2}" >"$out/$1.txt"
@@ -18,8 +23,13 @@ say "Making and baking the examples"
 for example in "${examples[@]}"; do
     step "$example"
     "$python" "examples/$example/make.py" "$out/$example" >/dev/null
-    "$venv/bin/skinslide" check "$(stage "$example")" >"$out/$example/check.txt"
-    "$venv/bin/skinslide" bake "$(stage "$example")" -o "$out/$example/slid.usdc" --json --quiet >"$out/$example/bake.json"
+    bake "$example"
+done
+for example in "${unpainted[@]}"; do
+    step "$example"
+    "$python" "examples/$example/make.py" "$out/$example" >/dev/null
+    "$venv/bin/skinslide" setup "$out/$example/shot.usda" -o "$(stage "$example")" --whole --force >"$out/$example/setup.txt"
+    bake "$example"
 done
 step "shot"
 "$python" examples/shot/make.py "$out/shot" >/dev/null
@@ -39,7 +49,8 @@ echo
 
 say "Measuring"
 measure lookup "$out"
-measure limit_distance "$out"/*/stage.usda
+painted=("${examples[@]/#/$out/}")
+measure limit_distance "${painted[@]/%//stage.usda}"
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 measure normals "$out"/{elbow,sleeve,chequer}/stage.usda
 measure share "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda
@@ -59,6 +70,7 @@ Look at these in $out:
 Of each example, as elbow:
   elbow/stage.usda               the cache and its patch; sublayer elbow/slid.usdc above it
   elbow/check.txt bake.json      what was found on the stage, and what happened at each frame
+  body/shot.usda setup.txt       a shot with nothing painted, of which setup --whole made body/stage.usda
 And measured:
   times.txt                      milliseconds of each stage of the walk, patch by patch
   lookup.txt                     how much of the lookup the texture finds

@@ -11,7 +11,7 @@ from makers.makehuman import MissingDataError
 def main(make: Callable[[Path], Path], description: str) -> None:
     """Makes the example; exits with 1 and one line where its data is not installed."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("outdir", type=Path, help="folder for cache.usdc and stage.usda; made where missing")
+    parser.add_argument("outdir", type=Path, help="folder for cache.usdc and the shot; made where missing")
     arguments = parser.parse_args()
     try:
         print(make(arguments.outdir))

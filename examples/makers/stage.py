@@ -1,6 +1,7 @@
-"""Writes an example: `cache.usdc`, as a character department would publish it, and `stage.usda`, the shot.
+"""Writes an example: `cache.usdc`, as a character department would publish it, and the shot.
 
-The shot payloads the cache with a layer offset and carries the patch set-up as ordinary opinions.
+The shot payloads the cache with a layer offset. It is `stage.usda` where it carries a patch set-up, as ordinary
+opinions; without one it is `shot.usda`, for `skinslide setup` to make the other of.
 """
 
 from collections.abc import Iterable
@@ -40,14 +41,15 @@ class Patch:
     corners: tuple[int, ...] | None = None  # four point ids on the outer loop, in order
 
 
-def write(folder: Path, cache: Cache, patch: Patch) -> Path:
+def write(folder: Path, cache: Cache, patch: Patch | None = None) -> Path:
     """Writes both files into `folder`, making it where needed, and returns the shot's path."""
     folder.mkdir(parents=True, exist_ok=True)
     # A stage must outlive the export: it alone keeps its root layer.
     published, shot = _cache_stage(cache), _shot_stage(cache, patch)
     published.GetRootLayer().Export(str(folder / "cache.usdc"))
-    shot.GetRootLayer().Export(str(folder / "stage.usda"))
-    return folder / "stage.usda"
+    path = folder / ("stage.usda" if patch else "shot.usda")
+    shot.GetRootLayer().Export(str(path))
+    return path
 
 
 def _cache_stage(cache: Cache) -> Usd.Stage:
@@ -67,16 +69,17 @@ def _cache_stage(cache: Cache) -> Usd.Stage:
     return stage
 
 
-def _shot_stage(cache: Cache, patch: Patch) -> Usd.Stage:
+def _shot_stage(cache: Cache, patch: Patch | None) -> Usd.Stage:
     stage = _new_stage("World", first_frame=FIRST_SHOT_FRAME)
     world = UsdGeom.Xform.Define(stage, "/World").GetPrim()
     Usd.ModelAPI(world).SetKind(Kind.Tokens.group)
     char = stage.DefinePrim("/World/char", "Xform")
     offset = Sdf.LayerOffset(FIRST_SHOT_FRAME - 1)
     char.GetPayloads().AddPayload(Sdf.Payload("./cache.usdc", layerOffset=offset))
-    prim = stage.OverridePrim(MESH_PATH)
-    prim.AddAppliedSchema(f"SkinSlideAPI:{patch.name}")
-    _write_patch(prim, cache, patch)
+    if patch:
+        prim = stage.OverridePrim(MESH_PATH)
+        prim.AddAppliedSchema(f"SkinSlideAPI:{patch.name}")
+        _write_patch(prim, cache, patch)
     return stage
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdValidation
 
+import skinslide
 from repository import EXAMPLES, load
 
 MESH_PATH = "/World/char/geo/body_GEO"
@@ -269,3 +270,36 @@ def test_the_shot_plays_live(tmp_path):
     assert slides[0] == 0 and slides[-1] > 0.5
     # With one arm halfway they are about half as far apart.
     assert float(half[1]) == pytest.approx(slides[-1] / 2, rel=0.2)
+
+
+# ---- With nothing painted ----
+
+
+@pytest.mark.parametrize("name", ["body", "trunk", "torus"])
+def test_a_shot_that_nobody_painted(name, example_stage, tmp_path):
+    """It is no set-up before `setup --whole`, and then each patch stretches less, with nothing folded."""
+    shot, output = example_stage(name), tmp_path / "stage.usda"
+    stage = Usd.Stage.Open(str(shot))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath(MESH_PATH))
+    assert shot.name == "shot.usda" and not mesh.GetPrim().GetAppliedSchemas()
+    points = mesh.GetPointsAttr()
+    assert np.array_equal(np.array(points.Get()), np.array(points.Get(1001)))
+    (checked,) = skinslide.setup_to_file(shot, output, whole=True).meshes
+    assert {patch.name for patch in checked.patches} == {"skin"}
+    report = skinslide.bake_to_file(output, tmp_path / "slid.usdc", frames="1012" if name == "torus" else "1024")
+    for patch in report.meshes[0].patches:
+        (result,) = patch.results
+        assert result.stretch_after < 0.85 * result.stretch_before and result.folded_faces == 0
+
+
+@pytest.mark.parametrize(("name", "handles"), [("trunk", 0), ("torus", 1)])
+def test_bodies_that_are_closed(name, handles, example_stage):
+    """Every edge has two faces that run it opposite ways, and faces look outwards."""
+    stage = Usd.Stage.Open(str(example_stage(name)))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath(MESH_PATH))
+    points, faces = np.array(mesh.GetPointsAttr().Get()), np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 4)
+    sides = [tuple(side) for face in faces.tolist() for side in zip(face, face[1:] + face[:1], strict=True)]
+    assert len(set(sides)) == len(sides) and {side[::-1] for side in sides} == set(sides)
+    assert len(points) - len(sides) // 2 + len(faces) == 2 - 2 * handles
+    a, b, c, d = (points[faces[:, k]].astype(np.float64) for k in range(4))
+    assert np.einsum("ij,ij->i", a, np.cross(b - a, c - a) + np.cross(c - a, d - a)).sum() > 0
