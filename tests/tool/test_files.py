@@ -195,6 +195,23 @@ NAMED = {
 }
 
 
+@pytest.mark.parametrize(
+    "entry",
+    [
+        'string default = "here"',
+        "dictionary default = {\nint assetPaths = 3\n}",
+        'dictionary default = {\nstring[] assetPaths = ["here.usda"]\n}',
+        'dictionary default = {\nstring manifestAssetPath = "here.usda"\n}',
+        "dictionary default = {\nasset templateAssetPath = @./here.#.usda@\n}",
+    ],
+)
+def test_clips_of_other_types_name_nothing(shot, entry):
+    """As USD has it, which opens such a stage and reads none of them."""
+    layer = shot.with_name("clips.usda")
+    layer.write_text(f'{sublayer(shot.name)}over "World" (\nclips = {{\n{entry}\n}}\n)\n{{\n}}\n')
+    assert main(["check", str(layer)]) == 0
+
+
 @pytest.mark.parametrize("arc", NAMED)
 @pytest.mark.parametrize("extension", ["usda", "skinslide"])
 def test_pipes_that_a_stage_leads_to(arc, extension, tmp_path):

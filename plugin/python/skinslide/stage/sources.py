@@ -103,7 +103,7 @@ def _clips(layer: Sdf.Layer) -> Iterator[str]:
         waiting += [*prim.nameChildren, *_variants(prim)]
         sets = prim.GetInfo("clips") if prim.HasInfo("clips") else {}
         for clips in sets.values():
-            yield from _files(layer, clips)
+            yield from _files(layer, clips) if isinstance(clips, Mapping) else ()
 
 
 def _variants(prim: Sdf.PrimSpec) -> Iterator[Sdf.PrimSpec]:
@@ -112,10 +112,11 @@ def _variants(prim: Sdf.PrimSpec) -> Iterator[Sdf.PrimSpec]:
 
 
 def _files(layer: Sdf.Layer, clips: Mapping[str, Any]) -> Iterator[str]:
-    for asset in [*clips.get("assetPaths", ()), clips.get("manifestAssetPath", Sdf.AssetPath())]:
-        if asset.path:
+    """As USD, passes over what is of another type than it should be."""
+    listed, template = clips.get("assetPaths"), clips.get("templateAssetPath")
+    for asset in [*(listed if isinstance(listed, Sdf.AssetPathArray) else ()), clips.get("manifestAssetPath")]:
+        if isinstance(asset, Sdf.AssetPath) and asset.path:
             yield Sdf.ComputeAssetPathRelativeToLayer(layer, asset.path)
-    template = clips.get("templateAssetPath", "")
-    if template:
+    if isinstance(template, str) and template:
         pattern = glob.escape(Sdf.ComputeAssetPathRelativeToLayer(layer, template))
         yield from glob.iglob(re.sub("#+", "*", pattern))
