@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.arrays import slider
 from skinslide.arrays.apart import APART, apart, goes_on
 from skinslide.shot.workers import pool_of
+from skinslide.stage.textures import give_files
 
 SIZE = 12  # quads a side
 VERTICES, FACES = (SIZE + 1) ** 2, SIZE**2
@@ -307,6 +309,33 @@ def test_a_signal_is_answered_while_a_call_goes_on():
         apart(call, signal.SIGINT)
     assert goes_on()
     end_all(ended)
+
+
+class Reading:
+    """Controls that want a file, and read it when nobody waits for them any more."""
+
+    def __init__(self, path):
+        self.path, self.ended, self.read = path, threading.Event(), b""
+
+    def need(self):
+        return SimpleNamespace(path=str(self.path), largest=99)
+
+    def holds(self, path):
+        return False
+
+    def give(self, file):
+        os.kill(os.getpid(), signal.SIGINT)
+        self.ended.wait()
+        self.read = os.pread(file.descriptor, file.size, 0)
+
+
+def test_a_file_stays_open_for_as_long_as_it_is_read(tmp_path):
+    (tmp_path / "map.exr").write_bytes(b"texels")
+    controls = Reading(tmp_path / "map.exr")
+    with pytest.raises(KeyboardInterrupt):
+        give_files(controls)
+    end_all(controls.ended)
+    assert controls.read == b"texels"
 
 
 def test_what_a_call_apart_gives():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 
 from pxr import Ar, Sdf, Tf, Usd, UsdShade
 
@@ -17,8 +17,15 @@ def give_files(controls: ControlsMeaning) -> None:
     """Gives every file that is asked for. Raises Fault."""
     while need := controls.need():
         resolved = Ar.GetResolver().Resolve(need.path).GetPathString()
-        with _file(controls, resolved, need.largest) as file:
-            apart(controls.give, file)
+        with ExitStack() as closing:
+            file = _file(controls, resolved, need.largest, closing)
+            apart(_give, controls, file, closing.pop_all())
+
+
+def _give(controls: ControlsMeaning, file: File, closing: ExitStack) -> None:
+    """What is open stays so for as long as it is read, though a signal left nobody to wait for that."""
+    with closing:
+        controls.give(file)
 
 
 def texture_files(prim: Usd.Prim, patch: str) -> Iterator[str]:
@@ -38,15 +45,12 @@ def _all_files(attribute: Usd.Attribute, time: Usd.TimeCode, asset: Sdf.AssetPat
         yield asset.resolvedPath
 
 
-@contextmanager
-def _file(controls: ControlsMeaning, path: str, largest: int) -> Iterator[File]:
+def _file(controls: ControlsMeaning, path: str, largest: int, closing: ExitStack) -> File:
     """A resolved file, which may lie in a package."""
-    with ExitStack() as closing:
-        try:
-            file = _opened(controls, path, largest, closing)
-        except (OSError, RuntimeError, Tf.ErrorException) as error:
-            file = File(path, reason=" ".join(str(error).split()))
-        yield file
+    try:
+        return _opened(controls, path, largest, closing)
+    except (OSError, RuntimeError, Tf.ErrorException) as error:
+        return File(path, reason=" ".join(str(error).split()))
 
 
 def _opened(controls: ControlsMeaning, path: str, largest: int, closing: ExitStack) -> File:
