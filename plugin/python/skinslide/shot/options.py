@@ -52,8 +52,9 @@ class SlideOptions(Options):
         checks.lookup,
         "--lookup",
         choices=("auto", "egl", "exact"),
-        help="how rest vertices are looked up in a frame; the result is the same: egl renders a colour a face, exact "
-        "walks, auto is egl where EGL has a hardware device and exact elsewhere (default: %(default)s)",
+        help="how rest vertices are looked up in a frame by the rules unit and fast; the result is the same: egl "
+        "renders a colour a face, exact walks, auto is egl where EGL has a hardware device and exact elsewhere "
+        "(default: %(default)s)",
     )
     jobs: int = option(
         1,
