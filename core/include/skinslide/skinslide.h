@@ -312,8 +312,8 @@ typedef struct skinslide_slider skinslide_slider;
  * Fails with BAD_MESH (an index out of range, counts that do not add up, and in patches faces of fewer than three or of
  * repeated vertices), BAD_POINTS (rest points not finite), BAD_PATCH (no faces, a face twice or out of range, no boundary, an
  * edge with three faces, faces wound against each other, a boundary that touches itself, faces that meet in a vertex alone, a
- * handle; EVEN needs no boundary, takes handles, and lets vertices at which faces meet in a point stay), BAD_CONTROL (a
- * density or a hold not > 0, a response not in 0..1, a weight not finite, a largest distance not
+ * handle; RELAXED and EVEN need no boundary, take handles, and let vertices at which faces meet in a point stay), BAD_CONTROL
+ * (a density or a hold not > 0, a response not in 0..1, a weight or an envelope that is not a number, a largest distance not
  * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice),
  * SINGULAR, UNSUPPORTED (FREE_ALL by UNIT or FAST), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
@@ -334,7 +334,7 @@ typedef struct skinslide_patch_info {
     int32_t setup;             /* its number, from 0 */
     int32_t piece;             /* of this set-up, from 0 */
     int32_t piece_count;       /* of this set-up */
-    int32_t vertex_count;      /* of the patch; EVEN splits those at which faces meet in a point, and has them stay */
+    int32_t vertex_count;      /* of the patch; RELAXED and EVEN split those at which faces meet in a point, which stay */
     int32_t edge_count;        /* of the patch, each once */
     int32_t face_count;        /* of the patch */
     int32_t free_count;        /* vertices that may slide */
@@ -355,7 +355,8 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slide
                                                            skinslide_patch_info *info, skinslide_error *error);
 
 /* The vertices of a patch.
- *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending: more than once where it is split
+ *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending: more than once where it is split;
+ *                 of those that are one, that which they are one with
  * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
                                                                skinslide_error *error);

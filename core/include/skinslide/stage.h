@@ -16,12 +16,13 @@
  *        files that skinslide_stage_controls_need asks for.
  *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the inputs of the group SUBDIVISION to
  *        skinslide_stage_mesh_take.
- *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes.
+ *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes; with the weld that comes of
+ *        skinslide_stage_mesh_weld, which is shown every sample of points.
  *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
  *        that of step 4, is given those that do, and skinslide_stage_controls_get gives what skinslide_slide takes.
  *     8. What follows from points: skinslide_stage_derived_create, each input of the group DERIVED and each primvar that
- *        skinslide_stage_derived_offer accepts to skinslide_stage_derived_take, then skinslide_stage_derived_value for each of
- *        its outputs at each time.
+ *        skinslide_stage_derived_offer accepts to skinslide_stage_derived_take, its later samples to
+ *        skinslide_stage_derived_check, then skinslide_stage_derived_value for each of its outputs at each time.
  * Every sentence names the property by the name in its record, and the element; the reader puts prim, patch and frame in front.
  * A handle that refused a value may be given the others all the same, so that a reader can say all that is wrong; it then gives
  * nothing, until a value that it can use takes the place of the refused one.
@@ -253,7 +254,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_get(const skinslide_stage_me
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_mesh *mesh, skinslide_mesh *out,
                                                           skinslide_error *error);
 
-/* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the library. */
+/* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the mesh. */
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
 
 /* Begins to find which vertices are one, as skinslide_weld_create, as near as skinSlide:weldTolerance says.
