@@ -35,7 +35,7 @@ struct skinslide_stage_derived {
     const skinslide_stage_mesh *mesh;
     double *point_times; /* [point_time_count] as authored; merged they are fewer */
     int64_t point_time_count;
-    double *merged;
+    double *merged; /* and, once filled, the frames between */
     int64_t merged_count;
     double rate;
     bool primvar_counts;       /* primvars:normals win over normals */
@@ -106,6 +106,26 @@ skinslide_status skinslide_stage_derived_create(const skinslide_stage_mesh *mesh
         skinslide_stage_derived_destroy(derived);
     else
         *out = derived;
+    return status;
+}
+
+skinslide_status skinslide_stage_derived_fill(skinslide_stage_derived *derived, skinslide_error *error) {
+    if (!derived)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "nothing derived");
+    int64_t count = derived->merged_count, more = 0;
+    skinslide_status status = skinslide_stage_times_between(derived->merged, count, NULL, &more, error);
+    if (status || !more)
+        return status;
+    double *filled = SS_NEW(&derived->memory, double, count + more);
+    if (!filled)
+        return ss_out_of_memory(error);
+    memcpy(filled, derived->merged, (size_t)count * sizeof *filled);
+    status = skinslide_stage_times_between(filled, count, filled + count, &more, error);
+    count += more;
+    if (!status)
+        status = skinslide_stage_merge_times(filled, &count, error);
+    if (!status)
+        derived->merged = filled, derived->merged_count = count;
     return status;
 }
 

@@ -1,4 +1,5 @@
-/* Times: how those of several sources become one list, which are next to a time, and how they are written. */
+/* Times: how those of several sources become one list, which frames lie between, which are next to a time, and how they are
+ * written. */
 #include "stage.h"
 
 #include <math.h>
@@ -8,6 +9,9 @@
 
 /* Layer offsets leave noise of this size on the times of samples that were authored at one time. */
 static const double same_time = 1e-6;
+
+/* Of frames between samples. */
+static const int64_t most_between = 10000000;
 
 typedef struct moment {
     double time;
@@ -44,6 +48,33 @@ skinslide_status skinslide_stage_merge_times(double *times, int64_t *count, skin
         times[i] = moments[i].time;
     *count = kept;
     ss_free(&scratch);
+    return SKINSLIDE_OK;
+}
+
+/* The whole times between two that lie more than 1 apart; those within noise of either are that one. Returns how many. */
+static double span_between(double before, double after, double *first) {
+    *first = floor(before + same_time) + 1;
+    return after - before > 1 + same_time ? fmax(ceil(after - same_time) - *first, 0) : 0;
+}
+
+skinslide_status skinslide_stage_times_between(const double *times, int64_t count, double *between, int64_t *between_count,
+                                               skinslide_error *error) {
+    if (count < 0 || (count > 0 && !times) || !between_count)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no times, a negative count of them, or no place for how many there are");
+    int64_t found = 0;
+    for (int64_t i = 1; i < count; i++) {
+        double first, more = span_between(times[i - 1], times[i], &first);
+        char frame[32];
+        skinslide_stage_frame_text(times[i], frame);
+        if (more > (double)(most_between - found))
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT,
+                           "by frame %s there are more than %lld frames between samples; name the frames that are wanted",
+                           frame, (long long)most_between);
+        for (int64_t k = 0; k < (int64_t)more; k++, found++)
+            if (between)
+                between[found] = first + (double)k;
+    }
+    *between_count = found;
     return SKINSLIDE_OK;
 }
 

@@ -152,16 +152,26 @@ std::vector<Patch> readPatches(Composition &composition, const Prim &prim, const
     return patches;
 }
 
+void merge(std::vector<double> *times) {
+    int64_t count = static_cast<int64_t>(times->size());
+    call(skinslide_stage_merge_times, times->data(), &count);
+    times->resize(static_cast<size_t>(count));
+}
+
 // As the core merges them, the samples of points first: where times differ by noise, theirs gives a sample as it was authored.
+// With the frames between.
 std::vector<double> timesOf(const PatchedMesh &mesh) {
     std::vector<double> times = mesh.points.attribute().times();
     for (const Patch &patch : mesh.patches) {
         std::vector<double> more = patch.times();
         times.insert(times.end(), more.begin(), more.end());
     }
-    int64_t count = static_cast<int64_t>(times.size());
-    call(skinslide_stage_merge_times, times.data(), &count);
-    times.resize(static_cast<size_t>(count));
+    merge(&times);
+    int64_t count = static_cast<int64_t>(times.size()), more = 0;
+    call(skinslide_stage_times_between, times.data(), count, nullptr, &more);
+    times.resize(static_cast<size_t>(count + more));
+    call(skinslide_stage_times_between, times.data(), count, times.data() + count, &more);
+    merge(&times);
     return times;
 }
 
@@ -189,6 +199,7 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
         make<DerivedHandle>(skinslide_stage_derived_create, mesh->mesh.get(), pointTimes.data(),
                             static_cast<int64_t>(pointTimes.size()), composition.root()->GetTimeCodesPerSecond());
     skinslide_stage_derived *derived = mesh->derivation.get();
+    call(skinslide_stage_derived_fill, derived);
     std::vector<Property> cached = properties(composition, prim, SKINSLIDE_STAGE_DERIVED);
     addOffered(composition, prim, derived, &cached);
     for (const Property &property : cached) {

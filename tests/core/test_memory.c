@@ -363,11 +363,13 @@ static skinslide_status run_stage_controls(const stage_scene *s, skinslide_stage
 }
 
 static skinslide_status run_stage_derived(const skinslide_stage_mesh *mesh, skinslide_error *error) {
-    const double times[] = {1, 2};
+    const double times[] = {1, 3};
     const skinslide_value none = blocked_of("velocities");
     const skinslide_stage_input *input;
     skinslide_stage_derived *derived = NULL;
     skinslide_status status = skinslide_stage_derived_create(mesh, times, 2, 24, &derived, error);
+    if (!status)
+        status = skinslide_stage_derived_fill(derived, error);
     if (!status)
         status = skinslide_stage_derived_offer(derived, "primvars:tangents", "vector3f[]", "vertex", 1, &input, error);
     if (!status)

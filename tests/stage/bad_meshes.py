@@ -52,6 +52,10 @@ def faces_that_change(scene: Scene) -> None:
         put(FACES, Types.BoolArray, "uniform", [True] * 35 + [last], frame)(scene)
 
 
+def ages_apart(scene: Scene) -> None:
+    scene.points.Set(scene.points.Get(FRAMES[-1]), 2e7)
+
+
 def fewer_points(scene: Scene) -> None:
     scene.points.Set(stages.vectors(np.zeros((48, 3))), FRAMES[1])
 
@@ -331,6 +335,12 @@ GEOMETRY = [
         "mesh: counts beyond int",
         topology(counts=lambda _: [2**31 - 1] * 36),
         "faceVertexCounts add up to 77309411292, but faceVertexIndices has 144 values",
+        None,
+    ),
+    Bad(
+        "times: samples ages apart",
+        ages_apart,
+        "by frame 20000000 there are more than 10000000 frames between samples; name the frames that are wanted",
         None,
     ),
     Bad("mesh: negative count", counts_end_with(-4), "face 35 has -4 vertices", None),

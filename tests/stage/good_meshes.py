@@ -123,6 +123,18 @@ def points_of_a_variant(scene: Scene) -> None:
     scene.prim.RemoveProperty("points")
 
 
+SPARSE = (1001.0, 1004.5, 1008.0)
+
+
+def far_apart(scene: Scene) -> None:
+    """Samples of points more than one time code apart."""
+    points = [scene.points.Get(frame) for frame in FRAMES]
+    for frame in FRAMES:
+        scene.points.ClearAtTime(frame)
+    for frame, value in zip(SPARSE, points, strict=True):
+        scene.points.Set(value, frame)
+
+
 def skinned_earlier(scene: Scene) -> None:
     """The skinning was baked: there are samples."""
     UsdSkel.BindingAPI.Apply(scene.prim).CreateJointIndicesPrimvar(False, 1).Set([0] * 49)
@@ -348,6 +360,18 @@ TIMES = [
         setting("envelope", 0.0),
         file=text(body=over(f"float {PLACE}:envelope.timeSamples = {{ 1001: 0, 1002.5: 1 }}")),
     ),
+    Good("times: samples far apart", far_apart),
+    Good(
+        "times: samples far apart, with rates, normals and controls",
+        all_of(
+            far_apart,
+            vectors("velocities", 49, SPARSE),
+            vectors("accelerations", 49, SPARSE),
+            normals("vertex", 49, SPARSE),
+            sampled("envelope", {1001: 0.25, 1002.5: 0.5, 1010.5: 1.0}),
+        ),
+    ),
+    Good("times: controls far apart over still points", all_of(still, sampled("envelope", {1001: 0.0, 1004: 1.0}))),
     Good("weld: a point for each corner", shape=split_grid),
     Good("weld: off", retyped("skinSlide:weld", Types.Bool, False), shape=split_grid, slides=False),
     Good("weld: a tolerance", all_of(apart, retyped("skinSlide:weldTolerance", Types.Float, 1e-4)), shape=split_grid),

@@ -483,6 +483,15 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_p
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_merge_times(double *times, int64_t *count, skinslide_error *error);
 
+/* The frames between samples. Slid points do not go straight from one sample to the next, as cached ones do: where samples lie
+ * more than 1 apart, the whole times between are to be slid too.
+ *   times          in   [count] as skinslide_stage_merge_times leaves them
+ *   between        out  [*between_count], ascending; NULL: they are only counted
+ *   between_count  out
+ * Fails with BAD_ARGUMENT (more than 10,000,000: names the frame by which there are). */
+SKINSLIDE_API skinslide_status skinslide_stage_times_between(const double *times, int64_t count, double *between,
+                                                             int64_t *between_count, skinslide_error *error);
+
 /* "1012" for 1012.0 and "1012.25" for 1012.25, without the noise of layer offsets: how sentences write a frame.
  *   text  out [32] */
 SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
@@ -501,6 +510,11 @@ typedef struct skinslide_stage_derived skinslide_stage_derived;
 SKINSLIDE_API skinslide_status skinslide_stage_derived_create(const skinslide_stage_mesh *mesh, const double *point_times,
                                                               int64_t point_time_count, double rate,
                                                               skinslide_stage_derived **out, skinslide_error *error);
+
+/* Takes the frames between samples of points, as skinslide_stage_times_between has them, for slid too: rates of change are then
+ * those from frame to frame.
+ * Fails as skinslide_stage_times_between, and with OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_fill(skinslide_stage_derived *derived, skinslide_error *error);
 
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_derived_destroy(skinslide_stage_derived *derived);

@@ -431,6 +431,23 @@ static void rates_are_recomputed(void **state) {
     tear_down(&s);
 }
 
+/* Of samples far apart: from frame to frame, of which there are enough where samples alone are too few. */
+static void rates_from_frame_to_frame(void **state) {
+    (void)state;
+    const double far[] = {1, 4};
+    scene s = set_up_at(far, 2, 24);
+    assert_ok(skinslide_stage_derived_fill(s.derived, &error), &error);
+    assert_ok(skinslide_stage_derived_fill(s.derived, &error), &error);
+    take(&s, "", "velocities", vectors("velocities", VERTICES), far, 2);
+    take(&s, "", "accelerations", vectors("accelerations", VERTICES), far, 2);
+    EXPECT_TIMES(&s, 0, 1, 1, 2);
+    EXPECT_TIMES(&s, 0, 2, 1, 3);
+    EXPECT_TIMES(&s, 0, 4, 3, 4);
+    EXPECT_TIMES(&s, 1, 2, 1, 2, 3);
+    tear_down(&s);
+    assert_fails(skinslide_stage_derived_fill(NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "nothing derived");
+}
+
 static void why_rates_are_blocked(void **state) {
     (void)state;
     static const double rates[] = {0, -24, NAN, INFINITY};
@@ -505,6 +522,7 @@ int main(void) {
         cmocka_unit_test(what_nobody_knows_how_to_carry),
         cmocka_unit_test(poses_that_a_value_takes),
         cmocka_unit_test(rates_are_recomputed),
+        cmocka_unit_test(rates_from_frame_to_frame),
         cmocka_unit_test(why_rates_are_blocked),
         cmocka_unit_test(arguments_that_are_none),
     };

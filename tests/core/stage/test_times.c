@@ -47,6 +47,48 @@ static void times_that_are_none(void **state) {
     assert_int_equal(skinslide_stage_merge_times(times, &negative, &error), SKINSLIDE_BAD_ARGUMENT);
 }
 
+static void expect_between(int64_t count, const double *times, int64_t expected_count, const double *expected) {
+    double between[8];
+    int64_t counted = -1, found = -1;
+    assert_ok(skinslide_stage_times_between(times, count, NULL, &counted, &error), &error);
+    assert_ok(skinslide_stage_times_between(times, count, between, &found, &error), &error);
+    assert_int_equal(counted, expected_count);
+    assert_int_equal(found, expected_count);
+    for (int64_t i = 0; i < expected_count; i++)
+        assert_true(between[i] == expected[i]);
+}
+
+static void frames_between_samples_that_are_more_than_one_apart(void **state) {
+    (void)state;
+    expect_between(0, NULL, 0, NULL);
+    expect_between(TIMES(1, 2, 3), 0, NULL);
+    expect_between(TIMES(1.5, 2.25), 0, NULL);
+    expect_between(TIMES(1, 3, 4, 6.5), TIMES(2, 5, 6));
+    expect_between(TIMES(-1.5, 0.75), TIMES(-1, 0));
+}
+
+/* A sample that noise has moved off a frame is that frame. */
+static void noise_makes_no_frame(void **state) {
+    (void)state;
+    expect_between(TIMES(1, 2 + 1e-9), 0, NULL);
+    expect_between(TIMES(1 - 1e-9, 3 + 1e-9), TIMES(2));
+    expect_between(TIMES(1 + 1e-9, 3 - 1e-9), TIMES(2));
+}
+
+static void frames_that_are_too_many(void **state) {
+    (void)state;
+    int64_t count = -1;
+    const double times[] = {-4e6, 0, 7e6}, far[] = {-DBL_MAX, DBL_MAX};
+    const char *message =
+        "by frame 7000000 there are more than 10000000 frames between samples; name the frames that are wanted";
+    assert_fails(skinslide_stage_times_between(times, 3, NULL, &count, &error), &error, SKINSLIDE_BAD_ARGUMENT, message);
+    assert_int_equal(count, -1);
+    assert_int_equal(skinslide_stage_times_between(far, 2, NULL, &count, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_stage_times_between(NULL, 1, NULL, &count, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_stage_times_between(times, -1, NULL, &count, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_stage_times_between(times, 2, NULL, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
+}
+
 static void expect_text(double frame, const char *expected) {
     char text[32];
     skinslide_stage_frame_text(frame, text);
@@ -69,9 +111,9 @@ static void frames_as_people_write_them(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(times_are_merged_in_order),
-        cmocka_unit_test(the_first_given_stays),
-        cmocka_unit_test(times_that_are_none),
+        cmocka_unit_test(times_are_merged_in_order),   cmocka_unit_test(the_first_given_stays),
+        cmocka_unit_test(times_that_are_none),         cmocka_unit_test(frames_between_samples_that_are_more_than_one_apart),
+        cmocka_unit_test(noise_makes_no_frame),        cmocka_unit_test(frames_that_are_too_many),
         cmocka_unit_test(frames_as_people_write_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -140,6 +140,15 @@ def nothing_to_slide(where: str) -> str:
     return text(error.message)
 
 
+def times_between(times: Sequence[float]) -> list[float]:
+    """The whole times between those of a merged list that are more than 1 apart. Raises Fault for too many."""
+    given, count = ffi.new("double[]", list(times)), ffi.new("int64_t *")
+    _call(lib.skinslide_stage_times_between, given, len(given), ffi.NULL, count)
+    between = ffi.new("double[]", count[0])
+    _call(lib.skinslide_stage_times_between, given, len(given), between, count)
+    return list(between)
+
+
 def merge_times(times: Iterable[float]) -> list[float]:
     """Times in order; of those that differ by noise only, the one given first."""
     merged = np.array(list(times), np.float64)
@@ -535,6 +544,10 @@ class DerivedMeaning:
         times = ffi.new("double[]", list(point_times))
         _call(lib.skinslide_stage_derived_create, mesh.handle, times, len(times), rate, out)
         self.handle = Handle(out[0], lib.skinslide_stage_derived_destroy, mesh.handle)
+
+    def fill(self) -> None:
+        """Takes the frames between samples of points for slid too."""
+        _call(lib.skinslide_stage_derived_fill, self.handle)
 
     def offer(self, name: str, type_name: str, interpolation: str | None, element_size: int) -> Input | None:
         """The input that a primvar is to be taken as; None where it does not follow, or nobody knows how."""

@@ -212,7 +212,7 @@ class _Previewing(Making):
 
     def _sheet_path(self, folder: OutputFolder, number: int) -> Path:
         """With the frames that were asked for, so that tasks of a farm do not take each other's."""
-        asked = self._options.frames
+        asked = self._options.named
         ends = [frame_label(frame) for frame in dict.fromkeys((asked[0], asked[-1]))] if asked else []
         words = ["contact_sheet", *(["-".join(ends)] if ends else []), *([str(number + 1)] if number else [])]
         return folder.folder / ".".join([*words, "png"])

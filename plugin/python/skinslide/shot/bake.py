@@ -56,8 +56,9 @@ def bake_to_file(
         stage: The stage, or its path; never written.
         output: The layer: .usda, .usdc or .usd, written whole or not at all.
         prims: Prims, of which the meshes with patches at and below them are baked; None: every mesh with a patch.
-        frames: Stage times, or a spec such as "101:109x2"; None: the authored samples. A mesh without samples has one
-            value, written as a default, whatever the frames.
+        frames: Stage times, or a spec such as "101:109x2"; None: the samples, and the whole time codes between those
+            more than one apart, where slid points do not go straight; "authored": the samples alone. A mesh without
+            samples has one value, written as a default, whatever the frames.
         lookup: auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had.
         jobs: Frames slid at once; the result does not depend on it.
         progress: Called after each frame with the frames done and in all.
@@ -190,7 +191,7 @@ class _MeshBake(MeshMaking):
 
     def __init__(self, planned: PlannedMesh, report: MeshReport, baking: _Baking):
         self._mesh, self._patches, self._report, self._baking = planned.mesh, planned.slider.patches, report, baking
-        self._derived = Derived(planned.mesh)
+        self._derived = Derived(planned.mesh, between=planned.between)
         self.turns = self._derived.carries
         self._diagnostics = baking.options.diagnostics
 

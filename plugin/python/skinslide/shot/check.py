@@ -15,7 +15,16 @@ from skinslide.arrays.meaning import Texture
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
-from skinslide.problems import FrameProblem, Problem, SliderError, UsageError, errors, frame_text, lines_text
+from skinslide.problems import (
+    FrameProblem,
+    Problem,
+    SliderError,
+    StageProblems,
+    UsageError,
+    errors,
+    frame_text,
+    lines_text,
+)
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
@@ -92,7 +101,7 @@ class CheckedMesh:
         faces: How many it has.
         rest: Where its rest points were found, such as primvars:Pref.
         welded: Points that are one with others, since they are in one place.
-        samples: The stage times that would be written.
+        samples: The stage times that would be written, the frames between samples of the stage too.
         patches: Every piece of every patch.
         maps: The textures that are painted by.
     """
@@ -260,9 +269,15 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     problems += _overlaps(mesh)
     problems += _neighbours(mesh, slider) if slider else ()
     problems += _cache_problems(mesh)
-    problems += Derived(mesh).problems
-    times = mesh.sample_times()
-    problems += sample_problems(mesh, times)
+    problems += Derived(mesh, between=mesh.interpolates).problems
+    samples = mesh.sample_times()
+    problems += sample_problems(mesh, samples)
+    try:
+        times = mesh.frame_times()
+        problems += mesh.between_problems()
+    except StageProblems as bad:
+        times = samples
+        problems += bad.problems
     pairs = zip(mesh.patches, mesh.animation, strict=True)
     used = [_checked_map(patch.name, each) for patch, read in pairs for each in read.textures]
     faces = mesh.topology.face_count

@@ -11,11 +11,11 @@ from dataclasses import Field, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from skinslide.problems import SliderError, UsageError, not_one_of
-from skinslide.shot.frames import checked_frames
+from skinslide.shot.frames import AUTHORED, checked_frames
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
-    from skinslide.shot.frames import FramesLike
+    from skinslide.shot.frames import AskedFrames, FramesLike
     from skinslide.stage.given import PrimLike, PrimsLike
 
 Check = Callable[[str, Any], Any]  # name and value of an option; gives what it holds, or raises UsageError
@@ -122,8 +122,8 @@ def positive(name: str, number: Any) -> float:
     return found
 
 
-def frames(_name: str, given: FramesLike) -> list[float]:
-    return checked_frames(given)
+def frames(_name: str, given: FramesLike) -> AskedFrames:
+    return AUTHORED if isinstance(given, str) and given == AUTHORED else checked_frames(given)
 
 
 def lookup(_name: str, asked: str | Lookup) -> Lookup:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -26,16 +27,20 @@ class Value(NamedTuple):
 class Derived:
     """The attributes of one mesh to recompute beside its points, and those to block because they cannot be."""
 
-    def __init__(self, mesh: PatchedMesh):
+    def __init__(self, mesh: PatchedMesh, *, between: bool):
+        """between: whether the frames between samples are slid too."""
         self.problems: list[Problem] = []
         self.blocked: list[Usd.Attribute] = []
         self._mesh = mesh
         points = UsdGeom.PointBased(mesh.prim).GetPointsAttr().GetTimeSamples()
         self._meaning = DerivedMeaning(mesh.meaning, points, mesh.stage.GetTimeCodesPerSecond())
+        with contextlib.suppress(Fault):  # too many, of which some are named
+            if between:
+                self._meaning.fill()
         sources = [*(Source(mesh.prim, each) for each in inputs("derived")), *_offered(mesh.prim, self._meaning)]
         self._sources = {source.wanted.property(): source for source in sources}
         for source in sources:
-            self._meaning.take(source.wanted, source.first(), _samples(source))
+            self._meaning.take(source.wanted, source.first(), source.samples())
         for said in self._meaning.warnings():
             self._warn(said)
         self._recomputed: list[Output] = []
@@ -75,7 +80,7 @@ class Derived:
         source = self._sources[output.name]
         poses = [_pose(each, frames) for each in self._times_of(output, time)]
         # Normals may move over points that do not.
-        samples = _samples(source) if time.IsDefault() else []
+        samples = source.samples() if time.IsDefault() else []
         array = Vt.Vec3dArray if output.is_double else Vt.Vec3fArray
         for sample in map(Usd.TimeCode, samples or [time]):
             recomputed = self._meaning.value(output, source.at(sample), poses)
@@ -98,12 +103,6 @@ def _offered(prim: Usd.Prim, meaning: DerivedMeaning) -> Iterator[Source]:
             interpolation = primvar.GetAttr().GetMetadata("interpolation")
             wanted = meaning.offer(name, str(primvar.GetTypeName()), interpolation, primvar.GetElementSize())
             yield from [Source(prim, wanted)] if wanted else []
-
-
-def _samples(source: Source) -> list[float]:
-    """Those of a value and of its indices."""
-    there = [each for each in (source.attribute, source.indices) if each]
-    return sorted({time for attribute in there for time in attribute.GetTimeSamples()})
 
 
 def _pose(time: Usd.TimeCode, frames: SlidFrames) -> Pose:

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterable
 from fractions import Fraction
-from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, SupportsFloat, TypeAlias
 
 from skinslide.problems import MOST_FRAMES, FrameSpecError
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 FrameLike: TypeAlias = "SupportsFloat | Usd.TimeCode"
 FramesLike: TypeAlias = "Iterable[FrameLike] | str"
+AskedFrames: TypeAlias = list[float] | Literal["authored"] | None  # None: samples, and the frames between
+AUTHORED: Final = "authored"  # samples alone
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 _PART = re.compile(rf"(?P<first>{_NUMBER})(?:[:-](?P<last>{_NUMBER})(?:x(?P<step>{_NUMBER}))?)?", re.ASCII)

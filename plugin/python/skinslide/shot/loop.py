@@ -4,7 +4,7 @@ ask each product what it can know           where its files go; any error: stop 
 meshes, problems = read the stage           any error: stop here
 for each mesh: its slider                   patches embedded at rest, once a shot
 for each mesh of which something is made:
-    times = --frames, or the authored samples of points and animated controls, or the default
+    times = --frames, or the samples of points and animated controls and the frames between, or the default
     for each time in order, and the times beside it that velocities need, each once, several at once:
         points, controls, and what products read        on this thread
         slide; what products make of the frame          on a thread of the pool

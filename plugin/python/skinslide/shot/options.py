@@ -15,7 +15,7 @@ from skinslide.shot.checks import Options, option, or_none
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
-    from skinslide.shot.frames import FramesLike
+    from skinslide.shot.frames import AskedFrames, FramesLike
     from skinslide.stage.given import PrimLike, PrimsLike
 
 Names: TypeAlias = Sequence[str] | str | None
@@ -39,13 +39,14 @@ class SlideOptions(Options):
         help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch). What "
         "USD cannot compose elsewhere, such as a missing payload, is then a warning and no error",
     )
-    frames: list[float] | None = option(
+    frames: AskedFrames = option(
         None,
         or_none(checks.frames),
         "--frames",
         metavar="SPEC",
         help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
-        "(default: the authored samples of points and of animated controls; a mesh without any has one default value)",
+        "(default: the samples of points and of animated controls, and the whole time codes between those more than "
+        "one apart; authored: the samples alone; a mesh without any has one default value)",
     )
     lookup: Lookup = option(
         "auto",
@@ -64,6 +65,11 @@ class SlideOptions(Options):
         metavar="N",
         help="frames in hand at once; the result is the same (default: the processors, here %(default)s)",
     )
+
+    @property
+    def named(self) -> list[float]:
+        """The frames that are named."""
+        return self.frames if isinstance(self.frames, list) else []
 
     @classmethod
     def of(cls, prims: Prims, frames: Frames, lookup: str | Lookup, jobs: int) -> SlideOptions:

@@ -11,6 +11,7 @@ from pxr import Usd
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems, UsageError, errors, frame_text
+from skinslide.shot.frames import AUTHORED, AskedFrames
 from skinslide.shot.options import SlideOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
@@ -19,6 +20,7 @@ class PlannedMesh(NamedTuple):
     mesh: PatchedMesh
     slider: Slider
     times: list[Usd.TimeCode]  # ascending
+    between: bool  # whether the frames between samples are slid too, be they among these or not
 
     @property
     def frames(self) -> list[float]:
@@ -39,8 +41,10 @@ class Plan:
         found, problems = read_sliders(stage, options.prims, options.lookup)
         if errors(problems):
             raise StageProblems(problems)
-        planned = [PlannedMesh(mesh, slider, _times(mesh, options.frames)) for mesh, slider in found if slider]
-        return cls(planned, problems + list(_outside(planned, options.frames)))
+        planned = [_planned(mesh, slider, options.frames) for mesh, slider in found if slider]
+        if options.frames is None:
+            problems += [said for mesh, *_ in planned for said in mesh.between_problems()]
+        return cls(planned, problems + list(_outside(planned, options.named)))
 
     def check_patches(self, wanted: Sequence[str] | None) -> None:
         """Raises UsageError for no names, and StageProblems for those that no mesh has."""
@@ -69,22 +73,27 @@ def read_sliders(
     return list(zip(meshes, sliders, strict=True)), problems
 
 
-def _outside(meshes: list[PlannedMesh], asked: list[float] | None) -> Iterator[Problem]:
+def _outside(meshes: list[PlannedMesh], named: list[float]) -> Iterator[Problem]:
     """Warns of frames beyond the samples of a mesh, where USD holds the nearest."""
-    for mesh, _, _ in meshes:
+    for mesh, *_ in meshes:
         samples = mesh.sample_times()
-        outside = [frame for frame in asked or () if samples and not samples[0] <= frame <= samples[-1]]
+        outside = [frame for frame in named if samples and not samples[0] <= frame <= samples[-1]]
         if outside:
             span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
             message = f"{len(outside)} frames are beyond the samples, which go {span}; the nearest is held there"
             yield Problem("warning", mesh.path, None, outside[0], message)
 
 
-def _times(mesh: PatchedMesh, asked: list[float] | None) -> list[Usd.TimeCode]:
+def _planned(mesh: PatchedMesh, slider: Slider, asked: AskedFrames) -> PlannedMesh:
+    between = asked != AUTHORED and mesh.interpolates
+    return PlannedMesh(mesh, slider, _times(mesh, asked), between)
+
+
+def _times(mesh: PatchedMesh, asked: AskedFrames) -> list[Usd.TimeCode]:
     """A mesh that never changes has one value, whatever was asked; so has one whose splines have no knots."""
     if not mesh.varies:
         return [Usd.TimeCode.Default()]
-    times = mesh.sample_times() if asked is None else asked
+    times = mesh.frame_times() if asked is None else mesh.sample_times() if isinstance(asked, str) else asked
     return [Usd.TimeCode(time) for time in times] or [Usd.TimeCode.Default()]
 
 

@@ -10,14 +10,14 @@ from functools import cached_property
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import MeshMeaning, Weld, inputs, merge_times
+from skinslide.arrays.meaning import MeshMeaning, Weld, inputs, merge_times, times_between
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem
 from skinslide.stage.finding import find_meshes
 from skinslide.stage.patch import Animation, read_patch
-from skinslide.stage.values import Source, Span, read_value, take
+from skinslide.stage.values import FIRST, Source, Span, read_value, take
 
 
 @dataclass(frozen=True)
@@ -88,6 +88,34 @@ class PatchedMesh:
         animated = (time for patch in self.animation for time in patch.times(self._span()))
         # Points first: where times differ by noise, theirs gives a sample as it was authored.
         return merge_times([*self.points_times(), *animated])
+
+    @property
+    def interpolates(self) -> bool:
+        """Whether what is cached goes straight from sample to sample, and does not stay."""
+        return self.stage.GetInterpolationType() == Usd.InterpolationTypeLinear
+
+    def frame_times(self) -> list[float]:
+        """Samples, and the frames between those that lie more than one time code apart.
+
+        A spline has its own. Raises StageProblems where they are too many.
+        """
+        samples = self.sample_times()
+        if not self.interpolates:
+            return samples
+        authored = merge_times([*self.points_times(), *(time for patch in self.animation for time in patch.samples())])
+        try:
+            return merge_times([*samples, *times_between(authored)])
+        except Fault as fault:
+            raise StageProblems([self.problem(str(fault), FIRST)]) from fault
+
+    def between_problems(self) -> Iterator[Problem]:
+        """Says how many frames lie between samples."""
+        count = len(self.frame_times()) - len(self.sample_times())
+        if count:
+            slid = f"{count} frames between samples are" if count > 1 else "1 frame between samples is"
+            why = "slid points do not go straight from sample to sample"
+            message = f"{slid} slid too, for {why}; --frames authored leaves them out"
+            yield Problem("note", self.path, None, None, message)
 
     def _span(self) -> Span | None:
         """From the first to the last moment that the stage or the samples of points know of."""

@@ -65,6 +65,10 @@ class Animation:
         chosen += self._coordinates if names is None or sampled else []
         return [time for source in chosen for time in source.times(span)]
 
+    def samples(self) -> list[float]:
+        """Those of controls that vary, without what is known of splines."""
+        return [time for source in self._varying for time in source.samples()]
+
     @cached_property
     def setup(self) -> PatchSetup:
         """The patch with its controls at the first time. Raises Fault."""

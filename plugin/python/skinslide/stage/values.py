@@ -57,6 +57,11 @@ class Source:
         """When it varies: its samples, and those of its indices."""
         return [time for attribute in self._varying() for time in sample_times(attribute, span)]
 
+    def samples(self) -> list[float]:
+        """Those of a value and of its indices."""
+        there = [each for each in (self.attribute, self.indices) if each]
+        return sorted({time for attribute in there for time in attribute.GetTimeSamples()})
+
     def _varying(self) -> list[Usd.Attribute]:
         there = [each for each in (self.attribute, self.indices) if each and self.attribute.HasAuthoredValue()]
         return [each for each in there if each.ValueMightBeTimeVarying()]
