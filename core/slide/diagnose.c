@@ -50,10 +50,18 @@ static skinslide_status allocate(diagnosis *d, skinslide_error *error) {
     return d->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
+/* The next patch vertex that is of another mesh vertex: those that one was split into follow each other. */
+static int32_t after_split(const ss_patch *patch, int32_t v) {
+    int32_t next = v + 1;
+    while (next < patch->vertex_count && patch->mesh_vertex[next] == patch->mesh_vertex[v])
+        next++;
+    return next;
+}
+
 static void count_patches(diagnosis *d) {
     for (int32_t p = 0; p < d->slider->part_count; p++) {
         const ss_patch *patch = d->slider->parts[p].patch;
-        for (int32_t v = 0; counts(d, p) && v < patch->vertex_count; v++)
+        for (int32_t v = 0; counts(d, p) && v < patch->vertex_count; v = after_split(patch, v))
             d->tallies[patch->mesh_vertex[v]].patch_count++;
     }
 }
@@ -106,8 +114,13 @@ static void add_density(diagnosis *d, int32_t part) {
             d->paint_sum[patch->edge_vertex[e][k]] += paint[e];
             d->degree[patch->edge_vertex[e][k]]++;
         }
-    for (int32_t v = 0; v < patch->vertex_count; v++)
-        d->tallies[patch->mesh_vertex[v]].density += d->paint_sum[v] / d->degree[v];
+    for (int32_t v = 0, end; v < patch->vertex_count; v = end) {
+        double sum = 0, degree = 0;
+        end = after_split(patch, v);
+        for (int32_t k = v; k < end; k++)
+            sum += d->paint_sum[k], degree += d->degree[k];
+        d->tallies[patch->mesh_vertex[v]].density += sum / degree;
+    }
 }
 
 /* What is told of one mesh vertex. */

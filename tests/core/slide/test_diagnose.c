@@ -53,6 +53,28 @@ static void two_quads_by_hand(void **state) {
     free_mesh(&mesh);
 }
 
+/* A triangle and a pair of them meet in vertex 0 alone, and a quad joins them elsewhere. Of the five edges at the vertex 0-1 counts
+ * six times. */
+static void faces_that_meet_in_a_point_by_hand(void **state) {
+    (void)state;
+    const int32_t counts[4] = {3, 3, 3, 4}, indices[13] = {0, 1, 2, 0, 3, 4, 0, 4, 5, 2, 1, 5, 4};
+    const float points[18] = {0, 0, 0, -1, 1, 0, -1, -1, 0, 1, -1, 0, 2, 0, 0, 1, 1, 0};
+    test_mesh mesh = copy_mesh(6, 4, counts, indices, points);
+    int32_t faces[4] = {0, 1, 2, 3}, edge[2] = {0, 1};
+    float six = 6;
+    skinslide_patch_setup setup = setup_of(faces, 4);
+    skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
+    controls.edges = edge, controls.edge_density = &six, controls.edge_count = 1;
+    setup.rule = SKINSLIDE_RULE_EVEN, setup.controls = &controls;
+    rig r = rig_of(&mesh, setup);
+    arrays a = arrays_of(&mesh);
+    assert_ok(skinslide_diagnose(r.slider, NULL, NULL, mesh.points, mesh.points, &a.out, &error), &error);
+    assert_near(a.density[0], 2, 0);
+    free_arrays(&a);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
 /* A patch of the left quad alone: vertex 1 has 0-1 and 1-4, and 2 and 5 none. Edge 0-1 counts three times: vertices 0 and 1
  * each take the mean of 3 and 1. */
 static void what_is_off_the_patch_by_hand(void **state) {
@@ -280,6 +302,7 @@ static void bad_arguments(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_quads_by_hand),
+        cmocka_unit_test(faces_that_meet_in_a_point_by_hand),
         cmocka_unit_test(what_is_off_the_patch_by_hand),
         cmocka_unit_test(overlapping_patches),
         cmocka_unit_test(adds_up_to_the_report),
