@@ -148,6 +148,8 @@ LiveMesh::Work LiveMesh::takeWork() {
     const skinslide_slider *slider = this->slider();
     {
         std::lock_guard<std::mutex> lock(_mutex);
+        if (!_problem.empty())
+            throw Fault(_problem);
         if (!_idle.empty()) {
             Work work = std::move(_idle.back());
             _idle.pop_back();

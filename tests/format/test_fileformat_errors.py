@@ -357,6 +357,15 @@ def test_a_lookup_that_cannot_be_had_gives_the_cache_and_one_message(tmp_path, m
     assert len([message for message in messages if MESH in message]) == 1
 
 
+def test_a_lookup_that_can_be_had_later_comes_too_late(tmp_path, monkeypatch):
+    """A layer is slid at all frames, or at none."""
+    layer = Sdf.Layer.FindOrOpen(str(make(tmp_path)), {"lookup": "egl"})
+    monkeypatch.setenv("SKINSLIDE_EGL_DEVICE", "2147483000")
+    for frame in FRAMES[1:]:
+        assert np.array_equal(layer.QueryTimeSample(f"{MESH}.points", frame), grid().moved(frame))
+        monkeypatch.delenv("SKINSLIDE_EGL_DEVICE", raising=False)
+
+
 @pytest.mark.parametrize("value", ["abc", "99999999999", "-1", "1.5"])
 def test_numbers_of_the_environment_that_are_none_are_said(tmp_path, value):
     script = (
