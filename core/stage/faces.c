@@ -313,14 +313,13 @@ skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *
     mesh.rest_points = patch->mesh->rest;
     patch->faces = patch->painted;
     mark_inside(patch);
-    if (!patch->painted.count || !(way_of(patch) > 0))
-        return SKINSLIDE_OK;
-    if (!ss_add_near_faces(&mesh, way_of(patch), patch->face_inside))
+    bool grows = patch->painted.count && way_of(patch) > 0;
+    if (grows && !ss_add_near_faces(&mesh, way_of(patch), patch->face_inside))
         return ss_out_of_memory(error);
-    skinslide_status status = list_inside(patch, error);
-    if (!status)
+    skinslide_status status = grows ? list_inside(patch, error) : SKINSLIDE_OK;
+    if (grows && !status)
         mark_inside(patch);
-    return status;
+    return status || !patch->painted.count ? status : ss_compare_patch(patch, error);
 }
 
 const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count) {

@@ -344,6 +344,8 @@ skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, s
     skinslide_status status = ss_check_refused(patch_inputs(), patch->taken, SS_PATCH_ROWS, error);
     if (!status && !patch->faces.count)
         status = ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the faces of the patch were not given");
+    if (!status)
+        status = ss_check_likeness(patch, error);
     skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     if (!status)
         status = ss_check_size(out, "skinslide_patch_setup", error);

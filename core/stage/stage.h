@@ -134,6 +134,7 @@ enum {
     SS_ROW_DEFAULT_POINTS,
     SS_ROW_WELD,
     SS_ROW_WELD_TOLERANCE,
+    SS_ROW_COMPARE_REST, /* after all that it compares */
     SS_MESH_ROWS
 };
 enum {
@@ -238,6 +239,9 @@ struct skinslide_stage_mesh {
     int32_t rest_row; /* of the candidate that counts, good or bad; -1: none yet */
     bool left_handed;
     double weld, weld_tolerance; /* whether points in one place are one, and how near that is */
+    double compare_rest;         /* whether rest is to be compared with the cache */
+    float *first;                /* [vertex_count][3] points of the first time */
+    const char *warning;         /* NULL: none */
 };
 
 /* The mesh as the core's own functions take it, without rest points. */
@@ -248,6 +252,13 @@ skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_
 skinslide_status ss_take_subdivision(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error);
 skinslide_status ss_check_subdivision_still(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record,
                                             double frame, skinslide_error *error);
+
+/* resemble.c: compares rest with the first pose of the cache, once both are there, and takes it at the cache's scale. */
+skinslide_status ss_compare_mesh(skinslide_stage_mesh *mesh, skinslide_error *error);
+/* The same over the faces of a patch, which keeps what it came to. */
+skinslide_status ss_compare_patch(skinslide_stage_patch *patch, skinslide_error *error);
+/* Fails with BAD_POINTS where that is so unlike that nothing can slide. */
+skinslide_status ss_check_likeness(const skinslide_stage_patch *patch, skinslide_error *error);
 
 struct skinslide_stage_patch {
     ss_memory memory;
@@ -265,6 +276,8 @@ struct skinslide_stage_patch {
     ss_array indices;       /* of that, as authored */
     uint8_t *face_inside;   /* [face_count] */
     uint8_t *vertex_inside; /* [vertex_count] */
+    double unlike;          /* the factor by which rest differs, where sliding is senseless; 0: it is not */
+    const char *warning;    /* NULL: none */
 };
 
 /* faces.c */

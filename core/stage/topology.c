@@ -16,6 +16,7 @@ static skinslide_status fill_mesh(skinslide_stage_mesh *mesh, skinslide_error *e
     mesh->vertex_count = -1;
     mesh->rest_row = -1;
     mesh->weld = SS_MESH_WELD_NUMBER, mesh->weld_tolerance = SS_MESH_WELD_TOLERANCE_NUMBER;
+    mesh->compare_rest = SS_MESH_COMPARE_REST_NUMBER;
     skinslide_status status = ss_take_fallbacks(mesh_inputs(SKINSLIDE_STAGE_SUBDIVISION), SS_SUBDIVISION_ROWS, &mesh->memory,
                                                 mesh->subdivision, error);
     mesh->subdivision[SS_ROW_SCHEME].choice = SKINSLIDE_SCHEME_NONE; /* until it is taken */
@@ -57,9 +58,14 @@ static skinslide_status check_points(const ss_record *record, skinslide_error *e
 
 static skinslide_status take_points(skinslide_stage_mesh *mesh, const ss_record *record, skinslide_error *error) {
     skinslide_status status = check_points(record, error);
-    if (!status)
-        mesh->vertex_count = (int32_t)record->length;
-    return status;
+    if (status)
+        return status;
+    mesh->first = SS_NEW(&mesh->memory, float, 3 * record->length);
+    if (!mesh->first)
+        return ss_out_of_memory(error);
+    ss_copy_floats(record, mesh->first);
+    mesh->vertex_count = (int32_t)record->length;
+    return SKINSLIDE_OK;
 }
 
 skinslide_status skinslide_stage_points(const skinslide_stage_mesh *mesh, const skinslide_value *value, float *points,
@@ -150,6 +156,13 @@ skinslide_mesh ss_faces_of(const skinslide_stage_mesh *mesh) {
 
 /* ---- The mesh ---- */
 
+static skinslide_status take_number(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error) {
+    double *numbers[] = {&mesh->weld, &mesh->weld_tolerance, &mesh->compare_rest};
+    skinslide_status status =
+        ss_take_number(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], record, numbers[row - SS_ROW_WELD], error);
+    return status || row != SS_ROW_COMPARE_REST ? status : ss_compare_mesh(mesh, error);
+}
+
 static skinslide_status take_of_mesh(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error) {
     switch (mesh_inputs(SKINSLIDE_STAGE_MESH)[row].kind) {
     case SS_KIND_POINTS:
@@ -162,8 +175,7 @@ static skinslide_status take_of_mesh(skinslide_stage_mesh *mesh, int32_t row, co
         take_orientation(mesh, record);
         return SKINSLIDE_OK;
     case SS_KIND_NUMBER:
-        return ss_take_number(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], record,
-                              row == SS_ROW_WELD ? &mesh->weld : &mesh->weld_tolerance, error);
+        return take_number(mesh, row, record, error);
     default:
         return ss_take_rest(mesh, row, record, error);
     }

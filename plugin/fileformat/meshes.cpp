@@ -223,6 +223,15 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
     }
 }
 
+void sayWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
+    if (const char *said = skinslide_stage_mesh_warning(mesh.mesh.get()))
+        problems->push_back(mesh.path.GetString() + ": " + said);
+    for (const Patch &patch : mesh.patches) {
+        if (const char *said = patch.warning())
+            problems->push_back(mesh.path.GetString() + ": patch " + patch.name() + ": " + said);
+    }
+}
+
 // Throws Fault, or adds problems and returns null.
 std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim &prim, const skinslide_stage_finding &finding,
                                             const Params &params, std::vector<std::string> *problems) {
@@ -237,6 +246,7 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim
     if (std::any_of(mesh->patches.begin(), mesh->patches.end(), [](const Patch &patch) { return patch.needsSubdivision(); }))
         readGroup(composition, prim, SKINSLIDE_STAGE_SUBDIVISION, mesh->mesh.get());
     mesh->times = timesOf(*mesh);
+    sayWarnings(*mesh, problems);
     readDerived(composition, prim, mesh.get(), problems);
     return mesh;
 }

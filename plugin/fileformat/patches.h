@@ -23,6 +23,10 @@ class Patch {
     bool needsSubdivision() const {
         return skinslide_stage_patch_needs_subdivision(_patch.get());
     }
+    // What to warn of; null: nothing.
+    const char *warning() const {
+        return skinslide_stage_patch_warning(_patch.get());
+    }
     // Resolved paths of the files of its textures, but for tiles that only later times lie in.
     const std::set<std::string> &files() const {
         return _files;

@@ -25,7 +25,9 @@ from edits import (
     point,
     put,
     removed,
+    rest_changed,
     retyped,
+    shuffled,
     subset,
     topology,
 )
@@ -444,6 +446,18 @@ GEOMETRY = [
         lambda scene: scene.points.ClearDefault(),
         "has no rest points: points has samples but no default value, so author the rest pose as "
         "skinSlide:restPoints or primvars:rest (point3f[], vertex)",
+        None,
+    ),
+    Bad(
+        "rest: in another order",
+        rest_changed(shuffled),
+        "rest is not that of the cache: lengths of edges differ by a factor of ...",
+        rest="rest",
+    ),
+    Bad(
+        "rest: compared by a word",
+        retyped("skinSlide:compareRest", Types.Token, "no"),
+        "skinSlide:compareRest is 'no'; it must be a bool",
         None,
     ),
     Bad("points: blocked at the first frame", blocked_at("points", FRAMES[0]), "points has no value", None),

@@ -225,6 +225,21 @@ def _vector(type_name: Sdf.ValueTypeName):
     return type_name.scalarType.type.pythonClass
 
 
+def rest_changed(change: Callable[[np.ndarray], np.ndarray]) -> Edit:
+    """primvars:rest, made of what it is (V, 3)."""
+
+    def edit(scene: Scene) -> None:
+        rest = scene.prim.GetAttribute("primvars:rest")
+        rest.Set(stages.vectors(change(np.array(rest.Get()))))
+
+    return edit
+
+
+def shuffled(points: np.ndarray) -> np.ndarray:
+    """In another order."""
+    return points[np.random.default_rng(3).permutation(len(points))]
+
+
 def still(scene: Scene) -> None:
     """Points without samples: those of the last frame, over a rest of their own."""
     last = scene.points.Get(FRAMES[-1])

@@ -257,6 +257,10 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_
 /* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the mesh. */
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
 
+/* What to warn of: rest points of another scale, which are taken at the cache's; NULL: nothing. Lives as long as the mesh. Rest
+ * is compared with the points of the first time, edge by edge, unless skinSlide:compareRest is off. */
+SKINSLIDE_API const char *skinslide_stage_mesh_warning(const skinslide_stage_mesh *mesh);
+
 /* Begins to find which vertices are one, as skinslide_weld_create, as near as skinSlide:weldTolerance says.
  *   setups  in   [setup_count] all patches of the mesh
  *   out     out  the caller's to destroy; NULL where skinSlide:weld is off
@@ -361,6 +365,10 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage
  * those chosen and, once its grow and its rule are taken, those that join them.
  *   face_count  out or NULL */
 SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
+
+/* What to warn of once its faces are there: rest points that resemble the cache poorly; NULL: nothing. Lives as long as the patch,
+ * until faces are taken again. */
+SKINSLIDE_API const char *skinslide_stage_patch_warning(const skinslide_stage_patch *patch);
 
 /* Whether its interpolation depends on how the mesh is subdivided. */
 SKINSLIDE_API skinslide_bool skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch);
@@ -469,7 +477,8 @@ SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_unread(const ski
                                                                        const skinslide_stage_input *before);
 
 /* The set-up as the slider takes it, with these controls; its arrays, its name and its controls are those of the handles.
- * Fails as skinslide_stage_controls_get, and with BAD_ARGUMENT where the patch has no faces, or refused a value. */
+ * Fails as skinslide_stage_controls_get, with BAD_POINTS where rest is so unlike the cache over its faces that sliding is
+ * senseless, and with BAD_ARGUMENT where the patch has no faces, or refused a value. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, skinslide_stage_controls *controls,
                                                          skinslide_patch_setup *out, skinslide_error *error);
 

@@ -245,6 +245,10 @@ class Taker:
         _call(self._check, self.handle, source, value, frame)
 
 
+def _said(sentence: Any) -> str:
+    return text(sentence) if sentence else ""
+
+
 # ---- Meshes ----
 
 
@@ -278,6 +282,11 @@ class MeshMeaning(Taker):
     @property
     def rest_source(self) -> str:
         return text(lib.skinslide_stage_mesh_rest_source(self.handle.pointer))
+
+    @property
+    def warning(self) -> str:
+        """What to warn of, or nothing."""
+        return _said(lib.skinslide_stage_mesh_warning(self.handle.pointer))
 
     @property
     def shape(self) -> Any:
@@ -403,6 +412,11 @@ class PatchMeaning(Taker):
     @property
     def needs_subdivision(self) -> bool:
         return bool(lib.skinslide_stage_patch_needs_subdivision(self.handle.pointer))
+
+    @property
+    def warning(self) -> str:
+        """What to warn of, or nothing."""
+        return _said(lib.skinslide_stage_patch_warning(self.handle.pointer))
 
     def setup(self, controls: ControlsMeaning) -> PatchSetup:
         """The set-up with some controls. Raises Fault."""

@@ -757,6 +757,33 @@ class SkinSlideMeshAPI(AppliedSchema):
         """
         return self._create_attribute("weldTolerance", defaultValue, writeSparsely)
 
+    def GetCompareRestAttr(self) -> Usd.Attribute:
+        """Whether rest is compared with the first sample of points, by the lengths of edges.
+
+        Rest of another scale, by more than 2 either way, is taken at the scale of the cache, with a warning. A patch
+        on which rest resembles the cache poorly is warned of, or, as where points are in another order, cannot be
+        slid. Off: rest is taken as it is.
+
+        Returns:
+            The attribute skinSlide:compareRest, bool, uniform; not valid where there is none.
+        """
+        return self._attribute("compareRest")
+
+    def CreateCompareRestAttr(self, defaultValue: bool | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:compareRest in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, bool, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("compareRest", defaultValue, writeSparsely)
+
 
 class SkinSlideLiveAPI(AppliedSchema):
     """What a shot sets for all patches of a .skinslide file, on the prim that payloads it.

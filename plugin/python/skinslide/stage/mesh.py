@@ -194,6 +194,14 @@ class PatchedMesh:
             if points and np.isfinite(np.asarray(points)).all():
                 yield str(prim.GetPath()), np.asarray(points)
 
+    def warnings(self) -> Iterator[Problem]:
+        """What rest points and patches are warned of."""
+        if self.meaning.warning:
+            yield Problem("warning", self.path, None, None, self.meaning.warning)
+        for patch, each in zip(self.patches, self.animation, strict=True):
+            if each.warning:
+                yield Problem("warning", self.path, patch.name, None, each.warning)
+
     def weld_problems(self) -> Iterator[Problem]:
         """Points in one place that are not one."""
         info = self.weld.info
@@ -250,7 +258,11 @@ def _read_mesh(prim: Usd.Prim, patches: Sequence[str], problems: list[Problem]) 
         return None
     faults = take_subdivision(prim, meaning) if any(each.needs_subdivision for each in animation) else []
     say(faults)
-    return None if faults else PatchedMesh.of(prim, meaning, animation)
+    if faults:
+        return None
+    mesh = PatchedMesh.of(prim, meaning, animation)
+    problems.extend(mesh.warnings())
+    return mesh
 
 
 def take_mesh(prim: Usd.Prim) -> tuple[MeshMeaning, list[str]]:

@@ -58,6 +58,11 @@ class Animation:
         """The properties that say something for which the rule of the patch has no use, at the first time."""
         return [each.property(self._meaning.name) for each in self._meaning.unread(self._base)]
 
+    @property
+    def warning(self) -> str:
+        """What to warn of, or nothing."""
+        return self._meaning.warning
+
     def times(self, span: Span | None = None, names: Collection[str] | None = None) -> list[float]:
         """When controls were authored that vary; names: of these inputs alone, with the coordinates of textures."""
         chosen = [source for source in self._controls if names is None or source.wanted.name in names]

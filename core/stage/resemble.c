@@ -1,0 +1,151 @@
+/* Whether rest is of the cache: edges are compared, each with its length at rest, in the first pose of the cache:
+ *
+ *     r = |edge in the cache| / |edge at rest|
+ *
+ * The median over a mesh is the scale between the two, since most of a mesh turns and does not stretch. The mean of |log(r / median)|
+ * is the spread, and the RMS of log r how far apart the two are. A patch of other points, or of
+ * points in another order, has much of both: a spread of 0.45 on a sheet of squares and more on a body, and 1 to 5 of the other. Poses
+ * have little: the most extreme of the examples, a sleeve at an elbow bent by 110 degrees, has 0.3 or less of either. */
+#include "stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Rest is of another scale beyond this, either way; an inch has 2.54 cm. A character that grows by less only stretches. */
+static const double other_scale = 2;
+/* As factors: the spread from which rest is poor and says no scale, and how far apart sliding is then senseless. */
+static const double poor = 1.4, senseless = 2;
+/* What one edge counts for in the spread at most: a stray point is none of another order. */
+static const double most_of_one = 4;
+
+typedef struct ratios {
+    const skinslide_stage_mesh *mesh;
+    double *values;
+    int64_t count;
+} ratios;
+
+static double length_between(const float *points, int32_t a, int32_t b) {
+    double way[3];
+    for (int k = 0; k < 3; k++)
+        way[k] = (double)points[3 * (int64_t)a + k] - points[3 * (int64_t)b + k];
+    return ss_length(way);
+}
+
+/* Sides of no length in either pose tell nothing, and points that are not finite are told where they are slid. */
+static void add_face(ratios *own, int32_t face) {
+    const skinslide_stage_mesh *mesh = own->mesh;
+    const int32_t *indices = mesh->taken[SS_ROW_FACE_INDICES].array.values;
+    int32_t first = mesh->face_start[face], end = mesh->face_start[face + 1];
+    for (int32_t c = first; c < end; c++) {
+        int32_t a = indices[c], b = indices[c + 1 < end ? c + 1 : first];
+        double at_rest = length_between(mesh->rest, a, b), cached = length_between(mesh->first, a, b);
+        if (at_rest > 0 && cached > 0 && isfinite(cached))
+            own->values[own->count++] = cached / at_rest;
+    }
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+typedef struct likeness {
+    double median, spread, apart; /* factors */
+} likeness;
+
+static likeness compare(ratios *own) {
+    if (!own->count)
+        return (likeness){1, 1, 1};
+    qsort(own->values, (size_t)own->count, sizeof *own->values, ascending);
+    double median = own->values[own->count / 2], spread = 0, apart = 0;
+    for (int64_t i = 0; i < own->count; i++) {
+        double off = ss_log(own->values[i]);
+        spread += fmin(fabs(off - ss_log(median)), ss_log(most_of_one));
+        apart += off * off;
+    }
+    return (likeness){median, exp(spread / (double)own->count), exp(sqrt(apart / (double)own->count))};
+}
+
+static bool can_compare(const skinslide_stage_mesh *mesh) {
+    return mesh->has_faces && mesh->rest && mesh->first && mesh->compare_rest != 0;
+}
+
+/* Multiplies rest, so that lengths and what is made of them are the cache's. */
+static skinslide_status take_scale(skinslide_stage_mesh *mesh, double scale, skinslide_error *error) {
+    char *warning = SS_NEW(&mesh->memory, char, 128);
+    if (!warning)
+        return ss_out_of_memory(error);
+    for (int64_t i = 0; i < 3 * (int64_t)mesh->vertex_count; i++)
+        mesh->rest[i] = (float)(scale * mesh->rest[i]);
+    snprintf(warning, 128, "rest is %.3g times the size of the cache: lengths are taken at that scale", 1 / scale);
+    mesh->warning = warning;
+    return SKINSLIDE_OK;
+}
+
+/* Compares the faces chosen, or all of a mesh for NULL. */
+static skinslide_status compare_faces(const skinslide_stage_mesh *mesh, const ss_array *faces, likeness *out,
+                                      skinslide_error *error) {
+    ss_memory scratch = {0};
+    ratios own = {mesh, SS_NEW(&scratch, double, mesh->taken[SS_ROW_FACE_INDICES].array.count), 0};
+    if (!own.values)
+        return ss_out_of_memory(error);
+    int32_t count = faces ? faces->count : mesh->taken[SS_ROW_FACE_COUNTS].array.count;
+    for (int32_t i = 0; i < count; i++)
+        add_face(&own, faces ? ((const int32_t *)faces->values)[i] : i);
+    *out = compare(&own);
+    ss_free(&scratch);
+    return SKINSLIDE_OK;
+}
+
+/* A scale that edges do not agree on is none. */
+skinslide_status ss_compare_mesh(skinslide_stage_mesh *mesh, skinslide_error *error) {
+    likeness own;
+    mesh->warning = NULL;
+    if (!can_compare(mesh))
+        return SKINSLIDE_OK;
+    skinslide_status status = compare_faces(mesh, NULL, &own, error);
+    bool is_other = !status && own.spread <= poor && (own.median > other_scale || own.median < 1 / other_scale);
+    return is_other ? take_scale(mesh, own.median, error) : status;
+}
+
+static skinslide_status warn(skinslide_stage_patch *patch, double spread, skinslide_error *error) {
+    char *warning = SS_NEW(&patch->memory, char, 160);
+    if (!warning)
+        return ss_out_of_memory(error);
+    snprintf(warning, 160, "rest resembles the cache poorly at first: lengths of edges differ by a factor of %.3g on average",
+             spread);
+    patch->warning = warning;
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_compare_patch(skinslide_stage_patch *patch, skinslide_error *error) {
+    likeness own;
+    patch->unlike = 0, patch->warning = NULL;
+    if (!can_compare(patch->mesh))
+        return SKINSLIDE_OK;
+    skinslide_status status = compare_faces(patch->mesh, &patch->faces, &own, error);
+    if (status || own.spread <= poor)
+        return status;
+    patch->unlike = own.apart > senseless ? own.apart : 0;
+    return patch->unlike > 0 ? SKINSLIDE_OK : warn(patch, own.spread, error);
+}
+
+skinslide_status ss_check_likeness(const skinslide_stage_patch *patch, skinslide_error *error) {
+    int32_t count;
+    const skinslide_stage_input *option = &ss_inputs(SKINSLIDE_STAGE_MESH, &count)[SS_ROW_COMPARE_REST].shown;
+    if (!(patch->unlike > 0))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_POINTS,
+                   "rest is not that of the cache: lengths of edges differ by a factor of %.3g (RMS) at first, and %g is the "
+                   "most; are its points in another order? %s%s = false takes it as it is",
+                   patch->unlike, senseless, option->prefix, option->name);
+}
+
+const char *skinslide_stage_mesh_warning(const skinslide_stage_mesh *mesh) {
+    return mesh ? mesh->warning : NULL;
+}
+
+const char *skinslide_stage_patch_warning(const skinslide_stage_patch *patch) {
+    return patch ? patch->warning : NULL;
+}
