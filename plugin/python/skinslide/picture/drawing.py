@@ -82,7 +82,7 @@ class MeshPictures(MeshMaking):
 
     def __init__(self, planned: PlannedMesh, report: MeshReport, easel: Easel):
         """Raises StageProblems for what cannot be drawn."""
-        self._mesh, self._slider, self._times = planned
+        self._mesh, self._slider, self._times = planned.mesh, planned.slider, planned.times
         self._report, self._easel, self._options = report, easel, easel.options
         self._problems: list[Problem] = []
         self._series = self._make_all()
