@@ -93,6 +93,18 @@ def test_edges_near_a_curve(distance, direction, expected, shot, tmp_path):
     assert painted(tmp_path / "painted.usda") == dict.fromkeys(expected, 4)
 
 
+def test_a_curve_that_moves_is_taken_at_rest(shot, tmp_path):
+    """Its samples follow the character; its default is where it was drawn."""
+    moving = open_stage(shot)
+    points = UsdGeom.BasisCurves(moving.GetPrimAtPath(CURVE)).GetPointsAttr()
+    for frame in stages.FRAMES:
+        points.Set(stages.vectors(np.add(points.Get(), (0, 0, 3))), frame)
+    stage = stages.save(moving, tmp_path / "moving.usda")
+    for source in (shot, stage):
+        paint_to_file(source, tmp_path / "painted.usda", MESH, PATCH, 4, curve=CURVE, distance=0.02, force=True)
+        assert painted(tmp_path / "painted.usda") == dict.fromkeys([(14, 15), (15, 16), (16, 17), (17, 18)], 4)
+
+
 def test_a_smooth_closed_curve(shot, tmp_path):
     """A circle, near enough, of Catmull-Rom segments about the point in the middle of the patch."""
     angles = np.arange(8) * np.pi / 4

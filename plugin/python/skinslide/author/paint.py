@@ -109,8 +109,8 @@ def paint(
         subset: The name of a GeomSubset under the mesh, of elementType edge.
         primvar: The name of a vertex primvar of the mesh: edges with at least `threshold` at both ends.
         threshold: With `primvar`.
-        curve: A BasisCurves prim drawn on the mesh at rest: edges whose middle is within `distance` of it, and that
-            run in `direction` there.
+        curve: A BasisCurves prim drawn on the mesh at rest, whose default counts before its samples: edges whose
+            middle is within `distance` of it, and that run in `direction` there.
         distance: With `curve`, in the mesh's units.
         direction: With `curve`: "along", at 45 degrees or less to it; "across", at more; or "any".
         clear: Forgets what was painted by edge before.
@@ -277,14 +277,14 @@ def _curve_edges(surface: _Surface, near: _Near) -> np.ndarray:
 
 
 def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
-    """The curves of a prim as they are at first."""
+    """The curves of a prim as they are at no time, where rest is drawn, or at first where they have samples alone."""
     prim = mesh.GetStage().GetPrimAtPath(path)
     if not prim or not prim.IsA(UsdGeom.BasisCurves):
         raise Fault(f"there is no BasisCurves prim {path}" + (f", it is a {prim.GetTypeName()}" if prim else ""))
     curves, transforms = UsdGeom.BasisCurves(prim), UsdGeom.XformCache(FIRST)
     to_mesh = transforms.GetLocalToWorldTransform(prim) * transforms.GetLocalToWorldTransform(mesh).GetInverse()
     counts, points = (
-        read_value(each, FIRST, name=f"{path}.{each.GetName()}")
+        read_value(each, _at_rest(each), name=f"{path}.{each.GetName()}")
         for each in (curves.GetCurveVertexCountsAttr(), curves.GetPointsAttr())
     )
     return Curves(
@@ -294,6 +294,11 @@ def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
         curves.GetWrapAttr().Get(),
         np.array(Gf.Matrix4d(to_mesh)),
     )
+
+
+def _at_rest(attribute: Usd.Attribute) -> Usd.TimeCode:
+    default = Usd.TimeCode.Default()
+    return FIRST if attribute.Get(default) is None else default
 
 
 # ---- What is written ----
