@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import io
 import math
 from collections.abc import Iterator, Sequence
@@ -28,22 +30,66 @@ def columns(width: int, height: int, count: int) -> list[Viewport]:
 
 def font_of(height: int) -> ImageFont.FreeTypeFont:
     """The font of a picture of that height."""
-    font = ImageFont.load_default(max(9, round(height / 42)))
-    assert isinstance(font, ImageFont.FreeTypeFont)  # as Pillow's wheels have it
-    return font
+    return next(_fonts(max(9, round(height / 42))))
+
+
+# Files by which machines have fonts of more letters than Pillow's own: of Europe, then of all.
+_OTHER_FONTS = (
+    "DejaVuSans.ttf",
+    "NotoSansCJK-Regular.ttc",
+    "DroidSansFallbackFull.ttf",
+    "VL-Gothic-Regular.ttf",
+    "ipag.ttf",
+    "Hiragino Sans GB.ttc",
+    "msgothic.ttc",
+)
+_NO_LETTER = "\uffff"  # every font draws it as what it has not
+
+
+def _fonts(size: float) -> Iterator[ImageFont.FreeTypeFont]:
+    """Pillow's own, which is the same everywhere, and those of the others that there are."""
+    own = ImageFont.load_default(size)
+    assert isinstance(own, ImageFont.FreeTypeFont)  # as Pillow's wheels have it
+    yield own
+    for file in _OTHER_FONTS:
+        with contextlib.suppress(OSError):
+            yield ImageFont.truetype(file, size)
+
+
+def _glyph(font: ImageFont.FreeTypeFont, letter: str) -> tuple[tuple[int, int], bytes]:
+    mask = font.getmask(letter)
+    return mask.size, bytes(mask)
+
+
+def _drawable(font: ImageFont.FreeTypeFont, line: str) -> str:
+    """A line with the numbers of letters that a font has not, as Python writes them."""
+    missing = _glyph(font, _NO_LETTER)
+    lost = {letter for letter in set(line) if not letter.isspace() and _glyph(font, letter) == missing}
+    return "".join(letter.encode("unicode_escape").decode() if letter in lost else letter for letter in line)
+
+
+@functools.lru_cache(maxsize=256)
+def _lettered(line: str, size: float) -> tuple[str, ImageFont.FreeTypeFont]:
+    """A line, and the first font that has all its letters; else what Pillow's own can write of it."""
+    for font in _fonts(size):
+        if _drawable(font, line) == line:
+            return line, font
+    own = next(_fonts(size))
+    return _drawable(own, line), own
 
 
 def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_foot: bool = False) -> None:
     """Puts lines on a shade into the upper left corner of a part of a picture, or the lower left."""
     font = font_of(place.height)
     pad = round(font.size * _GAP)
-    boxes = [font.getbbox(line) for line in lines]
+    lettered = [_lettered(line, font.size) for line in lines]
+    boxes = [own.getbbox(line) for line, own in lettered]
     wide = math.ceil(max((box[2] for box in boxes), default=0)) + 2 * pad
     step = round(font.size * 1.35)
     card = Image.new("RGBA", (wide, step * len(lines) + pad), _SHADE)
     draw = ImageDraw.Draw(card)
-    for number, line in enumerate(lines):
-        draw.text((pad, pad // 2 + number * step), line, _TEXT, font)
+    for number, (line, own) in enumerate(lettered):
+        draw.text((pad, pad // 2 + number * step), line, _TEXT, own)
     _lay(pixels, np.array(card), place, place.height - card.height if at_foot else 0)
 
 
