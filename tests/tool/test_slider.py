@@ -197,6 +197,56 @@ def test_controls_that_are_none(sheet, rest):
             sheet.slide(rest, bad)
 
 
+class TestWrongTypes:
+    """One sentence that names what is wrong, be it an array, a word or a number."""
+
+    @pytest.mark.parametrize("setting", ["boundary", "holes", "rule", "interpolation"])
+    @pytest.mark.parametrize("word", [["unit"], np.array(["unit"]), {}, 3])
+    def test_of_a_word(self, counts, indices, rest, setting, word):
+        with pytest.raises(SliderError, match=f"^patch elbow: {setting} .* is not one of "):
+            Slider(counts, indices, rest, [PatchSetup("elbow", np.arange(FACES), **{setting: word})])
+
+    @pytest.mark.parametrize("lookup", [["exact"], Lookup(["exact"]), Lookup(device="0"), Lookup(resolution=None)])
+    def test_of_a_lookup(self, lookup):
+        with pytest.raises(SliderError, match=r"^(lookup|device|resolution)"):
+            skinslide.choose_lookup(lookup)
+
+    def test_of_subdivision(self, counts, indices, rest):
+        with pytest.raises(SliderError, match=r"^subdivision is of the type str; Subdivision is wanted"):
+            Slider(counts, indices, rest, [], subdivision="catmullClark")
+
+    @pytest.mark.parametrize("number", ["x", [1], 10**400])
+    def test_of_a_control(self, sheet, rest, number):
+        with pytest.raises(SliderError, match=r"^patch sheet: envelope: "):
+            sheet.slide(rest, [Controls(envelope=number)])
+
+    @pytest.mark.parametrize("patch", [None, "sheet", 0.0, [0], np.arange(2), 2**40])
+    def test_of_an_index(self, sheet, rest, patch):
+        for asked in (
+            sheet.vertices,
+            sheet.faces,
+            sheet.embedding,
+            lambda patch: sheet.id_buffer(rest, patch),
+            lambda patch: sheet.neighbours(patch, rest, rest),
+        ):
+            with pytest.raises(SliderError, match=r"^(patch: |there is no patch )"):
+                asked(patch)
+
+    def test_of_a_tolerance(self, sheet, rest):
+        with pytest.raises(SliderError, match=r"^tolerance: "):
+            sheet.neighbours(0, rest, rest, "x")
+
+    @pytest.mark.parametrize("chosen", [3, [[True]], ["yes"]])
+    def test_of_what_is_chosen(self, sheet, rest, chosen):
+        with pytest.raises(SliderError, match=r"^chosen: "):
+            sheet.diagnose(rest, rest, chosen=chosen)
+
+    @pytest.mark.parametrize("samples", [None, "abc", [1, 2, 3]])
+    def test_of_samples(self, sheet, samples):
+        with pytest.raises(SliderError, match=r"^samples.* is of the type .*Sample is wanted"):
+            sheet.roughness(samples)
+
+
 @pytest.mark.parametrize("convert", [np.asarray, np.ndarray.tolist])
 def test_faces_by_a_bool_each(convert, counts, indices, rest):
     chosen = np.arange(FACES) % SIZE < SIZE // 2

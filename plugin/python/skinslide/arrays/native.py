@@ -5,6 +5,7 @@ Fields and enums are read from the declarations; only what C cannot see, the len
 
 from __future__ import annotations
 
+import operator
 import re
 import weakref
 from collections.abc import Callable, Iterable, Sequence
@@ -158,7 +159,7 @@ def device_number(device: int | None) -> int:
 
 def _number(what: str, number: int) -> int:
     # The core's structs have no room for others, but for one below 0 that stands for none.
-    if not 0 <= number < 2**31:
+    if not 0 <= whole(number, what) < 2**31:
         raise SliderError("BAD_ARGUMENT", f"no such {what}: {number}")
     return number
 
@@ -238,6 +239,7 @@ class Arguments:
         return mesh[0]
 
     def subdivision(self, given: Subdivision) -> Any:
+        check_kind("subdivision", given, Subdivision)
         target = new("subdivision")
         self._alive.append(target)
         for setting in ("scheme", "boundary_rule", "triangle_rule"):
@@ -289,7 +291,7 @@ class Arguments:
         target.edges = self.optional(edges, np.int32, (-1, 2), f"{where}edges")
         target.edge_density = self.optional(density, np.float32, (target.edge_count,), f"{where}edge density")
         for name in ("envelope", "stretch_response", "compression_response"):
-            setattr(target, name, _real(getattr(controls, name), where + name.replace("_", " ")))
+            setattr(target, name, real(getattr(controls, name), where + name.replace("_", " ")))
 
     def frame_controls(self, controls: Sequence[Controls] | None, names: tuple[str, ...], sizes: Sizes) -> Any:
         if controls is None:
@@ -303,11 +305,12 @@ class Arguments:
         return targets
 
     def samples(self, samples: Sequence[Sample], count: int, vertex_count: int, what: str) -> Any:
-        if len(samples) != count:
-            raise SliderError("BAD_ARGUMENT", f"{what} need {count} samples, not {len(samples)}")
+        given = all_of("samples", samples, Sample)
+        if len(given) != count:
+            raise SliderError("BAD_ARGUMENT", f"{what} need {count} samples, not {len(given)}")
         targets = new_array("sample", count)
-        for target, sample in zip(targets, samples, strict=True):
-            target.seconds = sample.seconds
+        for target, sample in zip(targets, given, strict=True):
+            target.seconds = real(sample.seconds, "seconds")
             target.cached = self.points(sample.cached, vertex_count, "cached")
             target.slid = self.points(sample.slid, vertex_count, "slid")
         return targets
@@ -344,10 +347,19 @@ def check_kind(what: str, given: Any, kind: type) -> None:
         raise SliderError("BAD_ARGUMENT", said)
 
 
-def _real(value: Any, what: str) -> float:
+def real(value: Any, what: str) -> float:
+    """A number as a float, or SliderError."""
     try:
         return float(value)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
+        raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error
+
+
+def whole(value: Any, what: str) -> int:
+    """A number that is an index or a count, or SliderError."""
+    try:
+        return operator.index(value)
+    except TypeError as error:
         raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error
 
 
@@ -411,7 +423,7 @@ def _values_by_token(setting: str) -> dict[str, int]:
 
 def enum_value(setting: str, token: str, where: str) -> int:
     values = _values_by_token(setting)
-    if token not in values:
+    if not isinstance(token, str) or token not in values:
         raise SliderError("BAD_ARGUMENT", where + not_one_of(setting, token, tuple(values)))
     return values[token]
 

@@ -31,8 +31,10 @@ from skinslide.arrays.native import (
     new,
     new_array,
     read,
+    real,
     text,
     tokens,
+    whole,
     writable,
 )
 from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
@@ -216,9 +218,11 @@ class Slider:
         native, count = Arguments(), self._sizes.vertices
         before, after = native.points(cached, count, "cached"), native.points(slid, count, "slid")
         given = native.frame_controls(controls, self._names, self._sizes)
+        wanted = ffi.NULL
         if chosen is not None:
-            check_count("BAD_ARGUMENT", "chosen", (len(chosen), "given"), (len(self._names), "patches"))
-        wanted = ffi.NULL if chosen is None else ffi.new("uint8_t[]", [bool(each) for each in chosen])
+            flags = as_array(chosen, np.bool_, (-1,), "chosen").tolist()
+            check_count("BAD_ARGUMENT", "chosen", (len(flags), "given"), (len(self._names), "patches"))
+            wanted = ffi.new("uint8_t[]", flags)
         result = Diagnostics(*(np.empty(count, np.float32) for _ in Diagnostics._fields))
         arrays, buffers = new("diagnostics"), [writable("float[]", array) for array in result]
         for name, buffer in zip(Diagnostics._fields, buffers, strict=True):
@@ -282,10 +286,11 @@ class Slider:
         Raises:
             SliderError: There is no such patch, or points that are not finite.
         """
+        self._check_patch(patch)
         native, held, loose = Arguments(), ffi.new("int32_t *"), ffi.new("int32_t *")
         own, other = native.points(points, self._sizes.vertices, "points"), native.points(others, -1, "others")
-        count = len(np.asarray(others))
-        call(lib.skinslide_slider_neighbours, self._slider.pointer, patch, own, other, count, tolerance, held, loose)
+        count, within = len(np.asarray(others)), real(tolerance, "tolerance")
+        call(lib.skinslide_slider_neighbours, self._slider.pointer, patch, own, other, count, within, held, loose)
         return held[0], loose[0]
 
     def embedding(self, patch: int) -> np.ndarray:
@@ -312,6 +317,7 @@ class Slider:
         Raises:
             SliderError: The slider's lookup has no texture.
         """
+        self._check_patch(patch)
         native, side = Arguments(), ffi.new("int32_t *")
         cached = native.points(points, self._sizes.vertices, "points")
         slid = ffi.new("float[]", 3 * self._sizes.vertices)
@@ -330,9 +336,12 @@ class Slider:
         call(lib.skinslide_slider_patch_info, self._slider.pointer, patch, info)
         return read(PatchInfo, info[0])
 
-    def _patch_array(self, function: Any, patch: int, size: str, dtype: type, width: int | None = None) -> np.ndarray:
-        if not 0 <= patch < len(self.patches):
+    def _check_patch(self, patch: int) -> None:
+        if not 0 <= whole(patch, "patch") < len(self.patches):
             raise SliderError("BAD_ARGUMENT", f"there is no patch {patch}; patches are 0 to {len(self.patches) - 1}")
+
+    def _patch_array(self, function: Any, patch: int, size: str, dtype: type, width: int | None = None) -> np.ndarray:
+        self._check_patch(patch)
         count = getattr(self.patches[patch], size)
         array = np.empty(count if width is None else (count, width), dtype)
         call(function, self._slider.pointer, patch, writable("int32_t[]" if dtype == np.int32 else "double[]", array))
