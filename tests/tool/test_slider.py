@@ -1,7 +1,9 @@
 """`skinslide.Slider` on numpy arrays: that they cross to the core and back unharmed. The rest is tested in C."""
 
 import gc
+import inspect
 import os
+import re
 import signal
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -453,6 +455,14 @@ def test_velocities_and_accelerations():
         slider.velocities(samples, cached)
     with pytest.raises(SliderError):
         slider.velocities([samples[1], samples[0]], cached)
+
+
+def test_what_it_takes_and_gives_is_public():
+    methods = [method for name, method in vars(Slider).items() if callable(method) and name[0] != "_"]
+    kinds = [kind for method in [Slider.__init__, *methods] for kind in method.__annotations__.values()]
+    named = {getattr(slider, word, None) for word in re.findall(r"\w+", " ".join(kinds))}
+    own = {kind.__name__ for kind in named if inspect.isclass(kind) and kind.__module__.startswith("skinslide.")}
+    assert {"PatchSetup", "Frame", "Diagnostics"} <= own <= set(skinslide.__all__)
 
 
 def test_version():

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 from skinslide import registration
 
 if TYPE_CHECKING:
-    from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
-    from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult
+    from skinslide.arrays.native import Controls, Lookup, PatchSetup, Sample, Subdivision
+    from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
     from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
     from skinslide.author.api import SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI
     from skinslide.author.applied import CanApplyResult
@@ -74,6 +74,8 @@ __all__ = [
     "Pictures",
     "PreviewReport",
     "Problem",
+    "Roughness",
+    "Sample",
     "SkinSlideAPI",
     "SkinSlideLiveAPI",
     "SkinSlideMeshAPI",
@@ -105,8 +107,8 @@ __all__ = [
 
 # The modules that have them; a test holds these to what type checkers are told above.
 _HOMES = {
-    "arrays.native": ("Controls", "Lookup", "PatchSetup", "Subdivision"),
-    "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult"),
+    "arrays.native": ("Controls", "Lookup", "PatchSetup", "Sample", "Subdivision"),
+    "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult", "Roughness"),
     "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
     "author.applied": ("CanApplyResult",),
     "author.api": ("SkinSlideAPI", "SkinSlideLiveAPI", "SkinSlideMeshAPI"),

@@ -193,7 +193,13 @@ class Sizes(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """Points of one time, before and after sliding, each (V, 3)."""
+    """Points of one time, before and after sliding.
+
+    Attributes:
+        seconds: The time; ratios of steps alone count, but for rates.
+        cached: Points before sliding (V, 3).
+        slid: Points after it (V, 3).
+    """
 
     seconds: float
     cached: np.ndarray
