@@ -137,10 +137,13 @@ static void trace_loops(ss_patch *patch) {
 skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error) {
     int32_t euler = patch->vertex_count - patch->faces.edge_count + patch->faces.face_count + patch->loop_count;
     if (patch->loop_count == 0)
-        return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: the patch is closed; it needs a boundary to hold on to", patch->label);
+        return ss_fail(error, SKINSLIDE_BAD_PATCH,
+                       "%s: the patch is closed; rules unit and fast need a boundary to hold on to, relaxed and even do not",
+                       patch->label);
     if (euler != 2)
-        return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: the patch has %d handle(s); it must be a disk with holes", patch->label,
-                       (2 - euler) / 2);
+        return ss_fail(error, SKINSLIDE_BAD_PATCH,
+                       "%s: the patch has %d handle(s); rules unit and fast need a disk with holes, relaxed and even do not",
+                       patch->label, (2 - euler) / 2);
     return SKINSLIDE_OK;
 }
 

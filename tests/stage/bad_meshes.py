@@ -314,7 +314,12 @@ CHOSEN = [
 
 
 GEOMETRY = [
-    Bad("patch: closed", nothing, "the patch is closed; it needs a boundary to hold on to", shape=stages.box),
+    Bad(
+        "patch: closed",
+        nothing,
+        "the patch is closed; rules unit and fast need a boundary to hold on to, relaxed and even do not",
+        shape=stages.box,
+    ),
     Bad("patch: three faces at an edge", nothing, "edge 0-1 has 3 faces", shape=stages.fin),
     Bad(
         "patch: pinched",
