@@ -173,6 +173,29 @@ static void say_unknown(search *own, const char *patch, int32_t space) {
     }
 }
 
+/* ---- UsdSkel ---- */
+
+static bool has_influences(const skinslide_stage_prim *prim) {
+    return prim->has_joint_indices || prim->blend_shape_count;
+}
+
+/* Why UsdSkel leaves a mesh alone that has influences; NULL: it moves its points. */
+static const char *why_not_skinned(const skinslide_stage_prim *prim) {
+    return !prim->skel_root                                       ? "there is no SkelRoot above it"
+           : !prim->skeleton                                      ? "no Skeleton is bound to it below the SkelRoot"
+           : !prim->has_joint_weights && !prim->blend_shape_count ? "its joint indices have no weights"
+                                                                  : NULL;
+}
+
+static void warn_of_skinning(search *own) {
+    const skinslide_stage_prim *prim = &own->prim;
+    if (own->finding.skinned_by && prim->point_samples)
+        say(own, SKINSLIDE_SEVERITY_WARNING, NULL,
+            "points have samples, but UsdSkel skins them again; remove the skinning where they are baked");
+    if (!own->finding.skinned_by && has_influences(prim) && !prim->point_samples)
+        say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "UsdSkel does not skin it: %s", why_not_skinned(prim));
+}
+
 /* ---- Why not ---- */
 
 /* Returns whether there is no reason. */
@@ -201,9 +224,10 @@ static bool say_why_not(search *own) {
             "points are slid already, by the bake in %s; slide the cache instead: open the stage without that layer, or remove "
             "the baked attributes from it",
             prim->baked_by);
-    else if (!prim->point_samples && (prim->has_joint_indices || prim->blend_shape_count))
+    else if (own->finding.skinned_by && !prim->reads_skinning)
         say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
-            "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)");
+            "points are skinned by UsdSkel, which a .skinslide file cannot do; bake the stage instead, or write the skinned "
+            "points into a layer to sublayer: skinslide cache STAGE -o cache.usdc");
     return own->finding.problem_count == before;
 }
 
@@ -240,10 +264,12 @@ static void look(search *own) {
     for (int32_t i = 0; own->prim.is_mesh && i < own->finding.patch_count; i++)
         for (int32_t space = 0; space < SPACES; space++)
             say_unknown(own, own->patches[i], space);
+    if (has_influences(&own->prim) && !why_not_skinned(&own->prim))
+        own->finding.skinned_by = ss_copy_text(&own->memory, own->prim.skeleton);
     if (own->finding.patch_count)
         own->finding.slides = say_why_not(own) && named;
     if (own->finding.slides)
-        warn_of_variant(own);
+        warn_of_variant(own), warn_of_skinning(own);
     own->finding.patches = own->patches;
     own->finding.problems = own->problems;
 }

@@ -49,11 +49,27 @@ Found search(Composition &composition) {
     return found;
 }
 
-// What a prim is below: undefined prims, the outermost instance, a prototype of a point instancer.
+// What a prim is below: undefined prims, the outermost instance, a prototype of a point instancer; the nearest SkelRoot, and the
+// Skeleton that is bound there or below.
 struct Place {
     bool defined = true;
-    std::string instance, instancer;
+    std::string instance, instancer, skelRoot, skeleton;
 };
+
+bool has(const TfTokenVector &names, const TfToken &name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+SdfPathVector targets(Composition &composition, const Prim &prim, const TfToken &name) {
+    return has(prim.propertyNames(), name) ? composition.targets(prim.path().AppendProperty(name)) : SdfPathVector();
+}
+
+// Of a binding that holds below a prim; empty where it unbinds what is bound above.
+std::string boundBy(Composition &composition, const Prim &prim) {
+    SdfPathVector bound = targets(composition, prim, names().boundSkeleton);
+    bool isSkeleton = !bound.empty() && composition.prim(bound[0].GetPrimPath()).typeName() == names().skeleton;
+    return isSkeleton ? bound[0].GetString() : "";
+}
 
 Place placeOf(Composition &composition, const Found &found, const SdfPath &path) {
     Place place;
@@ -65,6 +81,10 @@ Place placeOf(Composition &composition, const Found &found, const SdfPath &path)
             place.instance = prefix.GetString();
         if (place.instancer.empty() && prototype != found.prototypes.end())
             place.instancer = prototype->second.GetString();
+        if (prim.typeName() == names().skelRoot)
+            place.skelRoot = prefix.GetString(), place.skeleton.clear();
+        if (has(prim.propertyNames(), names().boundSkeleton))
+            place.skeleton = boundBy(composition, prim);
     }
     return place;
 }
@@ -84,11 +104,8 @@ std::string bakedBy(const Composition &composition, const Attribute &points) {
                                          : layer->GetIdentifier();
 }
 
-int32_t blendShapes(Composition &composition, const Prim &prim) {
-    TfTokenVector properties = prim.propertyNames();
-    if (std::find(properties.begin(), properties.end(), names().blendShapes) == properties.end())
-        return 0;
-    return static_cast<int32_t>(composition.targets(prim.path().AppendProperty(names().blendShapes)).size());
+bool isAuthored(Composition &composition, const Prim &prim, const TfToken &primvar) {
+    return ownerOf(composition, prim, primvar).attribute(primvar).authored();
 }
 
 Finding find(Composition &composition, const Found &found, const Prim &prim, const std::string &other) {
@@ -106,8 +123,10 @@ Finding find(Composition &composition, const Found &found, const Prim &prim, con
     facts.instance = orNull(place.instance), facts.instancer = orNull(place.instancer);
     facts.slid_by = orNull(other), facts.baked_by = orNull(bake);
     facts.point_samples = points.source() == Attribute::Source::Samples || points.clipped();
-    facts.has_joint_indices = ownerOf(composition, prim, names().jointIndices).attribute(names().jointIndices).authored();
-    facts.blend_shape_count = blendShapes(composition, prim);
+    facts.has_joint_indices = isAuthored(composition, prim, names().jointIndices);
+    facts.has_joint_weights = isAuthored(composition, prim, names().jointWeights);
+    facts.blend_shape_count = static_cast<int32_t>(targets(composition, prim, names().blendShapes).size());
+    facts.skel_root = orNull(place.skelRoot), facts.skeleton = orNull(place.skeleton);
     facts.variant_set = orNull(points.variant().first), facts.variant = orNull(points.variant().second);
     facts.schema_count = static_cast<int32_t>(schemas.size()), facts.schemas = schemas.data();
     return make<Finding>(skinslide_stage_find, &facts);

@@ -13,7 +13,9 @@ struct Names {
     const TfToken mesh{"Mesh"}, geomSubset{"GeomSubset"}, pointInstancer{"PointInstancer"};
     const TfToken points{"points"}, extent{"extent"}, indices{"indices"}, elementType{"elementType"};
     const TfToken prototypes{"prototypes"}, apiSchemas{"apiSchemas"}, clips{"clips"};
-    const TfToken jointIndices{"primvars:skel:jointIndices"}, blendShapes{"skel:blendShapeTargets"};
+    const TfToken jointIndices{"primvars:skel:jointIndices"}, jointWeights{"primvars:skel:jointWeights"};
+    const TfToken blendShapes{"skel:blendShapeTargets"}, boundSkeleton{"skel:skeleton"};
+    const TfToken skelRoot{"SkelRoot"}, skeleton{"Skeleton"};
     const TfToken interpolation{"interpolation"}, constant{"constant"}, elementSize{"elementSize"};
 };
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
 import stages
 from edits import (
@@ -85,18 +85,6 @@ def counts_end_with(count: int) -> Edit:
     return topology(counts=lambda counts: [*counts[:-1], count])
 
 
-def skinned(edit: Callable[[UsdSkel.BindingAPI], object]) -> Edit:
-    """Points without samples, bound to be skinned."""
-
-    def bind(scene: Scene) -> None:
-        points = scene.points.Get()
-        scene.points.Clear()
-        scene.points.Set(points)
-        edit(UsdSkel.BindingAPI.Apply(scene.prim))
-
-    return bind
-
-
 def without_type(scene: Scene) -> None:
     scene.stage.GetRootLayer().GetPrimAtPath(MESH).ClearInfo("typeName")
 
@@ -120,7 +108,6 @@ def triangle_and(*face: int) -> Callable[[], stages.Shape]:
 
 NEITHER = f"has no faces: there is neither primvars:{FACES} nor a GeomSubset {PATCH} under the mesh"
 UNDEFINED = "is not defined, there are only overs; is the path right, and does the cache below it open?"
-SKINNED = "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)"
 
 FINDING = [
     Bad(
@@ -380,24 +367,6 @@ GEOMETRY = [
         "points: vertex 12 is not finite: (0.388889, inf, 0.284059)",
         None,
         "1003",
-    ),
-    Bad(
-        "points: skinned live",
-        skinned(lambda api: api.CreateJointIndicesPrimvar(False, 1).Set([0] * 49)),
-        SKINNED,
-        None,
-    ),
-    Bad(
-        "points: skinned by an ancestor's joint",
-        all_of(skinned(lambda _: None), inherited("skel:jointIndices", [0], "constant", Types.IntArray)),
-        SKINNED,
-        None,
-    ),
-    Bad(
-        "points: blend shapes",
-        skinned(lambda api: api.CreateBlendShapeTargetsRel().SetTargets(["/World/smile"])),
-        SKINNED,
-        None,
     ),
     Bad(
         "points: baked already",

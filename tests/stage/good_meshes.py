@@ -1,8 +1,11 @@
 """Meshes, patches, rest poses and clocks of every kind that slides."""
 
+from collections.abc import Callable
+
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
 
+import rigs
 import stages
 from edits import (
     FACES,
@@ -39,6 +42,11 @@ from layers import CLOCK, HEAD
 from rows import CANNOT_READ, Good
 from stages import FRAMES
 
+SKINNED = (
+    "points are skinned by UsdSkel, which a .skinslide file cannot do; bake the stage instead, or write the skinned "
+    "points into a layer to sublayer: skinslide cache STAGE -o cache.usdc"
+)
+NOT_SKINNED = "UsdSkel does not skin it"
 UNTIMED = f'defaultPrim = "World"; metersPerUnit = 0.01; upAxis = "Y"; {CLOCK}'
 
 
@@ -140,6 +148,47 @@ def far_apart(scene: Scene) -> None:
 def skinned_earlier(scene: Scene) -> None:
     """The skinning was baked: there are samples."""
     UsdSkel.BindingAPI.Apply(scene.prim).CreateJointIndicesPrimvar(False, 1).Set([0] * 49)
+
+
+def skinned(*edits: Callable[[Scene], object]) -> Edit:
+    """UsdSkel moves the points, which have no samples."""
+
+    def edit(scene: Scene) -> None:
+        rigs.skeleton(scene.stage)
+        rigs.bind(scene.mesh)
+        for each in edits:
+            each(scene)
+
+    return edit
+
+
+def skinned_in_samples(scene: Scene) -> None:
+    scene.points.Set(stages.vectors(stages.grid().moved(1002)), 1002)
+
+
+def skinned_by_usd(scene: Scene) -> None:
+    assert UsdSkel.BakeSkinning(Usd.PrimRange(scene.stage.GetPseudoRoot()))
+
+
+def bound_above(scene: Scene) -> None:
+    scene.prim.RemoveProperty("skel:skeleton")
+    UsdSkel.BindingAPI.Apply(scene.prim.GetParent()).CreateSkeletonRel().SetTargets([rigs.SKELETON])
+
+
+def unbound_below(scene: Scene) -> None:
+    bound_above(scene)
+    UsdSkel.BindingAPI(scene.prim).CreateSkeletonRel().SetTargets([])
+
+
+def bound_above_the_skel_root(scene: Scene) -> None:
+    scene.prim.RemoveProperty("skel:skeleton")
+    UsdSkel.BindingAPI.Apply(scene.stage.GetPrimAtPath("/World")).CreateSkeletonRel().SetTargets([rigs.SKELETON])
+
+
+def blend_shapes_alone(scene: Scene) -> None:
+    rigs.blend_shape(scene.mesh)
+    for name in ("jointIndices", "jointWeights"):
+        scene.prim.RemoveProperty(f"primvars:skel:{name}")
 
 
 def joints_off_the_mesh(scene: Scene) -> None:
@@ -283,6 +332,32 @@ POINTS = [
         all_of(retyped("orientation", Types.String, "leftHanded"), normals("vertex", 49)),
     ),
     Good("points: skinning was baked", skinned_earlier),
+    Good("points: skinning was baked by USD", skinned(skinned_by_usd)),
+    Good("points: skinned", skinned(), refuses=SKINNED),
+    Good("points: skinned, in samples too", skinned(skinned_in_samples), refuses=SKINNED),
+    Good("points: skinned by blend shapes", skinned(blend_shapes_alone), refuses=SKINNED),
+    Good("points: skinned by a binding above", skinned(bound_above), refuses=SKINNED),
+    Good(
+        "points: joints without a SkelRoot",
+        skinned(lambda scene: scene.parent.SetTypeName("Xform")),
+        warns=f"{NOT_SKINNED}: there is no SkelRoot above it",
+        slides=False,
+    ),
+    *(
+        Good(f"points: joints {name}", skinned(edit), warns=f"{NOT_SKINNED}: no Skeleton is bound to it", slides=False)
+        for name, edit in {
+            "without a binding": lambda scene: scene.prim.RemoveProperty("skel:skeleton"),
+            "bound above the SkelRoot": bound_above_the_skel_root,
+            "unbound": unbound_below,
+            "bound to something else": lambda scene: scene.stage.GetPrimAtPath(rigs.SKELETON).SetTypeName("Xform"),
+        }.items()
+    ),
+    Good(
+        "points: joints without weights",
+        skinned(lambda scene: scene.prim.RemoveProperty("primvars:skel:jointWeights")),
+        warns=f"{NOT_SKINNED}: its joint indices have no weights",
+        slides=False,
+    ),
     Good("points: joint indices that are not inherited", joints_off_the_mesh),
     Good("points: blend shapes without targets", blend_shapes_without_targets),
     Good(

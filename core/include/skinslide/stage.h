@@ -185,10 +185,14 @@ typedef struct skinslide_stage_prim {
     const char *uncomposed;           /* what USD says that it could not compose of it, in one line; or NULL */
     const char *variant_set;          /* of the variant that its points come from; NULL: of none, or they are written there */
     const char *variant;              /* its name */
+    const char *skel_root;            /* the path of the nearest SkelRoot, of it and what it is below; or NULL */
+    const char *skeleton;             /* that of the Skeleton that is bound to it, there or below; NULL: none, or unbound */
+    skinslide_bool has_joint_weights; /* primvars:skel:jointWeights has a value, be it inherited */
+    skinslide_bool reads_skinning;    /* the reader asks UsdSkel for points, and takes those for the cache */
 } skinslide_stage_prim;
 
 #define SKINSLIDE_STAGE_PRIM_DEFAULT                                                                                           \
-    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_stage_prim), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 typedef enum skinslide_severity { SKINSLIDE_SEVERITY_WARNING, SKINSLIDE_SEVERITY_ERROR } skinslide_severity;
 
@@ -205,6 +209,7 @@ typedef struct skinslide_stage_finding {
     int32_t problem_count;
     const char *const *patches;                     /* [patch_count] their names, in the order of the schemas */
     const skinslide_stage_problem *const *problems; /* [problem_count] */
+    const char *skinned_by; /* the path of the Skeleton by which UsdSkel moves its points, patches or not; NULL: it does not */
 } skinslide_stage_finding;
 
 /* Looks at a prim.

@@ -1,9 +1,9 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `stitch` puts chunks of a bake together, `check` says what would be slid, `preview` draws it
-before and after, `maps` in texture coordinates, as a bake also does for `Pictures` and `Maps`; `setup` writes a patch,
-`paint` its edges, `mirror` its counterpart on a mesh's other side. `Slider` is the same on numpy arrays, and needs no
-USD.
+`bake` corrects a stage, `stitch` puts chunks of a bake together, `cache` writes what UsdSkel skins, `check` says what
+would be slid, `preview` draws it before and after, `maps` in texture coordinates, as a bake also does for `Pictures`
+and `Maps`; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on a mesh's other side. `Slider` is the
+same on numpy arrays, and needs no USD.
 
 Importing skinslide loads nothing but this: each name brings what it needs when it is first asked for.
 """
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         UsageError,
     )
     from skinslide.shot.bake import bake, bake_to_file
+    from skinslide.shot.cache import CachedMesh, CacheReport, cache
     from skinslide.shot.check import CheckedLookup, CheckedMap, CheckedMesh, CheckedPatch, CheckReport, check
     from skinslide.shot.frames import parse_frames
     from skinslide.shot.report import BakeReport, MeshReport, PatchReport
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BakeReport",
+    "CacheReport",
+    "CachedMesh",
     "CanApplyResult",
     "CheckReport",
     "CheckedLookup",
@@ -89,6 +92,7 @@ __all__ = [
     "WrittenMap",
     "bake",
     "bake_to_file",
+    "cache",
     "check",
     "choose_lookup",
     "cmake_dir",
@@ -129,6 +133,7 @@ _HOMES = {
         "UsageError",
     ),
     "shot.bake": ("bake", "bake_to_file"),
+    "shot.cache": ("CachedMesh", "CacheReport", "cache"),
     "shot.check": ("CheckedLookup", "CheckedMap", "CheckedMesh", "CheckedPatch", "CheckReport", "check"),
     "shot.frames": ("parse_frames",),
     "shot.report": ("BakeReport", "MeshReport", "PatchReport"),

@@ -54,6 +54,10 @@ static void patches_in_their_order(void **state) {
     skinslide_stage_finding_destroy(finding);
 }
 
+#define SKINNED                                                                                                                \
+    "points are skinned by UsdSkel, which a .skinslide file cannot do; bake the stage instead, or write the skinned points "   \
+    "into a layer to sublayer: skinslide cache STAGE -o cache.usdc"
+
 /* Facts are taken away one by one, from the reason that counts first to none. */
 static void reasons_in_the_order_in_which_they_count(void **state) {
     (void)state;
@@ -69,12 +73,12 @@ static void reasons_in_the_order_in_which_they_count(void **state) {
         "points are slid already, by the bake in out.usdc; slide the cache instead: open the stage without that layer, or "
         "remove "
         "the baked attributes from it",
-        "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)",
-        "points are skinned by UsdSkel and have no samples; bake the skinning first (usdbakeskinning)",
+        SKINNED,
+        SKINNED,
     };
     prim.instance = "/copy", prim.instancer = "/crowd", prim.is_defined = 0, prim.is_mesh = 0, prim.type_name = "Xform";
     prim.slid_by = "x.skinslide", prim.baked_by = "out.usdc", prim.point_samples = 0, prim.has_joint_indices = 1;
-    prim.blend_shape_count = 2;
+    prim.has_joint_weights = 1, prim.blend_shape_count = 2, prim.skel_root = "/char", prim.skeleton = "/char/rig";
     for (int32_t step = 0; step < 9; step++) {
         skinslide_stage_finding *finding = find(&prim);
         assert_false(finding->slides);
@@ -96,13 +100,46 @@ static void reasons_in_the_order_in_which_they_count(void **state) {
     skinslide_stage_finding_destroy(finding);
 }
 
-/* Skinning of points that have samples is for others to warn of: the samples are slid. */
-static void skinned_samples_are_slid(void **state) {
+/* What is bound by a skeleton, below a SkelRoot, by joints and weights or by blend shapes; any less, and it is not. */
+static void what_is_skinned(void **state) {
     (void)state;
-    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
-    prim.has_joint_indices = 1;
+    static const char *const reasons[] = {NULL, "UsdSkel does not skin it: there is no SkelRoot above it",
+                                          "UsdSkel does not skin it: no Skeleton is bound to it below the SkelRoot",
+                                          "UsdSkel does not skin it: its joint indices have no weights"};
+    for (int32_t lacking = 0; lacking < 4; lacking++)
+        for (int32_t samples = 0; samples < 2; samples++) {
+            skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
+            prim.point_samples = samples, prim.reads_skinning = 1, prim.has_joint_indices = 1;
+            prim.skel_root = lacking == 1 ? NULL : "/char", prim.skeleton = lacking == 2 ? NULL : "/char/rig";
+            prim.has_joint_weights = lacking != 3;
+            skinslide_stage_finding *finding = find(&prim);
+            const char *said =
+                lacking   ? (samples ? NULL : reasons[lacking])
+                : samples ? "points have samples, but UsdSkel skins them again; remove the skinning where they are baked"
+                          : NULL;
+            assert_true(finding->slides);
+            if (lacking)
+                assert_null(finding->skinned_by);
+            else
+                assert_string_equal(finding->skinned_by, "/char/rig");
+            assert_int_equal(finding->problem_count, said != NULL);
+            if (said)
+                expect_problem(finding, 0, SKINSLIDE_SEVERITY_WARNING, NULL, said);
+            skinslide_stage_finding_destroy(finding);
+            prim.blend_shape_count = 1, finding = find(&prim);
+            assert_true((finding->skinned_by != NULL) == (lacking == 0 || lacking == 3));
+            skinslide_stage_finding_destroy(finding);
+        }
+}
+
+/* Without a patch there is nothing to say, but it is known. */
+static void what_is_skinned_without_a_patch(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = mesh_with(0, NULL);
+    prim.blend_shape_count = 1, prim.skel_root = "/char", prim.skeleton = "/char/rig";
     skinslide_stage_finding *finding = find(&prim);
-    assert_true(finding->slides);
+    assert_string_equal(finding->skinned_by, "/char/rig");
+    assert_int_equal(finding->problem_count, 0);
     skinslide_stage_finding_destroy(finding);
 }
 
@@ -234,7 +271,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(patches_in_their_order),
         cmocka_unit_test(reasons_in_the_order_in_which_they_count),
-        cmocka_unit_test(skinned_samples_are_slid),
+        cmocka_unit_test(what_is_skinned),
+        cmocka_unit_test(what_is_skinned_without_a_patch),
         cmocka_unit_test(a_schema_without_a_name_is_an_error),
         cmocka_unit_test(patches_that_are_not_applied),
         cmocka_unit_test(settings_that_are_none),

@@ -198,6 +198,10 @@ class PrimFacts:
     uncomposed: str | None = None
     variant_set: str | None = None
     variant: str | None = None
+    skel_root: str | None = None
+    skeleton: str | None = None
+    has_joint_weights: bool = False
+    reads_skinning: bool = False
 
 
 class Said(NamedTuple):
@@ -209,11 +213,12 @@ class Said(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """The patches of a prim, whether they can be slid, and what there is to say of it."""
+    """The patches of a prim, whether they can be slid, what there is to say of it, and whether UsdSkel moves it."""
 
     patches: list[str]
     slides: bool
     said: list[Said]
+    is_skinned: bool
 
 
 def find(facts: PrimFacts) -> Finding:
@@ -226,7 +231,8 @@ def find(facts: PrimFacts) -> Finding:
         Said(token_of("severity", each.severity), text(each.patch) if each.patch else None, text(each.message))
         for each in problems
     ]
-    return Finding([text(found.patches[i]) for i in range(found.patch_count)], bool(found.slides), said)
+    patches = [text(found.patches[i]) for i in range(found.patch_count)]
+    return Finding(patches, bool(found.slides), said, bool(found.skinned_by))
 
 
 class Taker:

@@ -85,6 +85,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_setup(_add_command(commands, "setup", "write a layer that makes a patch of some faces of a mesh"))
     _add_paint(_add_command(commands, "paint", "write a layer that gives edges of a patch a force density"))
     _add_mirror(_add_command(commands, "mirror", "write a layer that copies a patch to a mesh's other side"))
+    _add_cache(_add_command(commands, "cache", "write the points that UsdSkel skins into a layer of samples"))
     _add_stitch(_add_command(commands, "stitch", "put chunks of frames, baked apart, into one layer"))
     return parser
 
@@ -317,6 +318,20 @@ def _add_mirror(command: argparse.ArgumentParser) -> None:
         metavar="D",
         help="how far a point may be from its counterpart's mirror image (default: 1e-4 of the mesh's largest extent)",
     )
+
+
+def _add_cache(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
+    command.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="OUT",
+        help="layer of overs to write, .usda, .usdc or .usd, to be sublayered above the character, whose meshes are "
+        "then skinned no more; replaced in one step at the end. Live layers slide it",
+    )
+    _add_options(command, SlideOptions, "prims", "frames")
+    _add_printing(command)
 
 
 def _add_stitch(command: argparse.ArgumentParser) -> None:

@@ -148,6 +148,15 @@ def _maps(
     return "" if quiet else report.text(), DONE
 
 
+def _cache(
+    cache: Callable[..., Any], stage: str, output: str, *, json: bool = False, quiet: bool = False, **options: Any
+) -> Result:
+    report = _told(cache, quiet, stage, output, **options)
+    if json:
+        return as_json({"stage": stage, "output": output, **report.as_dict()}), DONE
+    return "" if quiet else f"{report.text()}\n{_layer_written(output, 'character')}", DONE
+
+
 def _author(function: Callable[..., Any], stage: str, output: str, **options: Any) -> Result:
     return "\n".join([function(stage, output, **options).text(), *_written(output)]), DONE
 
@@ -158,10 +167,15 @@ def _stitch(stitch: Callable[..., Any], chunks: list[str], output: str) -> Resul
 
 def _followed(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
     """Calls a function that slides, with its progress told."""
+    return _told(function, quiet, *arguments, **_with_lookup(options))
+
+
+def _told(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
+    """Calls a function of frames, with its progress told."""
     from skinslide.command.progress import reporter
 
     with reporter(quiet=quiet) as progress:
-        return function(*arguments, progress=progress, **_with_lookup(options))
+        return function(*arguments, progress=progress, **options)
 
 
 def _with_lookup(options: dict[str, Any]) -> dict[str, Any]:
@@ -177,13 +191,14 @@ def _written(*places: str | None) -> list[str]:
     return [one_line(f"{place}: written") for place in places if place]
 
 
-def _layer_written(output: str) -> str:
-    return one_line(f"{output}: written; sublayer it above the cache")
+def _layer_written(output: str, below: str = "cache") -> str:
+    return one_line(f"{output}: written; sublayer it above the {below}")
 
 
 # Each with the function that it calls: the module and the name.
 _COMMANDS: dict[str, tuple[Callable[..., Result], str, str]] = {
     "bake": (_bake, "shot.bake", "bake_to_file"),
+    "cache": (_cache, "shot.cache", "cache"),
     "check": (_check, "shot.check", "check"),
     "preview": (_preview, "picture.preview", "preview"),
     "maps": (_maps, "picture.maps", "maps"),

@@ -1,6 +1,7 @@
 """A layer with the slid points of every mesh, to be sublayered above the cache; or the same in a stage's edit target.
 
-At each time: points, extent, what the skin carries, rates of change, and diagnostics where they are asked for.
+At each time: points, extent, what the skin carries, rates of change, and diagnostics where they are asked for. A
+mesh that UsdSkel skins is slid as it is skinned, and the layer unbinds it from its skeleton.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from pathlib import Path
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import Lookup
+from skinslide.arrays.slider import version
 from skinslide.problems import FrameProblem, Problem, StageProblems
 from skinslide.shot.derived import Derived
 from skinslide.shot.loop import slide
@@ -145,7 +147,8 @@ class _Layer:
     def begin(self, shot: Shot, _options: SlideOptions) -> Making:
         check_output(self.output, EXTENSIONS)
         check_not_input(self.output, shot.stage, *shot.paths)
-        return _Baking(self.options, layer_in_place(self.output, shot.stage), in_stage=False)
+        comment = f"Slid by skinslide {version()}. Sublayer this above the cache."
+        return _Baking(self.options, layer_in_place(self.output, shot.stage, comment), in_stage=False)
 
 
 @dataclass(frozen=True)
@@ -218,6 +221,8 @@ class _MeshBake(MeshMaking):
         indices = _indices(self._mesh.prim) if self._diagnostics else []
         for attribute in [*self._derived.blocked, *indices]:
             self._baking.overs.block(attribute)
+        if self._mesh.skinning:
+            self._baking.overs.end_skinning(self._mesh.prim)
         return self._derived.problems
 
     def _check_limits(self, time: Usd.TimeCode, frame: SlidFrame) -> None:

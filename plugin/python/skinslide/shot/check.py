@@ -28,7 +28,6 @@ from skinslide.problems import (
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
-from skinslide.stage.finding import is_skinned
 from skinslide.stage.given import PrimsLike, StageLike, given_paths, given_stage
 from skinslide.stage.mesh import PatchedMesh
 
@@ -104,6 +103,7 @@ class CheckedMesh:
         samples: The stage times that would be written, the frames between samples of the stage too.
         patches: Every piece of every patch.
         maps: The textures that are painted by.
+        skeleton: The path of the Skeleton by which UsdSkel skins it; empty: it does not.
     """
 
     path: str
@@ -114,6 +114,7 @@ class CheckedMesh:
     samples: list[float]
     patches: list[CheckedPatch]
     maps: list[CheckedMap]
+    skeleton: str
 
 
 @dataclass(frozen=True)
@@ -210,7 +211,8 @@ def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
     else:
         samples = "no samples"
     welded = f", {mesh.welded} of them welded" if mesh.welded else ""
-    yield f"{mesh.path}: {mesh.points} points{welded}, {mesh.faces} faces, rest from {mesh.rest}, {samples}"
+    skinned = f", skinned by {mesh.skeleton}" if mesh.skeleton else ""
+    yield f"{mesh.path}: {mesh.points} points{welded}, {mesh.faces} faces{skinned}, rest from {mesh.rest}, {samples}"
     for name in dict.fromkeys(patch.name for patch in mesh.patches):
         yield from _patch_lines(name, [patch for patch in mesh.patches if patch.name == name])
     for used in mesh.maps:
@@ -282,7 +284,9 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     used = [_checked_map(patch.name, each) for patch, read in pairs for each in read.textures]
     faces = mesh.topology.face_count
     welded = mesh.weld.info.welded_points if slider else 0
-    return CheckedMesh(mesh.path, mesh.vertex_count, faces, mesh.rest_source, welded, times, patches, used)
+    return CheckedMesh(
+        mesh.path, mesh.vertex_count, faces, mesh.rest_source, welded, times, patches, used, mesh.skeleton
+    )
 
 
 def _checked_map(patch: str, used: Texture) -> CheckedMap:
@@ -368,9 +372,6 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
 
 
 def _cache_problems(mesh: PatchedMesh) -> Iterator[Problem]:
-    if not mesh.points_times() and mesh.rest_source == "points (default)":
+    if not mesh.skinning and not mesh.points_times() and mesh.rest_source == "points (default)":
         message = "points have no samples and are themselves the rest points, so nothing slides"
-        yield Problem("warning", mesh.path, None, None, message)
-    if mesh.points_times() and is_skinned(mesh.prim):
-        message = "points have samples, but UsdSkel skins them again; remove the skinning where they are baked"
         yield Problem("warning", mesh.path, None, None, message)

@@ -32,12 +32,11 @@ class Derived:
         self.problems: list[Problem] = []
         self.blocked: list[Usd.Attribute] = []
         self._mesh = mesh
-        points = UsdGeom.PointBased(mesh.prim).GetPointsAttr().GetTimeSamples()
-        self._meaning = DerivedMeaning(mesh.meaning, points, mesh.stage.GetTimeCodesPerSecond())
+        self._meaning = DerivedMeaning(mesh.meaning, mesh.points_times(), mesh.stage.GetTimeCodesPerSecond())
         with contextlib.suppress(Fault):  # too many, of which some are named
             if between:
                 self._meaning.fill()
-        sources = [*(Source(mesh.prim, each) for each in inputs("derived")), *_offered(mesh.prim, self._meaning)]
+        sources = [*map(mesh.derived_source, inputs("derived")), *_offered(mesh.prim, self._meaning)]
         self._sources = {source.wanted.property(): source for source in sources}
         for source in sources:
             self._meaning.take(source.wanted, source.first(), source.samples())

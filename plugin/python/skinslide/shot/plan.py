@@ -86,11 +86,14 @@ def _outside(meshes: list[PlannedMesh], named: list[float]) -> Iterator[Problem]
 
 def _planned(mesh: PatchedMesh, slider: Slider, asked: AskedFrames) -> PlannedMesh:
     between = asked != AUTHORED and mesh.interpolates
-    return PlannedMesh(mesh, slider, _times(mesh, asked), between)
+    return PlannedMesh(mesh, slider, times_of(mesh, asked), between)
 
 
-def _times(mesh: PatchedMesh, asked: AskedFrames) -> list[Usd.TimeCode]:
-    """A mesh that never changes has one value, whatever was asked; so has one whose splines have no knots."""
+def times_of(mesh: PatchedMesh, asked: AskedFrames) -> list[Usd.TimeCode]:
+    """When a mesh is wanted, ascending.
+
+    One that never changes has one value, whatever was asked; so has one whose splines have no knots.
+    """
     if not mesh.varies:
         return [Usd.TimeCode.Default()]
     times = mesh.frame_times() if asked is None else mesh.sample_times() if isinstance(asked, str) else asked

@@ -4,42 +4,69 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdSkel
 
-from skinslide.arrays.meaning import SCHEMA, PrimFacts, find, nothing_to_slide
+from skinslide.arrays.meaning import SCHEMA, Finding, PrimFacts, find, nothing_to_slide
 from skinslide.problems import NO_SUCH_PRIM, Problem, StageProblems
 from skinslide.stage import schema
+from skinslide.stage.binding import skel_root, skeleton_target
 from skinslide.stage.marks import baked_layer, has_values
 from skinslide.stage.opening import is_live
 
 _Variant: TypeAlias = tuple[str, str]  # its set, its name
 
 
-def find_meshes(
-    stage: Usd.Stage, prim_paths: Sequence[str] | None = None
-) -> tuple[list[tuple[Usd.Prim, list[str]]], list[Problem]]:
-    """The meshes with patches, each with their names, and what there is to say of every prim that carries a patch.
+class FoundMesh(NamedTuple):
+    """A mesh that can be slid."""
+
+    prim: Usd.Prim
+    patches: list[str]
+    is_skinned: bool  # UsdSkel moves its points
+
+
+def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tuple[list[FoundMesh], list[Problem]]:
+    """The meshes with patches, and what there is to say of every prim that carries a patch.
 
     Of the whole stage, or of the prims at `prim_paths` and everything below them.
     """
-    meshes, problems, seen = [], list(composition_problems(stage, prim_paths)), set()
+    meshes, problems = [], list(composition_problems(stage, prim_paths))
     prototypes = _instancer_prototypes(stage)
-    for root in _roots(stage, prim_paths, problems):
-        for prim in _prims_below(root):
-            if prim.GetPath() in seen:
-                continue
-            seen.add(prim.GetPath())
-            finding = find(_facts(prim, prototypes))
-            problems += [
-                Problem(said.severity, str(prim.GetPath()), said.patch, None, said.message) for said in finding.said
-            ]
-            if finding.patches and finding.slides:
-                meshes.append((prim, finding.patches))
+    for prim in _prims(stage, prim_paths, problems):
+        finding = find(_facts(prim, prototypes))
+        problems += _said(prim, finding)
+        if finding.patches and finding.slides:
+            meshes.append(FoundMesh(prim, finding.patches, finding.is_skinned))
     if not meshes and not any(problem.severity == "error" for problem in problems):
         problems.append(Problem("error", "", None, None, _nothing(prim_paths)))
     return meshes, problems
+
+
+def find_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tuple[list[FoundMesh], list[Problem]]:
+    """The meshes that UsdSkel skins, and what there is to say of each mesh with joints or blend shapes."""
+    meshes, problems = [], list(composition_problems(stage, prim_paths))
+    prototypes = _instancer_prototypes(stage)
+    for prim in filter(UsdGeom.Mesh, _prims(stage, prim_paths, problems)):
+        # What keeps a mesh with a patch from being slid keeps the points of this one from being replaced.
+        facts = _facts(prim, prototypes, [f"{SCHEMA}:any"])
+        if facts.has_joint_indices or facts.blend_shape_count:
+            finding = find(facts)
+            problems += _said(prim, finding)
+            meshes += [FoundMesh(prim, [], True)] if finding.is_skinned and finding.slides else []
+    if not meshes and not any(problem.severity == "error" for problem in problems):
+        problems.append(Problem("error", "", None, None, f"UsdSkel skins no mesh {_where(prim_paths)}"))
+    return meshes, problems
+
+
+def is_skinned(prim: Usd.Prim) -> bool:
+    """Whether UsdSkel moves the points of a mesh."""
+    return find(_facts(prim, {}, [f"{SCHEMA}:any"])).is_skinned
+
+
+def _said(prim: Usd.Prim, finding: Finding) -> Iterator[Problem]:
+    for said in finding.said:
+        yield Problem(said.severity, str(prim.GetPath()), said.patch, None, said.message)
 
 
 def patched_prims(stage: Usd.Stage) -> list[Usd.Prim]:
@@ -50,10 +77,10 @@ def patched_prims(stage: Usd.Stage) -> list[Usd.Prim]:
 def prims_at(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> list[Usd.Prim]:
     """Every prim of a stage, or those at paths and below, each once. Raises StageProblems for a path of none."""
     problems: list[Problem] = []
-    found = [prim for root in _roots(stage, prim_paths, problems) for prim in _prims_below(root)]
+    found = list(_prims(stage, prim_paths, problems))
     if problems:
         raise StageProblems(problems)
-    return list(dict.fromkeys(found))
+    return found
 
 
 def composition_problems(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> Iterator[Problem]:
@@ -91,6 +118,16 @@ def _roots(stage: Usd.Stage, prim_paths: Sequence[str] | None, problems: list[Pr
             problems.append(Problem("error", str(path), None, None, message))
 
 
+def _prims(stage: Usd.Stage, prim_paths: Sequence[str] | None, problems: list[Problem]) -> Iterator[Usd.Prim]:
+    """Each prim that is asked for, once."""
+    seen = set()
+    for root in _roots(stage, prim_paths, problems):
+        for prim in _prims_below(root):
+            if prim.GetPath() not in seen:
+                seen.add(prim.GetPath())
+                yield prim
+
+
 def _prims_below(root: Usd.Prim) -> Usd.PrimRange:
     """Active prims; with instance proxies and undefined prims, so that a patch there is not silently passed over."""
     return Usd.PrimRange(root, Usd.TraverseInstanceProxies(Usd.PrimIsActive & ~Usd.PrimIsAbstract))
@@ -106,10 +143,17 @@ def _instancer_prototypes(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
     }
 
 
-def _facts(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> PrimFacts:
-    """What of a prim decides whether it can be slid; of one that carries no patch little is asked."""
-    names = schema.applied_schemas(prim)
-    properties = [prop for space in schema.SPACES for prop in prim.GetAuthoredPropertiesInNamespace(space)]
+def _facts(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path], schemas: Sequence[str] | None = None) -> PrimFacts:
+    """What of a prim decides whether it can be slid; of one that carries no patch little is asked.
+
+    Args:
+        prim: The prim.
+        prototypes: Of point instancers, each with its instancer.
+        schemas: Those that are applied to it, as far as this goes; None: those that are.
+    """
+    names = schema.applied_schemas(prim) if schemas is None else schemas
+    spaces = schema.SPACES if schemas is None else ()
+    properties = [prop for space in spaces for prop in prim.GetAuthoredPropertiesInNamespace(space)]
     facts = PrimFacts(
         type_name=str(prim.GetTypeName()),
         is_mesh=prim.IsA(UsdGeom.Mesh),
@@ -128,25 +172,24 @@ def _facts(prim: Usd.Prim, prototypes: dict[Sdf.Path, Sdf.Path]) -> PrimFacts:
         slid_by=_slid_by(prim),
         baked_by=baked.identifier if baked else None,
         point_samples=points.GetNumTimeSamples() if points else 0,
-        has_joint_indices=_has_joint_indices(prim),
-        blend_shape_count=_blend_shape_count(prim),
+        has_joint_indices=_is_authored(prim, "skel:jointIndices"),
+        has_joint_weights=_is_authored(prim, "skel:jointWeights"),
+        blend_shape_count=len(UsdSkel.BindingAPI(prim).GetBlendShapeTargetsRel().GetTargets()),
+        skel_root=_path(skel_root(prim)),
+        skeleton=_path(skeleton_target(prim)),
+        reads_skinning=True,
         variant_set=variant_set,
         variant=variant,
     )
 
 
-def is_skinned(prim: Usd.Prim) -> bool:
-    """Whether UsdSkel moves the points of a mesh."""
-    return _has_joint_indices(prim) or _blend_shape_count(prim) > 0
+def _is_authored(prim: Usd.Prim, primvar: str) -> bool:
+    found = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(primvar)
+    return bool(found and found.HasAuthoredValue())
 
 
-def _has_joint_indices(prim: Usd.Prim) -> bool:
-    joints = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("skel:jointIndices")
-    return bool(joints and joints.HasAuthoredValue())
-
-
-def _blend_shape_count(prim: Usd.Prim) -> int:
-    return len(UsdSkel.BindingAPI(prim).GetBlendShapeTargetsRel().GetTargets())
+def _path(prim: Usd.Prim | None) -> str | None:
+    return str(prim.GetPath()) if prim else None
 
 
 def _instance_of(prim: Usd.Prim) -> str | None:
@@ -187,6 +230,9 @@ def _slid_by(prim: Usd.Prim) -> str | None:
 
 
 def _nothing(prim_paths: Sequence[str] | None) -> str:
-    where = "on the stage" if prim_paths is None else f"at or below {', '.join(map(str, prim_paths))}"
-    said = nothing_to_slide(where)
+    said = nothing_to_slide(_where(prim_paths))
     return f"{said}; start with: skinslide setup STAGE -o X.skinslide --prim MESH --patch NAME --faces 0-120"
+
+
+def _where(prim_paths: Sequence[str] | None) -> str:
+    return "on the stage" if prim_paths is None else f"at or below {', '.join(map(str, prim_paths))}"

@@ -1,15 +1,16 @@
-"""The marks on the values of a bake, so that none is taken for a cache and slid twice."""
+"""The marks on what a bake authors, so that none is taken for a cache and slid twice."""
 
 from __future__ import annotations
 
 from pxr import Sdf, Usd, UsdGeom
 
-MARK = "skinslide"  # in the customData of an attribute
-VALUES = ("default", "timeSamples", "spline")
+MARK = "skinslide"  # in the customData of a property
+VALUES = ("default", "timeSamples", "spline")  # of an attribute
+_TARGETS = "targetPaths"  # of a relationship
 
 
-def mark(spec: Sdf.AttributeSpec) -> None:
-    """Says that the values of an attribute are a bake's."""
+def mark(spec: Sdf.PropertySpec) -> None:
+    """Says that the values of an attribute, or the targets of a relationship, are a bake's."""
     spec.SetInfoDictionaryValue("customData", MARK, "baked")
 
 
@@ -18,7 +19,7 @@ def is_marked(spec: Sdf.PropertySpec) -> bool:
 
 
 def has_values(spec: Sdf.PropertySpec) -> bool:
-    return any(map(spec.HasInfo, VALUES))
+    return any(map(spec.HasInfo, (*VALUES, _TARGETS)))
 
 
 def baked_layer(prim: Usd.Prim) -> Sdf.Layer | None:

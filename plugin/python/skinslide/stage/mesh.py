@@ -10,13 +10,14 @@ from functools import cached_property
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import MeshMeaning, Weld, inputs, merge_times, times_between
+from skinslide.arrays.meaning import Input, MeshMeaning, Weld, inputs, merge_times, positions, times_between
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem
-from skinslide.stage.finding import find_meshes
+from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned
 from skinslide.stage.patch import Animation, read_patch
+from skinslide.stage.skinning import SkinnedNormals, SkinnedPoints, Skinning
 from skinslide.stage.values import FIRST, Source, Span, read_value, take
 
 
@@ -32,12 +33,15 @@ class PatchedMesh:
     rest_points: np.ndarray  # (V, 3) float32
     patches: list[PatchSetup]  # with the controls of the first time
     animation: list[Animation]  # of each patch
+    skinning: Skinning | None = None  # None where UsdSkel leaves it alone
 
     @classmethod
-    def of(cls, prim: Usd.Prim, meaning: MeshMeaning, animation: list[Animation]) -> PatchedMesh:
+    def of(
+        cls, prim: Usd.Prim, meaning: MeshMeaning, animation: list[Animation], skinning: Skinning | None
+    ) -> PatchedMesh:
         topology, rest = Topology.of(meaning), meaning.rest_points()
         patches = [each.setup for each in animation]
-        return cls(prim.GetStage(), prim, meaning, topology, meaning.subdivision(), rest, patches, animation)
+        return cls(prim.GetStage(), prim, meaning, topology, meaning.subdivision(), rest, patches, animation, skinning)
 
     @property
     def rest_source(self) -> str:
@@ -75,7 +79,9 @@ class PatchedMesh:
         return meaning.subdivision()
 
     def points_times(self) -> list[float]:
-        """The authored samples of points."""
+        """The authored samples of points, and of what skins them."""
+        if self.skinning:
+            return merge_times(self.skinning.times())
         return merge_times(UsdGeom.Mesh(self.prim).GetPointsAttr().GetTimeSamples())
 
     @property
@@ -127,9 +133,31 @@ class PatchedMesh:
     def points_at(self, time: Usd.TimeCode) -> np.ndarray:
         """Cached points, float32 (V, 3)."""
         try:
-            return self.meaning.points(read_value(UsdGeom.Mesh(self.prim).GetPointsAttr(), time))
+            authored = self.meaning.points(read_value(UsdGeom.Mesh(self.prim).GetPointsAttr(), time))
+            return self.skinning.points(authored, time) if self.skinning else authored
         except Fault as fault:
             raise FrameProblem(self.problem(str(fault), time)) from fault
+
+    @property
+    def skeleton(self) -> str:
+        """The path of the Skeleton by which UsdSkel skins it; empty: it does not."""
+        return self.skinning.skeleton if self.skinning else ""
+
+    def bound_points(self) -> np.ndarray | None:
+        """The default value of points, float32 (V, 3), as `SkinnedPoints` has it; None where there is none."""
+        source = _source(self.prim, inputs("mesh")[-1], self.skinning)
+        return positions(source.first()) if source.at(Usd.TimeCode.Default()) else None
+
+    def derived_source(self, wanted: Input) -> Source:
+        """Where values that follow from points come from."""
+        if self.skinning and wanted.name == UsdGeom.Tokens.normals:
+            return SkinnedNormals(self.prim, wanted, self.skinning, self.face_indices)
+        return Source(self.prim, wanted)
+
+    def skinned_normals(self) -> list[SkinnedNormals]:
+        """Those that it may have."""
+        sources = map(self.derived_source, inputs("derived"))
+        return [source for source in sources if isinstance(source, SkinnedNormals)]
 
     def controls_at(self, time: Usd.TimeCode) -> list[Controls] | None:
         """The controls of each patch, or None where none is animated."""
@@ -236,21 +264,43 @@ def read_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
     A mesh comes with those of its patches that are good: whoever wants all or none looks for errors among the problems.
     """
     found, problems = find_meshes(stage, prim_paths)
-    meshes = [_read_mesh(prim, patches, problems) for prim, patches in found]
+    meshes = [_read_mesh(each, problems) for each in found]
     return [mesh for mesh in meshes if mesh is not None], problems
 
 
-def _read_mesh(prim: Usd.Prim, patches: Sequence[str], problems: list[Problem]) -> PatchedMesh | None:
-    path = str(prim.GetPath())
+def read_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None) -> tuple[list[PatchedMesh], list[Problem]]:
+    """Every mesh that UsdSkel skins, without patches, and every problem found on the way."""
+    found, problems = find_skinned(stage, prim_paths)
+    meshes = [_read_skinned(each.prim, problems) for each in found]
+    return [mesh for mesh in meshes if mesh is not None], problems
+
+
+def _read_skinned(prim: Usd.Prim, problems: list[Problem]) -> PatchedMesh | None:
+    try:
+        skinning = Skinning(prim)
+        meaning, faults = take_mesh(prim, skinning)
+    except Fault as fault:
+        faults = [str(fault)]
+    problems.extend(Problem("error", str(prim.GetPath()), None, None, fault) for fault in faults)
+    return None if faults else PatchedMesh.of(prim, meaning, [], skinning)
+
+
+def _read_mesh(found: FoundMesh, problems: list[Problem]) -> PatchedMesh | None:
+    prim, path = found.prim, str(found.prim.GetPath())
 
     def say(faults: Sequence[str], patch: str | None = None) -> None:
         problems.extend(Problem("error", path, patch, None, fault) for fault in faults)
 
-    meaning, faults = take_mesh(prim)
+    try:
+        skinning = Skinning(prim) if found.is_skinned else None
+    except Fault as fault:
+        say([str(fault)])
+        return None
+    meaning, faults = take_mesh(prim, skinning)
     say(faults)
     if not meaning.has_faces:
         return None
-    read = {name: read_patch(prim, name, meaning) for name in patches}
+    read = {name: read_patch(prim, name, meaning) for name in found.patches}
     for name, (_, wrong) in read.items():
         say(wrong, name)
     animation = [good for good, _ in read.values() if good]
@@ -260,17 +310,22 @@ def _read_mesh(prim: Usd.Prim, patches: Sequence[str], problems: list[Problem]) 
     say(faults)
     if faults:
         return None
-    mesh = PatchedMesh.of(prim, meaning, animation)
+    mesh = PatchedMesh.of(prim, meaning, animation, skinning)
     problems.extend(mesh.warnings())
     return mesh
 
 
-def take_mesh(prim: Usd.Prim) -> tuple[MeshMeaning, list[str]]:
+def take_mesh(prim: Usd.Prim, skinning: Skinning | None = None) -> tuple[MeshMeaning, list[str]]:
     """The points, faces and rest points of a mesh, and what is wrong with them."""
     meaning, faults = MeshMeaning(), []
-    points, *others = (Source(prim, each) for each in inputs("mesh"))
+    points, *others = (_source(prim, each, skinning) for each in inputs("mesh"))
     faults += take(meaning, [points])
     return meaning, faults or take(meaning, others)
+
+
+def _source(prim: Usd.Prim, wanted: Input, skinning: Skinning | None) -> Source:
+    is_points = wanted.property() == UsdGeom.Tokens.points
+    return SkinnedPoints(prim, wanted, skinning) if skinning and is_points else Source(prim, wanted)
 
 
 def read_faces_of_mesh(prim: Usd.Prim) -> MeshMeaning:

@@ -27,22 +27,22 @@ class EarlierBake:
         self._before = Before(self._layer)
 
     def set_aside(self, prims: Sequence[str] | None) -> None:
-        """Gives the attributes that are marked, everywhere or at and below `prims`, the values they had before."""
+        """Gives the properties that are marked, everywhere or at and below `prims`, the values they had before."""
         with Sdf.ChangeBlock():
             for path in self._marked(prims):
                 self._before.keep(path)
                 self._revert(path)
 
-    def replace(self, attribute: Sdf.Path, samples: bool) -> None:
-        """Makes room for the values of a bake; those that are the cache's are kept beside them.
+    def replace(self, on_stage: Sdf.Path, samples: bool) -> None:
+        """Makes room for the values of a bake, or its targets; those that are the cache's are kept beside them.
 
         Args:
-            attribute: On the stage, which need not have it.
+            on_stage: An attribute or a relationship, which the stage need not have.
             samples: Whether samples will be authored; the default value, which may be the rest pose, then stays.
         """
-        path = self._target.MapToSpecPath(attribute)
+        path = self._target.MapToSpecPath(on_stage)
         self._before.keep(path)
-        spec = self._layer.GetAttributeAtPath(path)
+        spec = self._layer.GetPropertyAtPath(path)
         if not spec:
             return
         if has_values(spec):
@@ -50,8 +50,8 @@ class EarlierBake:
             Sdf.CopySpec(self._layer, path, self._layer, _cached(path))
         _clear(spec, VALUES[1:] if samples else VALUES)
 
-    def mark(self, attribute: Usd.Attribute) -> None:
-        mark(self._layer.GetAttributeAtPath(self._target.MapToSpecPath(attribute.GetPath())))
+    def mark(self, authored: Usd.Property) -> None:
+        mark(self._layer.GetPropertyAtPath(self._target.MapToSpecPath(authored.GetPath())))
 
     def bring_back(self) -> None:
         """Undoes everything."""
@@ -61,7 +61,7 @@ class EarlierBake:
         """Removes what the new bake did not need again."""
         with Sdf.ChangeBlock():
             for path in self._before:
-                spec = self._layer.GetAttributeAtPath(path)
+                spec = self._layer.GetPropertyAtPath(path)
                 if not spec or is_marked(spec):
                     continue
                 remove(self._layer, _cached(path))
@@ -74,7 +74,7 @@ class EarlierBake:
         found: list[Sdf.Path] = []
 
         def look(path: Sdf.Path) -> None:
-            spec = self._layer.GetAttributeAtPath(path) if path.IsPropertyPath() else None
+            spec = self._layer.GetPropertyAtPath(path) if path.IsPropertyPath() else None
             if spec and is_marked(spec) and any(map(self._on_stage(path).HasPrefix, roots)):
                 found.append(path)
 
@@ -88,8 +88,8 @@ class EarlierBake:
         return there if is_there else Sdf.Path.emptyPath
 
     def _revert(self, path: Sdf.Path) -> None:
-        spec = self._layer.GetAttributeAtPath(path)
-        if self._layer.GetAttributeAtPath(_cached(path)):
+        spec = self._layer.GetPropertyAtPath(path)
+        if self._layer.GetPropertyAtPath(_cached(path)):
             self._before.keep(_cached(path))
             Sdf.CopySpec(self._layer, _cached(path), self._layer, path)
             return
@@ -131,10 +131,13 @@ def _is_path(prim: str) -> bool:
 
 
 def _cached(path: Sdf.Path) -> Sdf.Path:
-    """Where the values of an attribute are kept that a bake into the same layer replaces."""
+    """Where the values of a property are kept that a bake into the same layer replaces."""
     return path.GetPrimOrPrimVariantSelectionPath().AppendProperty(f"{schema.CACHED}:{path.name}")
 
 
-def _clear(spec: Sdf.AttributeSpec, fields: Sequence[str]) -> None:
+def _clear(spec: Sdf.PropertySpec, fields: Sequence[str]) -> None:
+    if isinstance(spec, Sdf.RelationshipSpec):
+        spec.targetPathList.ClearEdits()
+        return
     for field in fields:
         spec.ClearInfo(field)

@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, Vt
+from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
 
-from skinslide.arrays.slider import version
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
 from skinslide.write.place import check_not_read, replacing, saved, writing
 
 EXTENSIONS = (".usda", ".usdc", ".usd")
 _TEXT = ".usda"
+_INFLUENCES = (
+    UsdSkel.Tokens.primvarsSkelJointIndices,
+    UsdSkel.Tokens.primvarsSkelJointWeights,
+    UsdSkel.Tokens.skelBlendShapes,
+)
 _UNSAVED_BYTES = 256 << 20  # a crate file takes what is saved out of memory
 
 
 class OverLayer:
     """Collects values for attributes of a stage in a layer of overs, typed as the stage has them."""
 
-    def __init__(self, layer: Sdf.Layer, output: Path | None = None):
-        """A crate file, saved in parts, with the output whose fault it is when that fails; or an anonymous layer."""
-        self.layer, self._output = layer, output
+    def __init__(self, layer: Sdf.Layer, output: Path | None = None, *, marked: bool = True):
+        """A crate file, saved in parts, with the output whose fault it is when that fails; or an anonymous layer.
+
+        What is in it is marked as a bake's, unless it is a cache.
+        """
+        self.layer, self._output, self._marked = layer, output, marked
         self._unsaved = 0
 
     def set(self, attribute: Usd.Attribute, value: Any, time: Usd.TimeCode) -> None:
@@ -45,6 +52,21 @@ class OverLayer:
         spec = self._spec(attribute)
         spec.ClearInfo("timeSamples")
         spec.default = Sdf.ValueBlock()
+
+    def end_skinning(self, prim: Usd.Prim) -> None:
+        """Unbinds a prim from its skeleton: UsdSkel then leaves its points as they are, and others' alone.
+
+        Its influences go too: flattened, a stage keeps no unbinding, and what is bound above would hold again.
+        """
+        spec = Sdf.CreatePrimInLayer(self.layer, prim.GetPath())
+        if not prim.HasAPI(UsdSkel.BindingAPI):  # without it a binding does not count
+            spec.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=["SkelBindingAPI"]))
+        binding = Sdf.RelationshipSpec(spec, UsdSkel.Tokens.skelSkeleton, custom=False)
+        binding.targetPathList.ClearEditsAndMakeExplicit()
+        self._mark(binding)
+        for name in _INFLUENCES:
+            if prim.GetAttribute(name).HasAuthoredValue():
+                self.block(prim.GetAttribute(name))
 
     def save(self) -> None:
         self._check(self.layer.Save)
@@ -76,12 +98,16 @@ class OverLayer:
         self, prim: Sdf.Path, name: str, type_name: Sdf.ValueTypeName, variability: Sdf.Variability
     ) -> Sdf.AttributeSpec:
         spec = Sdf.AttributeSpec(Sdf.CreatePrimInLayer(self.layer, prim), name, type_name, variability)
-        mark(spec)
+        self._mark(spec)
         return spec
+
+    def _mark(self, spec: Sdf.PropertySpec) -> None:
+        if self._marked:
+            mark(spec)
 
 
 @contextmanager
-def layer_in_place(output: Path, stage: Usd.Stage) -> Iterator[OverLayer]:
+def layer_in_place(output: Path, stage: Usd.Stage, comment: str, *, marked: bool = True) -> Iterator[OverLayer]:
     """A layer that becomes `output` when the block ends. An exception or a signal leaves `output` as it was.
 
     Text cannot be saved in parts: it is collected in a crate file beside it, and written from there at the end.
@@ -90,8 +116,9 @@ def layer_in_place(output: Path, stage: Usd.Stage) -> Iterator[OverLayer]:
         text = partial.suffix.lower() == _TEXT
         with writing(output):
             crate = partial.with_name(f"{partial.name}.usdc") if text else partial
-            overs = OverLayer(Sdf.Layer.CreateNew(str(crate)), output)
+            overs = OverLayer(Sdf.Layer.CreateNew(str(crate)), output, marked=marked)
         yield overs
+        overs.layer.comment = comment
         _describe(overs.layer, stage)
         overs.save()
         if text:
@@ -100,21 +127,33 @@ def layer_in_place(output: Path, stage: Usd.Stage) -> Iterator[OverLayer]:
 
 
 def author_on_stage(overs: OverLayer, stage: Usd.Stage, earlier: EarlierBake) -> None:
-    """Copies every value into the stage's edit target, through the target's time offset."""
+    """Copies every value into the stage's edit target, through the target's time offset; and every unbinding."""
     paths: list[Sdf.Path] = []
     overs.layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)
     for path in filter(Sdf.Path.IsPropertyPath, paths):
         times = overs.layer.ListTimeSamplesForPath(path)
         earlier.replace(path, samples=bool(times))
-        attribute = _attribute_for(overs.layer.GetAttributeAtPath(path), stage)
-        for time in times:
-            attribute.Set(overs.layer.QueryTimeSample(path, time), time)
-        default = overs.layer.GetAttributeAtPath(path).default
-        if isinstance(default, Sdf.ValueBlock):
-            attribute.Block()
-        elif default is not None:
-            attribute.Set(default)
-        earlier.mark(attribute)
+        spec = overs.layer.GetPropertyAtPath(path)
+        earlier.mark(_unbind(path, stage) if isinstance(spec, Sdf.RelationshipSpec) else _copy(spec, times, stage))
+
+
+def _copy(spec: Sdf.AttributeSpec, times: Sequence[float], stage: Usd.Stage) -> Usd.Attribute:
+    attribute = _attribute_for(spec, stage)
+    for time in times:
+        attribute.Set(spec.layer.QueryTimeSample(spec.path, time), time)
+    if isinstance(spec.default, Sdf.ValueBlock):
+        attribute.Block()
+    elif spec.default is not None:
+        attribute.Set(spec.default)
+    return attribute
+
+
+def _unbind(path: Sdf.Path, stage: Usd.Stage) -> Usd.Relationship:
+    binding = UsdSkel.BindingAPI(stage.GetPrimAtPath(path.GetPrimPath()))
+    if not binding.GetPrim().HasAPI(UsdSkel.BindingAPI):
+        UsdSkel.BindingAPI.Apply(binding.GetPrim())
+    binding.CreateSkeletonRel().SetTargets([])
+    return binding.GetSkeletonRel()
 
 
 def _attribute_for(spec: Sdf.AttributeSpec, stage: Usd.Stage) -> Usd.Attribute:
@@ -127,7 +166,6 @@ def _attribute_for(spec: Sdf.AttributeSpec, stage: Usd.Stage) -> Usd.Attribute:
 
 def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
     """Gives the layer the stage's clock and units, so that it reads the same alone and sublayered."""
-    layer.comment = f"Slid by skinslide {version()}. Sublayer this above the cache."
     layer.timeCodesPerSecond = stage.GetTimeCodesPerSecond()
     layer.framesPerSecond = stage.GetFramesPerSecond()
     if stage.HasAuthoredTimeCodeRange():

@@ -67,24 +67,24 @@ def hidden_by(attribute: Usd.Attribute) -> str | None:
 
 
 class Before:
-    """Attributes of a layer as they were before they were edited."""
+    """Properties of a layer as they were before they were edited."""
 
     def __init__(self, layer: Sdf.Layer):
         self._layer, self._store = layer, Sdf.Layer.CreateAnonymous(".usda")
-        self._specs: dict[Sdf.Path, Sdf.AttributeSpec | None] = {}  # None where there was none
+        self._specs: dict[Sdf.Path, Sdf.PropertySpec | None] = {}  # None where there was none
 
     def __iter__(self) -> Iterator[Sdf.Path]:
         return iter(self._specs)
 
     def keep(self, path: Sdf.Path) -> None:
-        """Keeps an attribute, or that there is none, unless that was done before."""
+        """Keeps a property, or that there is none, unless that was done before."""
         if path in self._specs:
             return
         self._specs[path] = None
-        if self._layer.GetAttributeAtPath(path):
+        if self._layer.GetPropertyAtPath(path):
             place = Sdf.CreatePrimInLayer(self._store, "/before").path.AppendProperty(f"at{len(self._specs)}")
             Sdf.CopySpec(self._layer, path, self._store, place)
-            self._specs[path] = self._store.GetAttributeAtPath(place)
+            self._specs[path] = self._store.GetPropertyAtPath(place)
 
     def bring_back(self) -> None:
         """Makes them as they were, and leaves no prim that is without opinions."""
@@ -96,9 +96,9 @@ class Before:
                     remove(self._layer, path)
 
 
-def remove(layer: Sdf.Layer, attribute: Sdf.Path) -> None:
-    """Removes an attribute where it is there."""
-    spec = layer.GetAttributeAtPath(attribute)
+def remove(layer: Sdf.Layer, path: Sdf.Path) -> None:
+    """Removes a property where it is there."""
+    spec = layer.GetPropertyAtPath(path)
     if spec:
         spec.owner.RemoveProperty(spec)
 

@@ -1,0 +1,156 @@
+"""Writes what UsdSkel makes of meshes as samples: a cache, for live layers and for tools that do not skin.
+
+meshes that UsdSkel skins                        of the stage, or at and below prims; any error: stop here
+for each mesh:
+    points by default                            the pose in which it was bound, which is its rest
+    at each time points, extent, and normals where they are authored
+    unbind it from its skeleton
+put the layer in place
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from pxr import Usd, UsdGeom, Vt
+
+from skinslide.arrays.slider import version
+from skinslide.problems import Problem, StageProblems, errors, lines_text
+from skinslide.shot.frames import AskedFrames
+from skinslide.shot.options import Frames, Prims, SlideOptions
+from skinslide.shot.plan import times_of
+from skinslide.shot.products import Shot
+from skinslide.shot.report import time_text
+from skinslide.shot.workers import Progress
+from skinslide.stage.given import StageLike, StrPath
+from skinslide.stage.mesh import PatchedMesh, read_skinned
+from skinslide.write.overs import EXTENSIONS, OverLayer, layer_in_place
+from skinslide.write.place import check_not_input, check_output, signals_as_exceptions
+
+
+@dataclass(frozen=True)
+class CachedMesh:
+    """A mesh whose skinned points were written.
+
+    Attributes:
+        path: Of the prim.
+        points: How many it has.
+        skeleton: The path of the Skeleton that it is unbound from.
+        frames: The stage times that were written.
+        normals: The attributes of normals that were written.
+    """
+
+    path: str
+    points: int
+    skeleton: str
+    frames: list[float]
+    normals: list[str]
+
+    def text(self) -> str:
+        """The same for a terminal."""
+        count = f"{len(self.frames)} frame{'s' * (len(self.frames) != 1)}"
+        span = f", {time_text(self.frames[0])} to {time_text(self.frames[-1])}" if len(self.frames) > 1 else ""
+        also = f", with {' and '.join(self.normals)}" if self.normals else ""
+        return f"{self.path}: {self.points} points, skinned by {self.skeleton}, {count}{span}{also}"
+
+
+@dataclass(frozen=True)
+class CacheReport:
+    """What a cache holds.
+
+    Attributes:
+        meshes: Those that were skinned.
+        problems: What is worth knowing of them.
+    """
+
+    meshes: list[CachedMesh]
+    problems: list[Problem]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
+        return asdict(self)
+
+    def text(self) -> str:
+        """A line for each mesh, and every problem."""
+        return lines_text([*(mesh.text() for mesh in self.meshes), *map(str, self.problems)])
+
+
+def cache(
+    stage: StageLike, output: StrPath, *, prims: Prims = None, frames: Frames = None, progress: Progress | None = None
+) -> CacheReport:
+    """Writes the points that UsdSkel makes of meshes into a layer of overs, which ends the skinning of these meshes.
+
+    Args:
+        stage: The stage, or its path; never written.
+        output: The layer: .usda, .usdc or .usd, written whole or not at all; to be sublayered above the stage.
+        prims: Prims, of which the skinned meshes at and below them are written; None: all of the stage.
+        frames: As for `bake_to_file`; samples are those of all that points follow from.
+        progress: Called after each frame with the frames done and in all.
+
+    Returns:
+        What was written, mesh by mesh.
+
+    Raises:
+        TypeError: Something else than a stage or prims.
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or the layer not be written.
+        StageProblems: A mesh cannot be skinned, or there is none.
+        FrameProblem: A frame cannot be skinned.
+    """
+    options, shot = SlideOptions.of(prims, frames, "exact", 1), Shot.of(stage)
+    check_output(Path(output), EXTENSIONS)
+    check_not_input(Path(output), shot.stage, *shot.paths)
+    meshes, problems = read_skinned(shot.stage, options.prims)
+    if errors(problems):
+        raise StageProblems(problems)
+    plans = [_Cached(mesh, _times(mesh, options.frames)) for mesh in meshes]
+    total = sum(len(plan.times) for plan in plans)
+    comment = f"Skinned by UsdSkel, for skinslide {version()}. Sublayer this above the character."
+    with signals_as_exceptions(), layer_in_place(Path(output), shot.stage, comment, marked=False) as overs:
+        done = 0
+        for plan in plans:
+            for _ in plan.write(overs):
+                done += 1
+                if progress:
+                    progress(done, total)
+    return CacheReport([plan.report() for plan in plans], problems)
+
+
+def _times(mesh: PatchedMesh, asked: AskedFrames) -> list[Usd.TimeCode]:
+    """One that never moves is posed at the first frame: its default value is its rest."""
+    times = times_of(mesh, asked)
+    return [Usd.TimeCode(mesh.stage.GetStartTimeCode()) if time.IsDefault() else time for time in times]
+
+
+class _Cached:
+    """One mesh."""
+
+    def __init__(self, mesh: PatchedMesh, times: list[Usd.TimeCode]):
+        self._mesh, self.times = mesh, times
+        self._normals = [each for each in mesh.skinned_normals() if each.skinned(times[0]) is not None]
+
+    def write(self, overs: OverLayer) -> Iterator[Usd.TimeCode]:
+        """Yields each time once it is written."""
+        geometry = UsdGeom.PointBased(self._mesh.prim)
+        rest = self._mesh.bound_points()
+        if rest is not None:
+            overs.set(geometry.GetPointsAttr(), Vt.Vec3fArray.FromNumpy(rest), Usd.TimeCode.Default())
+        for time in self.times:
+            points = Vt.Vec3fArray.FromNumpy(self._mesh.points_at(time))
+            overs.set(geometry.GetPointsAttr(), points, time)
+            overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
+            for normals in self._normals:
+                overs.set(normals.attribute, Vt.Vec3fArray.FromNumpy(normals.skinned(time)), time)
+            yield time
+        for normals in self._normals:
+            if normals.indices and normals.indices.HasAuthoredValue():
+                overs.block(normals.indices)
+        overs.end_skinning(self._mesh.prim)
+
+    def report(self) -> CachedMesh:
+        mesh, names = self._mesh, [normals.name for normals in self._normals]
+        frames = [time.GetValue() for time in self.times]
+        return CachedMesh(mesh.path, mesh.vertex_count, mesh.skeleton, frames, names)

@@ -1,0 +1,113 @@
+"""Whether what binds a mesh to a skeleton can be used: the one place that says of a rig what is wrong with it."""
+
+from __future__ import annotations
+
+import numpy as np
+from pxr import Usd, UsdGeom, UsdSkel
+
+from skinslide.problems import Fault
+from skinslide.stage.values import FIRST
+
+# How far from 1 the weights of a point may add up to: what rounding to eight bits leaves of them.
+_WEIGHT_TOLERANCE = 0.01
+
+
+def skel_root(prim: Usd.Prim) -> Usd.Prim | None:
+    """The nearest SkelRoot, of the prim and what it is below."""
+    found = UsdSkel.Root.Find(prim)
+    return found.GetPrim() if found else None
+
+
+def skeleton_target(prim: Usd.Prim) -> Usd.Prim | None:
+    """The Skeleton that is bound to a prim, there or below its SkelRoot; None where there is none, or it is unbound."""
+    binding = _binding(prim)
+    targets = binding.GetForwardedTargets() if binding else []
+    found = prim.GetStage().GetPrimAtPath(targets[0]) if targets else None
+    return found if found and found.IsA(UsdSkel.Skeleton) else None
+
+
+def bound_skeleton(cache: UsdSkel.Cache, prim: Usd.Prim) -> UsdSkel.Skeleton:
+    """The Skeleton that UsdSkel skins a prim by, with all of its influences. Raises Fault.
+
+    Fills the cache with all below the prim's SkelRoot.
+    """
+    binding, root = _binding(prim), UsdSkel.Root.Find(prim)
+    targets = binding.GetForwardedTargets() if binding else []
+    if binding and len(targets) > 1:
+        names = " and ".join(map(str, targets))
+        raise Fault(f"{binding.GetName()} of {binding.GetPrimPath()} names {names}; it must name one skeleton")
+    cache.Populate(root, Usd.TraverseInstanceProxies())
+    for found in cache.ComputeSkelBindings(root, Usd.TraverseInstanceProxies()):
+        for query in found.GetSkinningTargets():
+            if query.GetPrim() == prim and _counts(query):
+                return found.GetSkeleton()
+    raise Fault(
+        "UsdSkel cannot use its joints or blend shapes; is SkelBindingAPI applied to it, and are there as many joint "
+        "indices as weights?"
+    )
+
+
+def _counts(query: UsdSkel.SkinningQuery) -> bool:
+    """Whether there are influences, and UsdSkel takes those of joints where they are authored."""
+    joints = query.GetJointIndicesPrimvar()
+    return query.HasJointInfluences() or (query.HasBlendShapes() and not (joints and joints.HasAuthoredValue()))
+
+
+def _binding(prim: Usd.Prim) -> Usd.Relationship | None:
+    """That which says what skeleton a prim has, on it or nearest above it, but not above its SkelRoot."""
+    root = skel_root(prim)
+    while root and prim:
+        binding = prim.GetRelationship(UsdSkel.Tokens.skelSkeleton)
+        if binding.HasAuthoredTargets():
+            return binding
+        prim = prim.GetParent() if prim != root else None
+    return None
+
+
+def check_joints(query: UsdSkel.SkinningQuery, skeleton: UsdSkel.SkeletonQuery, point_count: int) -> None:
+    """Raises Fault for joints and weights of a mesh that its skeleton cannot move it by."""
+    where, own = skeleton.GetPrim().GetPath(), list(skeleton.GetJointOrder())
+    if not skeleton.HasBindPose():
+        raise Fault(f"the skeleton {where} has no bindTransforms, of which there must be one for each of its joints")
+    joints = query.GetJointOrder()
+    _check_known("skel:joints names", own if joints is None else list(joints), own, str(where))
+    indices, weights = (np.array(each) for each in query.ComputeJointInfluences(FIRST))
+    count = query.GetNumInfluencesPerComponent()
+    wanted = count * (1 if query.GetInterpolation() == UsdGeom.Tokens.constant else point_count)
+    for name, values in (("jointIndices", indices), ("jointWeights", weights)):
+        if len(values) != wanted:
+            raise Fault(f"primvars:skel:{name} has {len(values)} values, where {wanted} are needed")
+    _check_indices(indices, len(own if joints is None else joints))
+    sums = weights.reshape(-1, count).sum(axis=1, dtype=np.float64)
+    for point in np.flatnonzero(~(np.abs(sums - 1) <= _WEIGHT_TOLERANCE))[:1]:
+        raise Fault(f"primvars:skel:jointWeights of point {point} add up to {sums[point]:g}, not to 1")
+
+
+def _check_indices(indices: np.ndarray, joint_count: int) -> None:
+    for wrong in np.flatnonzero((indices < 0) | (indices >= joint_count))[:1]:
+        raise Fault(f"primvars:skel:jointIndices[{wrong}] is {indices[wrong]}, but there are {joint_count} joints")
+
+
+def check_animation(animation: UsdSkel.AnimQuery | None, skeleton: UsdSkel.SkeletonQuery) -> None:
+    """Raises Fault for an animation of joints that the skeleton has not."""
+    if animation:
+        own, where = list(skeleton.GetJointOrder()), str(skeleton.GetPrim().GetPath())
+        _check_known(
+            f"the animation {animation.GetPrim().GetPath()} moves", list(animation.GetJointOrder()), own, where
+        )
+
+
+def check_transforms(animation: UsdSkel.AnimQuery, time: Usd.TimeCode) -> None:
+    """Raises Fault where there are not as many transforms as joints, which UsdSkel would then leave at rest."""
+    wanted = len(animation.GetJointOrder())
+    components = animation.ComputeJointLocalTransformComponents(time)
+    for name, values in zip(("translations", "rotations", "scales"), components, strict=True):
+        if len(values) != wanted:
+            raise Fault(f"{name} of {animation.GetPrim().GetPath()} has {len(values)} values for {wanted} joints")
+
+
+def _check_known(said: str, joints: list[str], own: list[str], skeleton: str) -> None:
+    unknown = [joint for joint in joints if joint not in set(own)]
+    if unknown:
+        more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
+        raise Fault(f"{said} {unknown[0]}{more}, which the skeleton {skeleton} has not")

@@ -1,0 +1,208 @@
+"""Rigs that UsdSkel cannot skin by: one named error, from check, bake and cache alike, and nothing is written."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from pxr import Gf, Usd, UsdGeom, UsdSkel
+
+import rigs
+import skinslide
+import stages
+from rigs import ANIMATION, SKELETON
+from skinslide.stage.mesh import read_meshes
+from stages import FRAMES, MESH
+
+SHAPE = f"{MESH}/bulge"
+Rig = Callable[[Usd.Stage, UsdGeom.Mesh], object]
+
+
+def skeleton_of(stage: Usd.Stage) -> UsdSkel.Skeleton:
+    return UsdSkel.Skeleton(stage.GetPrimAtPath(SKELETON))
+
+
+def binding_of(mesh: UsdGeom.Mesh) -> UsdSkel.BindingAPI:
+    return UsdSkel.BindingAPI(mesh.GetPrim())
+
+
+def influences(name: str, change: Callable[[list], object]) -> Rig:
+    def edit(_stage, mesh):
+        attribute = mesh.GetPrim().GetAttribute(f"primvars:skel:{name}")
+        values = list(attribute.Get())
+        change(values)
+        attribute.Set(values)
+
+    return edit
+
+
+def shapes(change: Callable[[UsdSkel.BlendShape], object]) -> Rig:
+    return lambda _stage, mesh: change(rigs.blend_shape(mesh))
+
+
+def two_skeletons(_stage, mesh):
+    binding_of(mesh).GetSkeletonRel().AddTarget(ANIMATION)
+
+
+def another_animation_of(joints: list[str]) -> Rig:
+    def edit(stage, _mesh):
+        animation = UsdSkel.Animation(stage.GetPrimAtPath(ANIMATION))
+        animation.GetJointsAttr().Set(joints)
+
+    return edit
+
+
+def one_rotation_less(stage, _mesh):
+    UsdSkel.Animation(stage.GetPrimAtPath(ANIMATION)).GetRotationsAttr().Set([Gf.Quatf(1)], FRAMES[1])
+
+
+def without_api(_stage, mesh):
+    mesh.GetPrim().RemoveAPI(UsdSkel.BindingAPI)
+
+
+BAD = {
+    "no bind transforms": (
+        lambda stage, _: skeleton_of(stage).GetBindTransformsAttr().Clear(),
+        f"the skeleton {SKELETON} has no bindTransforms, of which there must be one for each of its joints",
+    ),
+    "fewer bind transforms": (
+        lambda stage, _: skeleton_of(stage).GetBindTransformsAttr().Set([Gf.Matrix4d(1)] * 2),
+        f"the skeleton {SKELETON} has no bindTransforms, of which there must be one for each of its joints",
+    ),
+    "joints that it has not": (
+        lambda _, mesh: binding_of(mesh).CreateJointsAttr(["root", "root/leg", "root/tail"]),
+        f"skel:joints names root/leg and 1 more, which the skeleton {SKELETON} has not",
+    ),
+    "a joint beyond the last": (
+        influences("jointIndices", lambda values: values.__setitem__(5, 3)),
+        "primvars:skel:jointIndices[5] is 3, but there are 3 joints",
+    ),
+    "a joint before the first": (
+        influences("jointIndices", lambda values: values.__setitem__(5, -1)),
+        "primvars:skel:jointIndices[5] is -1, but there are 3 joints",
+    ),
+    "weights that do not sum to 1": (
+        influences("jointWeights", lambda values: values.__setitem__(slice(24, 26), [0.5, 0.25])),
+        "primvars:skel:jointWeights of point 12 add up to 0.75, not to 1",
+    ),
+    "a weight that is no number": (
+        influences("jointWeights", lambda values: values.__setitem__(0, float("nan"))),
+        "primvars:skel:jointWeights of point 0 add up to nan, not to 1",
+    ),
+    "fewer influences than points": (
+        lambda _, mesh: [
+            influences(name, lambda values: values.__delitem__(slice(90, None)))(_, mesh)
+            for name in ("jointIndices", "jointWeights")
+        ],
+        "primvars:skel:jointIndices has 90 values, where 98 are needed",
+    ),
+    "another number of weights": (
+        lambda _, mesh: binding_of(mesh).GetJointWeightsPrimvar().SetElementSize(1),
+        "UsdSkel cannot use its joints or blend shapes; is SkelBindingAPI applied to it, and are there as many joint "
+        "indices as weights?",
+    ),
+    "no schema": (
+        without_api,
+        "UsdSkel cannot use its joints or blend shapes; is SkelBindingAPI applied to it, and are there as many joint "
+        "indices as weights?",
+    ),
+    "blend shapes: fewer offsets": (
+        shapes(lambda shape: shape.GetOffsetsAttr().Set([(0, 0, 1)] * 3)),
+        f"offsets of {SHAPE} has 3 values for 4 point indices",
+    ),
+    "blend shapes: offsets of other points": (
+        shapes(lambda shape: shape.GetPointIndicesAttr().Clear()),
+        f"offsets of {SHAPE} has 4 values for 49 points of the mesh",
+    ),
+    "blend shapes: an in-between of another length": (
+        shapes(lambda shape: shape.GetInbetween("half").SetOffsets([(0, 0, 1)] * 5)),
+        f"inbetweens:half of {SHAPE} has 5 values for 4 point indices",
+    ),
+    "blend shapes: normals of another length": (
+        shapes(lambda shape: shape.CreateNormalOffsetsAttr([(0, 0, 1)])),
+        f"normalOffsets of {SHAPE} has 1 values for 4 point indices",
+    ),
+    "blend shapes: a point beyond the last": (
+        shapes(lambda shape: shape.GetPointIndicesAttr().Set([1, 2, 49, 3])),
+        f"pointIndices[2] of {SHAPE} is 49, but the mesh has 49 points",
+    ),
+    "blend shapes: more names than targets": (
+        lambda _, mesh: rigs.blend_shape(mesh) and binding_of(mesh).GetBlendShapesAttr().Set(["bulge", "smile"]),
+        "skel:blendShapes has 2 names, but skel:blendShapeTargets 1 targets",
+    ),
+    "blend shapes: a target that is none": (
+        lambda _, mesh: rigs.blend_shape(mesh) and binding_of(mesh).GetBlendShapeTargetsRel().SetTargets([SKELETON]),
+        f"skel:blendShapeTargets names {SKELETON}, which is no BlendShape",
+    ),
+    "animation of joints that it has not": (
+        another_animation_of(["root/arm", "root/leg"]),
+        f"the animation {ANIMATION} moves root/leg, which the skeleton {SKELETON} has not",
+    ),
+    "two skeletons": (
+        two_skeletons,
+        f"skel:skeleton of {MESH} names {SKELETON} and {ANIMATION}; it must name one skeleton",
+    ),
+    "in an instance": (
+        lambda stage, _: stage.GetPrimAtPath("/World/char").SetInstanceable(True),
+        "is inside an instance, whose points are shared; author instanceable = false on /World/char",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_a_bad_rig_is_named_and_nothing_is_written(name, tmp_path):
+    edit, says = BAD[name]
+    stage, mesh = rigs.skinned_stage()
+    edit(stage, mesh)
+    character = stages.save(stage, tmp_path / "character.usda")
+    if stage.GetPrimAtPath("/World/char").IsInstanceable():
+        character = instanced(character)
+    found = [problem.message for problem in skinslide.check(character).problems if problem.severity == "error"]
+    assert found == [says]
+    before, output = set(tmp_path.iterdir()), tmp_path / "out.usda"
+    output.write_text("what was there before")
+    for write in (skinslide.bake_to_file, skinslide.cache):
+        with pytest.raises(skinslide.StageProblems) as raised:
+            write(character, output)
+        assert [problem.message for problem in raised.value.problems if problem.severity == "error"] == [says]
+        assert output.read_text() == "what was there before" and set(tmp_path.iterdir()) == {*before, output}
+
+
+def instanced(character):
+    """Prims below an instance are there only where they come by a reference."""
+    path = character.with_name("instanced.usda")
+    path.write_text(
+        '#usda 1.0\n(defaultPrim = "World")\ndef Xform "World" {\n'
+        'def "char" (references = @character.usda@</World/char>; instanceable = true) {\n}\n}\n'
+    )
+    return path
+
+
+def test_transforms_that_cannot_be_at_a_frame_are_named_with_it(tmp_path):
+    stage, mesh = rigs.skinned_stage()
+    one_rotation_less(stage, mesh)
+    for write in (skinslide.bake_to_file, skinslide.cache):
+        with pytest.raises(
+            skinslide.FrameProblem, match=f"{MESH}: frame 1002: rotations of {ANIMATION} has 1 values for 2 joints"
+        ):
+            write(stage, tmp_path / "out.usda")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("weights", [0.996, 1.004])
+def test_weights_of_eight_bits_are_no_error(weights):
+    stage, mesh = rigs.skinned_stage()
+    attribute = mesh.GetPrim().GetAttribute("primvars:skel:jointWeights")
+    attribute.Set(attribute.GetTypeName().type.pythonClass.FromNumpy(np.float32(weights) * np.array(attribute.Get())))
+    assert not skinslide.check(stage).problems
+
+
+def test_shapes_that_are_not_animated_stay():
+    stage, mesh = rigs.skinned_stage()
+    (without,), _ = read_meshes(stage)
+    rigs.blend_shape(mesh)
+    animation = UsdSkel.Animation(stage.GetPrimAtPath(ANIMATION))
+    animation.GetBlendShapesAttr().Set(["other", "another"])
+    (read,), problems = read_meshes(stage)
+    assert not problems
+    for frame in map(Usd.TimeCode, FRAMES):
+        np.testing.assert_array_equal(read.points_at(frame), without.points_at(frame))
