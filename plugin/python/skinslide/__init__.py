@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     )
     from skinslide.shot.bake import bake, bake_to_file
     from skinslide.shot.cache import CachedMesh, CacheReport, cache
+    from skinslide.shot.candidates import Candidate
     from skinslide.shot.check import CheckedLookup, CheckedMap, CheckedMesh, CheckedPatch, CheckReport, check
     from skinslide.shot.frames import parse_frames
     from skinslide.shot.report import BakeReport, MeshReport, PatchReport
@@ -52,6 +53,7 @@ __all__ = [
     "CacheReport",
     "CachedMesh",
     "CanApplyResult",
+    "Candidate",
     "CheckReport",
     "CheckedLookup",
     "CheckedMap",
@@ -134,6 +136,7 @@ _HOMES = {
     ),
     "shot.bake": ("bake", "bake_to_file"),
     "shot.cache": ("CachedMesh", "CacheReport", "cache"),
+    "shot.candidates": ("Candidate",),
     "shot.check": ("CheckedLookup", "CheckedMap", "CheckedMesh", "CheckedPatch", "CheckReport", "check"),
     "shot.frames": ("parse_frames",),
     "shot.report": ("BakeReport", "MeshReport", "PatchReport"),

@@ -33,6 +33,19 @@ class Topology:
         vertices[self.face_indices[np.repeat(inside, self.face_counts)]] = True
         return vertices
 
+    def faces_of_any(self, vertices: np.ndarray) -> np.ndarray:
+        """The faces, bool (F,), with any of some vertices, bool (V,)."""
+        return self._count(vertices) > 0
+
+    def faces_of_all(self, vertices: np.ndarray) -> np.ndarray:
+        """The faces, bool (F,), all of whose vertices are among some, bool (V,)."""
+        return self._count(~vertices) == 0
+
+    def _count(self, vertices: np.ndarray) -> np.ndarray:
+        """How many of some vertices each face has."""
+        faces = np.repeat(np.arange(self.face_count), self.face_counts)
+        return np.bincount(faces, vertices[self.face_indices], self.face_count)
+
     def edges_of(self, faces: np.ndarray) -> np.ndarray:
         """The edges of some faces (n,), int32 (k, 2), each once, the lower vertex first, ascending."""
         inside = np.zeros(self.face_count, dtype=bool)

@@ -16,12 +16,14 @@ from skinslide.arrays.geometry import least_stretch
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, checked, edited
+from skinslide.author.joints import REACH, faces_at, read_rig
 from skinslide.author.layer import author_layer
+from skinslide.author.mirror import other_side
 from skinslide.author.settings import Settings, has_pin
 from skinslide.author.whole import moving_meshes, stretched_faces
 from skinslide.problems import Problem, StageProblems, UsageError
 from skinslide.shot.check import CheckReport
-from skinslide.shot.checks import texts
+from skinslide.shot.checks import positive, texts
 from skinslide.shot.frames import FramesLike, checked_frames
 from skinslide.stage import schema
 from skinslide.stage.given import (
@@ -45,6 +47,9 @@ class PatchChoice(TypedDict, total=False):
     faces: npt.ArrayLike | str | None
     subset: str | None
     primvar: str | None
+    joint: Sequence[str] | str | None
+    reach: float | None
+    mirror: bool
     whole: bool
     frames: FramesLike | None
     pin: Sequence[str] | str
@@ -63,6 +68,9 @@ def setup(
     faces: npt.ArrayLike | str | None = None,
     subset: str | None = None,
     primvar: str | None = None,
+    joint: Sequence[str] | str | None = None,
+    reach: float | None = None,
+    mirror: bool = False,
     whole: bool = False,
     frames: FramesLike | None = None,
     pin: Sequence[str] | str = (),
@@ -74,8 +82,8 @@ def setup(
 ) -> CheckReport:
     """Makes a patch of some faces of a mesh, in the stage's edit target; one that is there has other faces then.
 
-    One of faces, subset, primvar and whole says which faces. What of weight, rule, holes, interpolation and grow is
-    None is not authored, but for the rule of a new patch.
+    One of faces, subset, primvar, joint and whole says which faces. What of weight, rule, holes, interpolation and
+    grow is None is not authored, but for the rule of a new patch.
 
     Args:
         stage: The stage.
@@ -84,6 +92,10 @@ def setup(
         faces: Indices (n,), a bool for each face of the mesh (F,), or a spec such as "0-120,140".
         subset: The name of a GeomSubset under the mesh.
         primvar: The name of a primvar of the mesh, read as the primvar of a patch is.
+        joint: Joints of the Skeleton that the mesh is bound to, by name: faces whose weights mix one of them with its
+            parent or children.
+        reach: How far from a joint, in its length, to its children or, of the last, its parent; None: 0.75.
+        mirror: With `joint`, makes the patch of the other side too, by the names of joints and patch.
         whole: The faces whose edges ever stretch over 2 %, and so much around them as lets them give. One patch for
             each mesh that is rendered and has such edges.
         frames: With `whole`, where stretch is looked for: a spec such as 1001:1024, or numbers; None: every sample.
@@ -104,13 +116,18 @@ def setup(
         FrameProblem: Points that cannot be looked at, with `whole`. Nothing is authored then.
         StageProblems: The patch could not be slid, or nothing stretches. Nothing is authored then.
     """
-    if sum(source is not None for source in (faces, subset, primvar)) + whole != 1:
-        raise UsageError("one of faces, subset, primvar and whole is needed")
+    if sum(source is not None for source in (faces, subset, primvar, joint)) + whole != 1:
+        raise UsageError("one of faces, subset, primvar, joint and whole is needed")
+    if joint is None and (reach is not None or mirror):
+        raise UsageError("reach and mirror go with joint")
     settings = Settings(texts("pin", pin), weight, rule, holes, interpolation, grow)
     if whole:
         return _setup_whole(stage, prim, patch or "skin", None if frames is None else checked_frames(frames), settings)
     if prim is None or patch is None or frames is not None:
         raise UsageError("a prim and a patch are needed, and no frames, where whole is not asked for")
+    if joint is not None:
+        patches = [patch, other_side(patch)] if mirror else [patch]
+        return _setup_joints(stage, prim, patches, texts("joint", joint), reach, settings)
     with edited(stage, prim, patch) as mesh:
         own, chosen = SkinSlideAPI(mesh.prim, patch), None
         if isinstance(faces, str):
@@ -135,7 +152,7 @@ def _setup_whole(
     with ExitStack() as authoring:
         for each in moving:
             mesh = authoring.enter_context(edited(stage, each, patch))
-            faces = stretched_faces(mesh.prim, mesh.meaning, frames)
+            faces = stretched_faces(mesh.prim, frames)
             if faces.any():
                 _make(mesh, patch, faces, settings.for_mesh(each))
                 made.append(mesh)
@@ -166,6 +183,25 @@ def _make(mesh: EditedMesh, patch: str, faces: np.ndarray | None, settings: Sett
     if faces is not None:
         applied.SetFaces(faces)
     settings.author(applied, mesh, is_new=is_new)
+
+
+def _setup_joints(
+    stage: Usd.Stage,
+    prim: PrimLike,
+    patches: Sequence[str],
+    names: Sequence[str],
+    reach: float | None,
+    settings: Settings,
+) -> CheckReport:
+    """The patch of some joints and, where there is a second, that of their counterparts; both, or none."""
+    far = REACH if reach is None else positive("reach", reach)
+    with ExitStack() as authoring:
+        for number, patch in enumerate(patches):
+            mesh = authoring.enter_context(edited(stage, prim, patch))
+            rig = read_rig(mesh.prim)
+            joints = [rig.across(rig.find(name)) if number else rig.find(name) for name in names]
+            _make(mesh, patch, faces_at(rig, mesh.topology, joints, far), settings)
+        return mesh.checked()
 
 
 def setup_to_file(

@@ -8,10 +8,9 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide.arrays.geometry import mask_stretched, note_stretch
-from skinslide.arrays.meaning import MeshMeaning, merge_times
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError
-from skinslide.stage.finding import prims_at
-from skinslide.stage.values import read_value
+from skinslide.problems import FrameProblem, SliderError
+from skinslide.stage.finding import is_skinned, prims_at
+from skinslide.stage.mesh import read_moving
 
 PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
 
@@ -23,26 +22,25 @@ def moving_meshes(stage: Usd.Stage, prims: Sequence[str] | None) -> list[Usd.Pri
 
 
 def _moves(prim: Usd.Prim) -> bool:
-    return prim.IsDefined() and UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying()
+    return prim.IsDefined() and (UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying() or is_skinned(prim))
 
 
 def _is_rendered(prim: Usd.Prim) -> bool:
     return UsdGeom.Imageable(prim).ComputePurpose() in PURPOSES
 
 
-def stretched_faces(prim: Usd.Prim, mesh: MeshMeaning, frames: Sequence[float] | None) -> np.ndarray:
+def stretched_faces(prim: Usd.Prim, frames: Sequence[float] | None) -> np.ndarray:
     """A bool for each face (F,): whether a patch needs it. Of the frames given, or of every sample.
 
     Raises Fault, and FrameProblem for points that cannot be looked at.
     """
-    points = UsdGeom.Mesh(prim).GetPointsAttr()
-    times = merge_times(points.GetTimeSamples()) if frames is None else frames
-    counts, indices, rest = mesh.face_counts, mesh.face_indices, mesh.rest_points()
+    mesh = read_moving(prim)
+    counts, indices, rest = mesh.face_counts, mesh.face_indices, mesh.rest_points
     stretch = np.zeros(len(indices), np.float32)
-    for time in times:
+    times = map(Usd.TimeCode, mesh.points_times() if frames is None else frames)
+    for time in list(times) or [Usd.TimeCode.Default()]:
         try:
-            posed = mesh.points(read_value(points, Usd.TimeCode(time)))
-            note_stretch(counts, indices, rest, posed, stretch)
-        except (Fault, SliderError) as error:
-            raise FrameProblem(Problem("error", str(prim.GetPath()), None, time, str(error))) from error
+            note_stretch(counts, indices, rest, mesh.points_at(time), stretch)
+        except SliderError as error:
+            raise FrameProblem(mesh.problem(str(error), time)) from error
     return mask_stretched(counts, indices, rest, stretch)

@@ -254,10 +254,22 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
         help="the faces where the primvar NAME is above 0, by face (uniform) or on all points (vertex)",
     )
     faces.add_argument(
+        "--joint",
+        type=_names,
+        metavar="NAME[,NAME]",
+        help="the faces of a skinned mesh whose weights mix a joint with its parent or children",
+    )
+    faces.add_argument(
         "--whole",
         action="store_true",
         help="every mesh that is rendered, where its edges ever stretch by over 2 %%, and so much around that as lets "
         "it give: nothing need be painted",
+    )
+    command.add_argument(
+        "--reach", type=float, metavar="X", help="for --joint: how far from it, in its length (default: 0.75)"
+    )
+    command.add_argument(
+        "--mirror", action="store_true", help="for --joint: the other side's too, by the names of joints and patch"
     )
     command.add_argument("--frames", metavar="SPEC", help="of --whole, such as 1001:1024 (default: every sample)")
     command.add_argument(
@@ -276,6 +288,10 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--grow", type=float, metavar="D", help="how far around its faces skin joins the patch, in the mesh's units"
     )
+
+
+def _names(words: str) -> list[str]:
+    return words.split(",")
 
 
 def _add_paint(command: argparse.ArgumentParser) -> None:

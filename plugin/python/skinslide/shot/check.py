@@ -25,9 +25,11 @@ from skinslide.problems import (
     frame_text,
     lines_text,
 )
+from skinslide.shot.candidates import Candidate, find_candidates
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
 from skinslide.shot.samples import sample_problems
+from skinslide.stage.finding import patched_prims
 from skinslide.stage.given import PrimsLike, StageLike, given_paths, given_stage
 from skinslide.stage.mesh import PatchedMesh
 
@@ -175,12 +177,14 @@ class CheckReport:
         meshes: Those that would be slid.
         problems: Errors, then warnings, then notes.
         lookup: What would be looked up with.
+        candidates: Where nothing is set up, the meshes on which a patch could be.
     """
 
     stage: str
     meshes: list[CheckedMesh]
     problems: list[Problem]
     lookup: CheckedLookup
+    candidates: list[Candidate]
 
     @property
     def failed(self) -> bool:
@@ -194,6 +198,7 @@ class CheckReport:
     def text(self) -> str:
         """A line for each mesh, patch and problem, and the verdict."""
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
+        lines += [line for mesh in self.candidates for line in mesh.lines()]
         return lines_text([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
 
     def _verdict(self) -> str:
@@ -260,7 +265,9 @@ def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Loo
     found, problems = read_sliders(opened, paths)
     checked = [_check_mesh(mesh, slider, problems) for mesh, slider in found]
     severities = ("error", "warning", "note")
-    return CheckReport(name, checked, sorted(problems, key=lambda problem: severities.index(problem.severity)), chosen)
+    problems.sort(key=lambda problem: severities.index(problem.severity))
+    candidates = [] if patched_prims(opened) else find_candidates(opened, paths)
+    return CheckReport(name, checked, problems, chosen, candidates)
 
 
 def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem]) -> CheckedMesh:

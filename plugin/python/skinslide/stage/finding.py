@@ -59,6 +59,15 @@ def find_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> t
     return meshes, problems
 
 
+def find_slidable(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> list[FoundMesh]:
+    """The meshes that would be slid if they carried a patch."""
+    prototypes, found = _instancer_prototypes(stage), list[FoundMesh]()
+    for prim in filter(UsdGeom.Mesh, _prims(stage, prim_paths, [])):
+        finding = find(_facts(prim, prototypes, [f"{SCHEMA}:any"]))
+        found += [FoundMesh(prim, [], finding.is_skinned)] if finding.slides else []
+    return found
+
+
 def is_skinned(prim: Usd.Prim) -> bool:
     """Whether UsdSkel moves the points of a mesh."""
     return find(_facts(prim, {}, [f"{SCHEMA}:any"])).is_skinned

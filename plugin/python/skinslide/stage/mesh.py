@@ -15,7 +15,7 @@ from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem
-from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned
+from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.patch import Animation, read_patch
 from skinslide.stage.skinning import SkinnedNormals, SkinnedPoints, Skinning
 from skinslide.stage.values import FIRST, Source, Span, read_value, take
@@ -277,12 +277,19 @@ def read_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None) -> tuple[li
 
 def _read_skinned(prim: Usd.Prim, problems: list[Problem]) -> PatchedMesh | None:
     try:
-        skinning = Skinning(prim)
-        meaning, faults = take_mesh(prim, skinning)
+        return read_moving(prim)
     except Fault as fault:
-        faults = [str(fault)]
-    problems.extend(Problem("error", str(prim.GetPath()), None, None, fault) for fault in faults)
-    return None if faults else PatchedMesh.of(prim, meaning, [], skinning)
+        problems.append(Problem("error", str(prim.GetPath()), None, None, str(fault)))
+        return None
+
+
+def read_moving(prim: Usd.Prim) -> PatchedMesh:
+    """A mesh as it moves, skinned where UsdSkel does so, without patches. Raises Fault."""
+    skinning = Skinning(prim) if is_skinned(prim) else None
+    meaning, faults = take_mesh(prim, skinning)
+    if faults:
+        raise Fault(faults[0])
+    return PatchedMesh.of(prim, meaning, [], skinning)
 
 
 def _read_mesh(found: FoundMesh, problems: list[Problem]) -> PatchedMesh | None:

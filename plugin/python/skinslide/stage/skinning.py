@@ -20,6 +20,7 @@ from skinslide.arrays.meaning import DEFAULT_TIME, Input, Value, positions
 from skinslide.problems import Fault
 from skinslide.stage.binding import bound_skeleton, check_animation, check_joints, check_transforms
 from skinslide.stage.blendshapes import BlendShapes
+from skinslide.stage.rig import Rig
 from skinslide.stage.values import FIRST, Source
 
 
@@ -79,6 +80,26 @@ class Skinning:
         bound = Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(points, np.float32))
         _transform(bound, self._query.GetGeomBindTransform(FIRST) * self._to_mesh(FIRST))
         return np.array(bound)
+
+    def rig(self) -> Rig:
+        """The joints of the skeleton, with their weights. Raises Fault for a mesh that blend shapes alone move."""
+        if not self._has_joints:
+            raise Fault("no joint moves it: it has blend shapes alone")
+        binds = self._skeleton.GetJointWorldBindTransforms()
+        places = Vt.Vec3fArray([Gf.Vec3f(each.ExtractTranslation()) for each in binds])
+        _transform(places, self._to_mesh(FIRST))
+        count, order = self._query.GetNumInfluencesPerComponent(), list(self._skeleton.GetJointOrder())
+        indices, weights = map(np.array, self._query.ComputeVaryingJointInfluences(self.point_count, FIRST))
+        if self._query.GetJointOrder():
+            indices = np.array([order.index(joint) for joint in self._query.GetJointOrder()], np.int32)[indices]
+        return Rig(
+            order,
+            np.array(self._skeleton.GetTopology().GetParentIndices(), np.int32),
+            np.array(places),
+            self.bound(np.array(UsdGeom.PointBased(self._prim).GetPointsAttr().Get())),
+            indices.reshape(-1, count),
+            weights.reshape(-1, count),
+        )
 
     def normals(self, authored: np.ndarray, corners: np.ndarray | None, time: Usd.TimeCode) -> np.ndarray:
         """The normals (n, 3) float32 that UsdSkel makes of those authored. Raises Fault.
