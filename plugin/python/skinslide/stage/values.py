@@ -136,9 +136,7 @@ def sample_times(attribute: Usd.Attribute, span: Span | None = None) -> list[flo
         math.floor(min(knots[-1], span[1] if span else math.inf)),
     )
     if last - first >= MOST_FRAMES:
-        raise UsageError(
-            f"{attribute.GetPath()} is a spline over {last - first} frames; name the frames that are wanted"
-        )
+        raise UsageError(f"{attribute.GetPath()} is a spline over {last - first} frames; say which are wanted")
     return [*knots, *map(float, range(first, last + 1))]
 
 
