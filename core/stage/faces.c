@@ -259,13 +259,16 @@ skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row,
     return status;
 }
 
-skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
+skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32_t row, const ss_record *record, double frame,
                                        skinslide_error *error) {
     static const ss_input integers = {.kind = SS_KIND_INTEGERS};
     const ss_taken taken = {.array = patch->indices};
     ss_record named = *record;
     if (patch->faces_by_primvar || patch->taken[SS_ROW_FACES].refused || !patch->subset)
         return SKINSLIDE_OK;
+    if (row == SS_ROW_ELEMENT_TYPE)
+        return check_element(patch->subset, record, NULL) ? ss_changes(record, frame, SKINSLIDE_BAD_PATCH, error)
+                                                          : SKINSLIDE_OK;
     named.value.name = patch->indices_name;
     return ss_check_plain(&integers, &named, &taken, frame, SKINSLIDE_BAD_PATCH, error);
 }

@@ -18,10 +18,10 @@
 #define USD(name, type, tokens, group, when) .shown = {name, type, NULL, tokens, group, "", when, 0, 0}
 #define OF_MESH(name, type, when)            USD(name, type, NULL, SKINSLIDE_STAGE_MESH, when)
 #define OF_SUBDIVISION(name, type)           USD(name, type, NULL, SKINSLIDE_STAGE_SUBDIVISION, SKINSLIDE_STAGE_STILL)
-#define MESH_SETTING(declared)               .shown = {declared, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0}
+#define MESH_SETTING(declared)               .shown = {declared, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
 #define REST_PRIMVAR(name)                                                                                                     \
     .kind = SS_KIND_REST,                                                                                                      \
-    .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, "primvars:", SKINSLIDE_STAGE_FIRST, 1, 0}
+    .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, "primvars:", SKINSLIDE_STAGE_STILL, 1, 0}
 
 static const char positive[] = "finite and above 0", not_negative[] = "0 or more";
 
@@ -29,7 +29,7 @@ static const ss_input mesh_inputs[SS_MESH_ROWS] = {
     [SS_ROW_POINTS] = {OF_MESH("points", "point3f[]", SKINSLIDE_STAGE_FIRST), .kind = SS_KIND_POINTS},
     [SS_ROW_FACE_COUNTS] = {OF_MESH("faceVertexCounts", "int[]", SKINSLIDE_STAGE_STILL), .kind = SS_KIND_FACE_COUNTS},
     [SS_ROW_FACE_INDICES] = {OF_MESH("faceVertexIndices", "int[]", SKINSLIDE_STAGE_STILL), .kind = SS_KIND_FACE_INDICES},
-    [SS_ROW_ORIENTATION] = {OF_MESH("orientation", "token", SKINSLIDE_STAGE_DEFAULT_TIME), .kind = SS_KIND_ORIENTATION},
+    [SS_ROW_ORIENTATION] = {OF_MESH("orientation", "token", SKINSLIDE_STAGE_STILL), .kind = SS_KIND_ORIENTATION},
     [SS_ROW_REST_POINTS] = {MESH_SETTING(SS_MESH_REST_POINTS), .kind = SS_KIND_REST},
     [SS_ROW_REST] = {REST_PRIMVAR("rest")},
     [SS_ROW_PREF] = {REST_PRIMVAR("pref")},
@@ -89,7 +89,7 @@ static const ss_input patch_inputs[SS_PATCH_ROWS] = {
 };
 
 static const ss_input subset_inputs[SS_SUBSET_ROWS] = {
-    [SS_ROW_ELEMENT_TYPE] = {USD("elementType", "token", NULL, SKINSLIDE_STAGE_SUBSET, SKINSLIDE_STAGE_DEFAULT_TIME),
+    [SS_ROW_ELEMENT_TYPE] = {USD("elementType", "token", NULL, SKINSLIDE_STAGE_SUBSET, SKINSLIDE_STAGE_STILL),
                              .kind = SS_KIND_WORD},
     [SS_ROW_SUBSET_INDICES] = {USD("indices", "int[]", NULL, SKINSLIDE_STAGE_SUBSET, SKINSLIDE_STAGE_STILL),
                                .kind = SS_KIND_INTEGERS},

@@ -43,6 +43,26 @@ static skinslide_status copy_rest(skinslide_stage_mesh *mesh, const ss_record *r
     return status;
 }
 
+/* Of one that counts. */
+static bool is_same_rest(const skinslide_stage_mesh *mesh, const ss_record *record) {
+    if (record->length != mesh->vertex_count)
+        return false;
+    for (int64_t i = 0; i < 3 * record->length; i++)
+        if ((float)ss_number(record, i / 3, (int32_t)(i % 3)) != mesh->rest[i])
+            return false;
+    return true;
+}
+
+skinslide_status ss_check_rest_still(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, double frame,
+                                     skinslide_error *error) {
+    if (row != mesh->rest_row || !mesh->rest)
+        return SKINSLIDE_OK;
+    skinslide_status status = ss_has_value(record) ? ss_check_positions(record, SKINSLIDE_BAD_POINTS, error) : SKINSLIDE_OK;
+    if (!status && (!ss_has_value(record) || !is_same_rest(mesh, record)))
+        status = ss_changes(record, frame, SKINSLIDE_BAD_POINTS, error);
+    return status;
+}
+
 skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error) {
     char source[256];
     bool is_last = row == SS_ROW_DEFAULT_POINTS, is_primvar = row > SS_ROW_REST_POINTS && !is_last;

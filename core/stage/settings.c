@@ -125,17 +125,20 @@ static bool is_same(const ss_input *input, const ss_taken *a, const ss_taken *b)
     }
 }
 
+skinslide_status ss_changes(const ss_record *record, double frame, skinslide_status status, skinslide_error *error) {
+    char text[32];
+    skinslide_stage_frame_text(frame, text);
+    return ss_fail(error, status, SS_NAMED " changes at frame %s; it must stay the same over time", SS_NAME(record->value.name),
+                   text);
+}
+
 skinslide_status ss_check_plain(const ss_input *input, const ss_record *record, const ss_taken *taken, double frame,
                                 skinslide_status status, skinslide_error *error) {
     ss_memory scratch = {0};
     ss_taken later = {0};
     skinslide_status failed = ss_take_plain(input, record, status, &scratch, &later, error);
-    if (!failed && !is_same(input, taken, &later)) {
-        char text[32];
-        skinslide_stage_frame_text(frame, text);
-        failed = ss_fail(error, status, SS_NAMED " changes at frame %s; it must stay the same over time",
-                         SS_NAME(record->value.name), text);
-    }
+    if (!failed && !is_same(input, taken, &later))
+        failed = ss_changes(record, frame, status, error);
     ss_free(&scratch);
     return failed;
 }
@@ -318,12 +321,12 @@ skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const 
 skinslide_status skinslide_stage_patch_check(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                              const skinslide_value *value, double frame, skinslide_error *error) {
     int32_t row = ss_row_of(SKINSLIDE_STAGE_PATCH, input), of_subset = ss_row_of(SKINSLIDE_STAGE_SUBSET, input);
-    if (!patch || (row < 0 && of_subset != SS_ROW_SUBSET_INDICES))
+    if (!patch || (row < 0 && of_subset < 0))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no patch, or no input of one that must stay the same");
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
     if (row < 0)
-        return status ? status : ss_check_subset_faces(patch, &record, frame, error);
+        return status ? status : ss_check_subset_faces(patch, of_subset, &record, frame, error);
     if (status || patch->taken[row].refused)
         return status;
     if (row == SS_ROW_FACES)

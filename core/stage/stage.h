@@ -218,6 +218,8 @@ skinslide_status ss_take_number(const ss_input *input, const ss_record *record, 
 /* Takes the fallbacks of a table. */
 skinslide_status ss_take_fallbacks(const ss_input *inputs, int32_t count, ss_memory *memory, ss_taken *taken,
                                    skinslide_error *error);
+/* Fails: the record is not what it was at first. */
+skinslide_status ss_changes(const ss_record *record, double frame, skinslide_status status, skinslide_error *error);
 /* Whether a record comes to what was taken; names the frame where it does not. */
 skinslide_status ss_check_plain(const ss_input *input, const ss_record *record, const ss_taken *taken, double frame,
                                 skinslide_status status, skinslide_error *error);
@@ -249,6 +251,8 @@ skinslide_mesh ss_faces_of(const skinslide_stage_mesh *mesh);
 
 /* rest.c, scheme.c: what skinslide_stage_mesh_take and *_check do for their inputs. */
 skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error);
+skinslide_status ss_check_rest_still(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, double frame,
+                                     skinslide_error *error);
 skinslide_status ss_take_subdivision(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error);
 skinslide_status ss_check_subdivision_still(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record,
                                             double frame, skinslide_error *error);
@@ -287,7 +291,7 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
 /* The same of an input of the subset. */
 skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row, const ss_record *record,
                                       skinslide_error *error);
-skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
+skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32_t row, const ss_record *record, double frame,
                                        skinslide_error *error);
 /* Marks every face and vertex as inside, where there are no faces yet, else those of the patch: what was chosen, and what joins
  * that within its grow, under a rule that takes any faces. */

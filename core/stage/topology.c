@@ -139,9 +139,9 @@ static skinslide_status take_face_indices(skinslide_stage_mesh *mesh, const ss_r
     return status;
 }
 
-static void take_orientation(skinslide_stage_mesh *mesh, const ss_record *record) {
+static bool is_left_handed(const ss_record *record) {
     const skinslide_value *value = &record->value;
-    mesh->left_handed = value->type == SKINSLIDE_VALUE_TEXT && !value->is_array && strcmp(value->data, "leftHanded") == 0;
+    return value->type == SKINSLIDE_VALUE_TEXT && !value->is_array && strcmp(value->data, "leftHanded") == 0;
 }
 
 skinslide_mesh ss_faces_of(const skinslide_stage_mesh *mesh) {
@@ -172,7 +172,7 @@ static skinslide_status take_of_mesh(skinslide_stage_mesh *mesh, int32_t row, co
     case SS_KIND_FACE_INDICES:
         return take_face_indices(mesh, record, error);
     case SS_KIND_ORIENTATION:
-        take_orientation(mesh, record);
+        mesh->left_handed = is_left_handed(record);
         return SKINSLIDE_OK;
     case SS_KIND_NUMBER:
         return take_number(mesh, row, record, error);
@@ -196,20 +196,50 @@ skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *mesh, const ski
     return status;
 }
 
+/* A number that was taken. */
+static skinslide_status check_number(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, double frame,
+                                     skinslide_error *error) {
+    const double numbers[] = {mesh->weld, mesh->weld_tolerance, mesh->compare_rest};
+    double number = 0;
+    skinslide_status status = ss_take_number(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], record, &number, error);
+    if (!status && number != numbers[row - SS_ROW_WELD])
+        status = ss_changes(record, frame, SKINSLIDE_BAD_CONTROL, error);
+    return status;
+}
+
+static skinslide_status check_of_mesh(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, double frame,
+                                      skinslide_error *error) {
+    const ss_input *input = &mesh_inputs(SKINSLIDE_STAGE_MESH)[row];
+    if (mesh->taken[row].refused)
+        return SKINSLIDE_OK;
+    switch (input->kind) {
+    case SS_KIND_ORIENTATION:
+        return is_left_handed(record) == mesh->left_handed ? SKINSLIDE_OK
+                                                           : ss_changes(record, frame, SKINSLIDE_BAD_MESH, error);
+    case SS_KIND_NUMBER:
+        return check_number(mesh, row, record, frame, error);
+    case SS_KIND_REST:
+        return ss_check_rest_still(mesh, row, record, frame, error);
+    default:
+        return ss_check_plain(input, record, &mesh->taken[row], frame, SKINSLIDE_BAD_MESH, error);
+    }
+}
+
+static bool is_still(int32_t row) {
+    return row >= 0 && mesh_inputs(SKINSLIDE_STAGE_MESH)[row].shown.when == SKINSLIDE_STAGE_STILL;
+}
+
 skinslide_status skinslide_stage_mesh_check(const skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
                                             const skinslide_value *value, double frame, skinslide_error *error) {
     int32_t row = ss_row_of(SKINSLIDE_STAGE_MESH, input), of_surface = ss_row_of(SKINSLIDE_STAGE_SUBDIVISION, input);
-    bool is_array = row == SS_ROW_FACE_COUNTS || row == SS_ROW_FACE_INDICES;
-    if (!mesh || (!is_array && of_surface < 0))
+    if (!mesh || (!is_still(row) && of_surface < 0))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh, or no input of one that must stay the same");
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
-    if (status || !is_array)
-        return status ? status : ss_check_subdivision_still(mesh, of_surface, &record, frame, error);
-    if (mesh->taken[row].refused)
-        return SKINSLIDE_OK;
-    return ss_check_plain(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], &record, &mesh->taken[row], frame, SKINSLIDE_BAD_MESH,
-                          error);
+    if (status)
+        return status;
+    return row >= 0 ? check_of_mesh(mesh, row, &record, frame, error)
+                    : ss_check_subdivision_still(mesh, of_surface, &record, frame, error);
 }
 
 skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_mesh *mesh, skinslide_mesh *out, skinslide_error *error) {

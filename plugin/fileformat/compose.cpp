@@ -128,6 +128,10 @@ void Attribute::takeOpinion(const SdfLayerRefPtr &layer, const SdfPath &path, co
     _layer = layer, _path = path, _toRoot = toRoot;
 }
 
+bool Attribute::hasDefault() const {
+    return !authoredAt(defaultTime).IsEmpty();
+}
+
 bool Attribute::varies() const {
     return _source == Source::Spline || (_source == Source::Samples && _layer->GetNumTimeSamplesForPath(_path) > 1);
 }

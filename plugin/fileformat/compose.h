@@ -49,7 +49,8 @@ class Attribute {
     bool clipped() const {
         return _clipped;
     }
-    bool varies() const; // may have different values at different times
+    bool hasDefault() const; // be it hidden by samples
+    bool varies() const;     // may have different values at different times
     std::vector<double> times() const;
     // The value at a time, interpolated linearly between samples as Usd does; empty where there is none. The path of an asset is
     // evaluated, and anchored to the layer that authors it.

@@ -97,14 +97,24 @@ class Property {
     Record first() const {
         return at(_input->when == SKINSLIDE_STAGE_DEFAULT_TIME ? Attribute::defaultTime : Attribute::first);
     }
-    // Hands the value over, and later samples of what must stay the same. Throws Fault.
+    // Hands the value over, and of what must stay the same its later samples, and the default that its first one hides. Throws
+    // Fault.
     template <class Handle, class Take, class Check> void give(Handle *handle, Take take, Check check) const {
         call(take, handle, _input, first());
-        for (double time : _input->when == SKINSLIDE_STAGE_STILL ? times() : std::vector<double>())
+        if (_input->when != SKINSLIDE_STAGE_STILL)
+            return;
+        std::vector<double> sampled = samples();
+        if (!sampled.empty() && hasDefault())
+            call(check, handle, _input, at(Attribute::defaultTime), sampled.front());
+        for (double time : times())
             call(check, handle, _input, at(time), time);
     }
 
   private:
+    bool hasDefault() const {
+        return _values.hasDefault() && (!_indices.authored() || _indices.hasDefault());
+    }
+
     const skinslide_stage_input *_input = nullptr;
     Attribute _values, _indices;
 };

@@ -77,6 +77,18 @@ def topology_that_changes(scene: Scene) -> None:
     attribute.Set([*indices[4:], *indices[:4]], FRAMES[1])
 
 
+def topology_unlike_its_default(scene: Scene) -> None:
+    indices = list(scene.mesh.GetFaceVertexIndicesAttr().Get())
+    scene.mesh.GetFaceVertexIndicesAttr().Set([*indices[4:], *indices[:4]], FRAMES[1])
+
+
+def rest_that_changes(frame: float | None) -> Edit:
+    """From there on; None: from the default to a sample."""
+    rest = stages.grid().points
+    values = {frame: rest, FRAMES[1]: 2 * rest}
+    return all_of(*(put("Pref", Types.Point3fArray, "vertex", stages.vectors(values[at]), at) for at in values))
+
+
 def indices_end_with(*last: int) -> Edit:
     return topology(indices=lambda indices: [*indices[: -len(last)], *last])
 
@@ -338,6 +350,53 @@ GEOMETRY = [
         None,
     ),
     Bad("mesh: negative count", counts_end_with(-4), "face 35 has -4 vertices", None),
+    Bad(
+        "mesh: topology is not its default",
+        topology_unlike_its_default,
+        "faceVertexIndices changes at frame 1002; it must stay the same over time",
+        None,
+    ),
+    Bad(
+        "mesh: orientation changes",
+        retyped("orientation", Types.Token, None, {FRAMES[0]: "leftHanded", FRAMES[1]: "rightHanded"}),
+        "orientation changes at frame 1002; it must stay the same over time",
+        None,
+    ),
+    Bad(
+        "mesh: weld changes",
+        retyped("skinSlide:weld", Types.Bool, None, {FRAMES[0]: True, FRAMES[2]: False}),
+        "skinSlide:weld changes at frame 1003; it must stay the same over time",
+        None,
+    ),
+    Bad(
+        "rest: changes",
+        rest_that_changes(FRAMES[0]),
+        "primvars:Pref changes at frame 1002; it must stay the same over time",
+        None,
+        rest="",
+    ),
+    Bad(
+        "rest: a sample is not the default",
+        rest_that_changes(None),
+        "primvars:Pref changes at frame 1002; it must stay the same over time",
+        None,
+        rest="",
+    ),
+    Bad(
+        "rest: is blocked at a frame",
+        all_of(rest_that_changes(None), blocked_at("primvars:Pref", FRAMES[2])),
+        "primvars:Pref changes at frame 1002; it must stay the same over time",
+        None,
+        rest="",
+    ),
+    Bad(
+        "subset: elementType changes",
+        all_of(
+            subset([0]),
+            on_subset(lambda it: [it.GetElementTypeAttr().Set(*each) for each in (("face", 1001), ("point", 1002))]),
+        ),
+        "elementType changes at frame 1002; it must stay the same over time",
+    ),
     Bad(
         "mesh: topology changes",
         topology_that_changes,

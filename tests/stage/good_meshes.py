@@ -40,7 +40,7 @@ from edits import (
 )
 from layers import CLOCK, HEAD
 from rows import CANNOT_READ, Good
-from stages import FRAMES
+from stages import FRAMES, PATCH
 
 SKINNED = (
     "points are skinned by UsdSkel, which a .skinslide file cannot do; bake the stage instead, or write the skinned "
@@ -232,6 +232,28 @@ def rest_by_indices(scene: Scene) -> None:
     indexed("Pref", order.tolist())(scene)
 
 
+def in_samples_alone(*names: str) -> Edit:
+    """Attributes that are the same at every frame, and have no default."""
+
+    def edit(scene: Scene) -> None:
+        for name in names:
+            attribute = scene.prim.GetAttribute(name)
+            value = attribute.Get()
+            attribute.Clear()
+            for frame in FRAMES:
+                attribute.Set(value, frame)
+
+    return edit
+
+
+def subset_in_samples_alone(scene: Scene) -> None:
+    child = UsdGeom.Subset(scene.stage.GetPrimAtPath(f"{scene.prim.GetPath()}/{PATCH}"))
+    for attribute in (child.GetElementTypeAttr(), child.GetIndicesAttr()):
+        value = attribute.Get()
+        attribute.Clear()
+        attribute.Set(value, FRAMES[0])
+
+
 CHOSEN = [
     Good("plain"),
     Good("faces: int", put(FACES, Types.IntArray, "uniform", [0] * 6 + [3] * 29 + [-1])),
@@ -253,6 +275,7 @@ CHOSEN = [
         all_of(*(painted(FACES, "uniform", [frame] * 36, frame) for frame in FRAMES)),
     ),
     Good("faces: subset", subset([*range(30), 3, 3])),
+    Good("faces: subset in samples alone", all_of(subset([*range(30)]), subset_in_samples_alone)),
     Good("faces: subset without elementType", subset([*range(30)], None)),
     Good(
         "faces: subset whose elementType is blocked",
@@ -380,6 +403,11 @@ POINTS = [
             for frame in FRAMES
         ],
     ),
+    Good("topology: in samples alone", in_samples_alone("faceVertexCounts", "faceVertexIndices", "subdivisionScheme")),
+    Good(
+        "points: left-handed, in samples alone",
+        retyped("orientation", Types.Token, None, dict.fromkeys(FRAMES, "leftHanded")),
+    ),
     Good("topology: counts as unsigned", retyped("faceVertexCounts", Types.UIntArray, Vt.UIntArray([4] * 36))),
     Good("topology: counts as int64", retyped("faceVertexCounts", Types.Int64Array, Vt.Int64Array([4] * 36))),
 ]
@@ -392,6 +420,12 @@ REST = [
     Good("rest: half", rest_as(Types.Half3Array), rest=""),
     Good("rest: varying", rest_as(Types.Point3fArray, interpolation="varying"), rest=""),
     Good("rest: indexed, in a sample", rest_by_indices, rest=""),
+    Good("rest: samples that agree", in_samples_alone("primvars:Pref"), rest="Pref"),
+    Good(
+        "rest: one that does not count may change",
+        all_of(*(put("pref", Types.Point3fArray, "vertex", [(frame, 0, 0)] * 49, frame) for frame in FRAMES)),
+        rest="rest",
+    ),
     Good(
         "rest: blocked, so the next counts",
         all_of(rest_as(Types.Point3fArray), blocked("primvars:rest"), rest_as(Types.Point3fArray, "pref")),

@@ -114,7 +114,8 @@ typedef enum skinslide_stage_group {
 /* When a value is fetched. The first time is that of the first sample; where there are none, the default. */
 typedef enum skinslide_stage_when {
     SKINSLIDE_STAGE_FIRST,        /* at the first time */
-    SKINSLIDE_STAGE_STILL,        /* the same; where there are several samples, each of them goes to the handle's *_check */
+    SKINSLIDE_STAGE_STILL,        /* the same; each other sample, and a default that the first one hides, with the frame of
+                                   * that, goes to the handle's *_check */
     SKINSLIDE_STAGE_DEFAULT_TIME, /* the default value, whatever samples there are */
     SKINSLIDE_STAGE_ANIMATED      /* at the first time, and at every frame where it varies */
 } skinslide_stage_when;
@@ -245,7 +246,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *m
 
 /* Checks that a later sample of an input that must stay the same does so.
  *   frame  in  its time, for the sentence
- * Fails with BAD_MESH ("NAME changes at frame 1002; it must stay the same over time"), BAD_ARGUMENT, OUT_OF_MEMORY. */
+ * Fails as skinslide_stage_mesh_take ("NAME changes at frame 1002; it must stay the same over time"). */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_check(const skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
                                                           const skinslide_value *value, double frame, skinslide_error *error);
 

@@ -254,7 +254,7 @@ def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
     if not child.IsA(UsdGeom.Subset):
         raise Fault(f"{child.GetPath()} is no GeomSubset")
     subset, path = UsdGeom.Subset(child), child.GetPath()
-    element = subset.GetElementTypeAttr().Get()
+    element = subset.GetElementTypeAttr().Get(FIRST)
     if element != UsdGeom.Tokens.edge:
         raise Fault(f"the GeomSubset {path} has elementType {element}; it must be edge")
     pairs = read_pairs(subset.GetIndicesAttr(), surface.meaning)

@@ -63,7 +63,7 @@ class Skin:
             if error.status == "BAD_CONTROL":  # st
                 raise Fault(f"primvars:{st or _ST}: {error}") from error
             raise
-        double_sided = bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get())
+        double_sided = bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get(FIRST))
         return cls(mesh, corners, tessellation, double_sided, mesh.left_handed)
 
 

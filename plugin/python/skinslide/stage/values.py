@@ -62,6 +62,15 @@ class Source:
         there = [each for each in (self.attribute, self.indices) if each]
         return sorted({time for attribute in there for time in attribute.GetTimeSamples()})
 
+    def later(self) -> Iterator[tuple[float, Value | None]]:
+        """What it is beside its first value, each with a frame: later samples, and the default that the first hides."""
+        sampled, indices = self.samples(), self.indices
+        is_whole = not (indices and indices.HasAuthoredValue()) or _has_default(indices)
+        if sampled and is_whole and _has_default(self.attribute):
+            yield sampled[0], self.at(Usd.TimeCode.Default())
+        for frame in self.times():
+            yield frame, self.at(Usd.TimeCode(frame))
+
     def _varying(self) -> list[Usd.Attribute]:
         there = [each for each in (self.attribute, self.indices) if each and self.attribute.HasAuthoredValue()]
         return [each for each in there if each.ValueMightBeTimeVarying()]
@@ -140,14 +149,20 @@ def sample_times(attribute: Usd.Attribute, span: Span | None = None) -> list[flo
     return [*knots, *map(float, range(first, last + 1))]
 
 
+def _has_default(attribute: Usd.Attribute) -> bool:
+    """Whether one is authored, be it hidden by samples."""
+    defaults = (spec.default for spec in attribute.GetPropertyStack() if spec.HasInfo("default"))
+    return not isinstance(next(defaults, Sdf.ValueBlock()), Sdf.ValueBlock)
+
+
 def take(taker: Taker, sources: Iterable[Source]) -> list[str]:
-    """Hands over values, and later samples of what must stay the same. Returns what is wrong."""
+    """Hands over values, and those of other times of what must stay the same. Returns what is wrong."""
     faults: list[str] = []
     for source in sources:
         with noting(faults):
             taker.take(source.wanted, source.first())
-            for frame in source.times() if source.wanted.when == STILL else []:
-                taker.check(source.wanted, source.at(Usd.TimeCode(frame)), frame)
+            for frame, value in source.later() if source.wanted.when == STILL else ():
+                taker.check(source.wanted, value, frame)
     return faults
 
 
