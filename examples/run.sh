@@ -31,6 +31,13 @@ for example in "${unpainted[@]}"; do
     "$venv/bin/skinslide" setup "$out/$example/shot.usda" -o "$(stage "$example")" --whole --force >"$out/$example/setup.txt"
     bake "$example"
 done
+step "character"
+"$python" examples/character/make.py "$out/character" >/dev/null
+"$venv/bin/skinslide" setup "$out/character/shot.usda" -o "$(stage character)" --prim /World/char/geo/body_GEO --patch elbow_L \
+    --joint lowerarm01_L --force >"$out/character/setup.txt"
+bake character
+"$venv/bin/skinslide" cache "$(stage character)" -o "$out/character/skinned.usdc" --quiet
+"$python" examples/character/play.py "$out/character" >"$out/character/play.txt"
 step "shot"
 "$python" examples/shot/make.py "$out/shot" >/dev/null
 "$python" examples/shot/play.py "$out/shot/shot.usda" >"$out/shot/play.txt"
@@ -45,6 +52,8 @@ for example in sleeve face; do
     step "$example"
     "$python" examples/measure/pictures.py "$out/$example.jpg" "$(stage "$example")" unit,relaxed chequer,stretch >/dev/null
 done
+step "character"
+"$python" examples/measure/pictures.py "$out/character.jpg" "$(stage character)" even chequer,stretch /World/seam_CAM >/dev/null
 echo
 
 say "Measuring"
@@ -52,7 +61,8 @@ measure lookup "$out"
 painted=("${examples[@]/#/$out/}")
 measure limit_distance "${painted[@]/%//stage.usda}"
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
-measure normals "$out"/{elbow,sleeve,chequer}/stage.usda
+measure normals "$out"/{character,elbow,sleeve,chequer}/stage.usda
+measure surface "$out"/{character,elbow,sleeve,face}/stage.usda
 measure share "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 echo
 
@@ -61,22 +71,30 @@ say "Stretch of each patch over 24 frames, where the cache has most of it, and o
 
 say "Normals, in degrees: their largest jump at a tiny slide (0), and largest angle across seams (as in the cache)"
 cat "$out/normals.txt"
+
+say "Points that slid off the surface of the cache (0)"
+cat "$out/surface.txt"
+
+say "A character skinned by UsdSkel"
+tail -n 2 "$out/character/play.txt"
 cat <<SUMMARY
 
 Look at these in $out:
   elbow/report.html              the elbow before and after, frame by frame, in a browser
-  elbow.jpg sleeve.jpg face.jpg  the cache, and what the rules make of it
+  elbow.jpg sleeve.jpg face.jpg character.jpg  the cache, and what the rules make of it
   id_buffers.png                 the textures in which the lookup finds faces
 Of each example, as elbow:
   elbow/stage.usda               the cache and its patch; sublayer elbow/slid.usdc above it
   elbow/check.txt bake.json      what was found on the stage, and what happened at each frame
   body/shot.usda setup.txt       a shot with nothing painted, of which setup --whole made body/stage.usda
+  character/shot.usda play.txt   a character as its rig has it, set up by a joint; its bake above it, and a live layer on its cache
 And measured:
   times.txt                      milliseconds of each stage of the walk, patch by patch
   lookup.txt                     how much of the lookup the texture finds
   limit_distance.txt             how far the limit surface moves
   smoothness.txt                 how smoothly each rule moves skin
   normals.txt                    how authored normals are carried with the skin
+  surface.txt                    how far points slid off the surface of the cache
   share.txt                      the share of the removable stretch that each rule removes
   shot/play.txt                  shot/shot.usda, played live with nothing baked
 SUMMARY

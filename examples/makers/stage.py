@@ -4,7 +4,7 @@ The shot payloads the cache with a layer offset. It is `stage.usda` where it car
 opinions; without one it is `shot.usda`, for `skinslide setup` to make the other of.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,6 +52,16 @@ def write(folder: Path, cache: Cache, patch: Patch | None = None) -> Path:
     return path
 
 
+def write_skinned(folder: Path, define: Callable[[Usd.Stage], None]) -> Path:
+    """The same of a character that `define` makes below /char, a SkelRoot; its shot carries no patch."""
+    folder.mkdir(parents=True, exist_ok=True)
+    published, shot = _new_stage("char", first_frame=1), _payloading_stage("./character.usdc", "SkelRoot")
+    define(published)
+    published.GetRootLayer().Export(str(folder / "character.usdc"))
+    shot.GetRootLayer().Export(str(folder / "shot.usda"))
+    return folder / "shot.usda"
+
+
 def _cache_stage(cache: Cache) -> Usd.Stage:
     stage = _new_stage("char", first_frame=1)
     char = UsdGeom.Xform.Define(stage, "/char").GetPrim()
@@ -69,13 +79,18 @@ def _cache_stage(cache: Cache) -> Usd.Stage:
     return stage
 
 
-def _shot_stage(cache: Cache, patch: Patch | None) -> Usd.Stage:
+def _payloading_stage(payload: str, type_name: str = "Xform") -> Usd.Stage:
     stage = _new_stage("World", first_frame=FIRST_SHOT_FRAME)
     world = UsdGeom.Xform.Define(stage, "/World").GetPrim()
     Usd.ModelAPI(world).SetKind(Kind.Tokens.group)
-    char = stage.DefinePrim("/World/char", "Xform")
+    char = stage.DefinePrim("/World/char", type_name)
     offset = Sdf.LayerOffset(FIRST_SHOT_FRAME - 1)
-    char.GetPayloads().AddPayload(Sdf.Payload("./cache.usdc", layerOffset=offset))
+    char.GetPayloads().AddPayload(Sdf.Payload(payload, layerOffset=offset))
+    return stage
+
+
+def _shot_stage(cache: Cache, patch: Patch | None) -> Usd.Stage:
+    stage = _payloading_stage("./cache.usdc")
     if patch:
         prim = stage.OverridePrim(MESH_PATH)
         prim.AddAppliedSchema(f"SkinSlideAPI:{patch.name}")

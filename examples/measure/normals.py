@@ -58,6 +58,16 @@ def read_normals(prim: Usd.Prim, times: list[float]) -> Normals:
     return {time: np.array(read(time), float) for time in times if there}
 
 
+def cached_normals(mesh: PatchedMesh, times: list[float]) -> Normals:
+    """Of a mesh that UsdSkel skins as it skins them; of another as they are authored or, for none, made."""
+    for skinned in mesh.skinned_normals() if mesh.skinning else []:
+        if skinned.attribute:
+            return {time: skinned.skinned(Usd.TimeCode(time)).astype(float) for time in times}
+    if not read_normals(mesh.prim, times):
+        author_normals(mesh)
+    return read_normals(mesh.prim, times)
+
+
 def with_envelope(mesh: PatchedMesh, envelope: float) -> None:
     for patch in mesh.patches:
         mesh.prim.GetAttribute(f"skinSlide:{patch.name}:envelope").Set(envelope)
@@ -103,9 +113,7 @@ def row(path: Path) -> list[str]:
     stage.SetEditTarget(stage.GetSessionLayer())
     mesh = read_meshes(stage)[0][0]
     times = mesh.sample_times()
-    if not read_normals(mesh.prim, times):
-        author_normals(mesh)
-    cached = read_normals(mesh.prim, times)
+    cached = cached_normals(mesh, times)
     slid, largest = baked(stage, mesh, times)
     with_envelope(mesh, TINY / largest)
     tiny, _ = baked(stage, mesh, times)

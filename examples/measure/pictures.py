@@ -1,7 +1,8 @@
 """Draws what rules do to a patch: the cache, then the slid skin by each rule, side by side, a row a view.
 
-usage: pictures.py PICTURE STAGE RULE[,RULE] VIEW[,VIEW]
-At the frame where the cache has most stretch. Pictures are JPEG, or PNG, by their name.
+usage: pictures.py PICTURE STAGE RULE[,RULE] VIEW[,VIEW] [CAMERA]
+At the frame where the cache has most stretch, through a camera of the stage or one that frames the patch. Pictures are
+JPEG, or PNG, by their name.
 """
 
 import sys
@@ -35,14 +36,14 @@ def columns(mesh: PatchedMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list
     return found
 
 
-def draw(path: Path, rules: Sequence[str], views: Sequence[str]) -> np.ndarray:
+def draw(path: Path, rules: Sequence[str], views: Sequence[str], camera: str | None) -> np.ndarray:
     """The picture of a stage: uint8 (height, width, 3)."""
     stage = Usd.Stage.Open(str(path))
     mesh = read_meshes(stage)[0][0]
     slider, size = mesh.slider(), (COLUMN * (1 + len(rules)), HEIGHT)
     times = [Usd.TimeCode(time) for time in mesh.sample_times()]
     worst = max(times, key=lambda time: slider.slide(mesh.points_at(time)).patches[0].stretch_before)
-    options = PictureOptions(views=views, follow=True, size=size, most_stretch=MOST_STRETCH)
+    options = PictureOptions(views=views, camera=camera, follow=camera is None, size=size, most_stretch=MOST_STRETCH)
     series = Series.of(Skin.of(mesh, slider.faces(0), None), slider, 0, options, columns=1 + len(rules))
     canvas, shown = Canvas(*size), columns(mesh, worst, rules)
     rows = [series.draw(canvas, view, series.moment(worst), shown, MOST_STRETCH) for view in views]
@@ -50,8 +51,9 @@ def draw(path: Path, rules: Sequence[str], views: Sequence[str]) -> np.ndarray:
 
 
 def main() -> None:
-    picture, path, rules, views = sys.argv[1:]
-    Image.fromarray(draw(Path(path), rules.split(","), views.split(","))).save(picture, optimize=True, quality=88)
+    picture, path, rules, views, *camera = sys.argv[1:]
+    drawn = draw(Path(path), rules.split(","), views.split(","), *(camera or [None]))
+    Image.fromarray(drawn).save(picture, optimize=True, quality=88)
     print(f"{picture}: the cache, {', '.join(rules.split(','))}")
 
 

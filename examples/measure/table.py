@@ -11,7 +11,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-ORDER = ("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump", "body", "trunk", "torus")
+ORDER = (
+    *("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump"),
+    *("body", "trunk", "torus", "character"),
+)
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 RESULTS = ("example", "vertices", "cache", "slid", "change", "at frame", "folded", "clamped", "ms a frame")
 TIMES = ("example", "vertices", "edges", *(f"{stage} ms" for stage in STAGES), "frame ms")

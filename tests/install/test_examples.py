@@ -1,5 +1,6 @@
 """The example stages: what each promises of its cache, its patch and its opinions. No slid result is looked at here."""
 
+import shutil
 import subprocess
 import sys
 from collections import defaultdict
@@ -11,6 +12,7 @@ from pxr import Usd, UsdGeom, UsdValidation
 
 import skinslide
 from repository import EXAMPLES, load
+from skinslide.stage.mesh import read_moving
 
 MESH_PATH = "/World/char/geo/body_GEO"
 # Example → its patch, and how many boundary loops that has: eyes, nostrils and mouth are holes of the face.
@@ -303,3 +305,60 @@ def test_bodies_that_are_closed(name, handles, example_stage):
     assert len(points) - len(sides) // 2 + len(faces) == 2 - 2 * handles
     a, b, c, d = (points[faces[:, k]].astype(np.float64) for k in range(4))
     assert np.einsum("ij,ij->i", a, np.cross(b - a, c - a) + np.cross(c - a, d - a)).sum() > 0
+
+
+# ---- Skinned by UsdSkel ----
+
+
+def test_the_character_is_what_an_exporter_would_write(example_stage):
+    stage = Usd.Stage.Open(str(example_stage("character")))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath(MESH_PATH))
+    points, normals = np.array(mesh.GetPointsAttr().Get()), np.array(mesh.GetNormalsAttr().Get())
+    places, which = np.unique(points, axis=0, return_inverse=True)
+    assert not mesh.GetPointsAttr().GetTimeSamples() and not mesh.GetPrim().HasAPI("SkinSlideAPI")
+    assert len(points) == len(normals) == 14517 and len(places) == 13380
+    first = np.unique(which.ravel(), return_index=True)[1]
+    np.testing.assert_array_equal(normals, normals[first][which.ravel()])  # one in one place
+
+
+def test_the_character_bends_as_the_elbow_does(example_stage, made):
+    """Skinned by USD as by the maker of the cache, but for a few points of more joints than it has."""
+    stage, elbow = Usd.Stage.Open(str(example_stage("character"))), made("elbow")
+    mesh = read_moving(stage.GetPrimAtPath(MESH_PATH))
+    for frame in (1001, 1024):
+        ours, its = mesh.points_at(Usd.TimeCode(frame)), elbow.points(frame)
+        nearest = np.sort(np.unique(ours, axis=0), axis=0) - np.sort(np.unique(its, axis=0), axis=0)
+        assert np.abs(nearest).max() < 0.05  # cm
+
+
+def test_the_character_set_up_by_a_joint_plays_as_it_is_baked(example_stage, tmp_path):
+    shot, folder = example_stage("character"), tmp_path / "character"
+    shutil.copytree(shot.parent, folder)
+    report = skinslide.setup_to_file(
+        folder / "shot.usda", folder / "stage.usda", MESH_PATH, "elbow_L", joint="lowerarm01_L"
+    )
+    assert report.meshes[0].welded > 0
+    baked = skinslide.bake_to_file(folder / "stage.usda", folder / "slid.usdc")
+    skinslide.cache(folder / "stage.usda", folder / "skinned.usdc")
+    worst = baked.meshes[0].patches[0]
+    assert worst.change < -0.3 and worst.column("folded_faces").max() == 0
+    play = [sys.executable, EXAMPLES / "character/play.py", folder]
+    *_, same, skinned = subprocess.run(play, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert same == "live as baked, to the bit: 24 of 24 frames"
+    assert skinned == "skinned by UsdSkel: 1 mesh of the character, 0 below its bake"
+
+
+@pytest.mark.parametrize("script", ["normals", "surface"])
+def test_what_is_measured_of_the_character(script, example_stage, tmp_path):
+    shot, output = example_stage("character"), tmp_path / "character" / "stage.usda"
+    output.parent.mkdir()
+    skinslide.setup_to_file(shot, output, MESH_PATH, "elbow_L", joint="lowerarm01_L")
+    measure = [sys.executable, EXAMPLES / f"measure/{script}.py", output]
+    (*_, cells) = subprocess.run(measure, capture_output=True, text=True, check=True).stdout.splitlines()
+    name, *numbers = cells.split()
+    assert name == "character"
+    if script == "normals":
+        largest, turned, jump, seams, slid_seams = map(float, numbers)
+        assert largest > 1 and turned > 1 and (jump, seams, slid_seams) == (0, 0, 0)
+    else:
+        assert int(numbers[0]) > 100 and float(numbers[2]) < 1e-4 and int(numbers[3]) == 0

@@ -18,7 +18,7 @@ SCRIPTS = Path(sysconfig.get_path("scripts"))
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """What a reader has: a cached character with masks painted on it, and a stage with its elbow's patch set up."""
+    """What a reader has: a cached character with masks painted on it, a rigged one, and a stage with a patch set up."""
     folder = tmp_path_factory.mktemp("readme")
     subprocess.run([sys.executable, ROOT / "examples/elbow/make.py", folder], check=True, capture_output=True)
     stage = Usd.Stage.Open(str(folder / "stage.usda"))
@@ -33,6 +33,10 @@ def folder(tmp_path_factory):
     tendon.Set([1.0] * len(UsdGeom.Mesh(mesh).GetPointsAttr().Get()))
     mesh.ClearMetadata("apiSchemas")
     character.Save()
+    subprocess.run(
+        [sys.executable, ROOT / "examples/character/make.py", folder / "rig"], check=True, capture_output=True
+    )
+    Sdf.Layer.FindOrOpen(str(folder / "rig" / "character.usdc")).Export(str(folder / "rigged.usd"))
     return folder
 
 
@@ -43,7 +47,9 @@ def python_snippets():
 def shell_commands():
     """The lines of indented blocks, and inline code, that call the tool."""
     return re.findall(
-        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|preview|bake|maps|stitch) [^`\n]*)", README, re.MULTILINE
+        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|preview|bake|cache|maps|stitch) [^`\n]*)",
+        README,
+        re.MULTILINE,
     )
 
 
