@@ -63,7 +63,7 @@ measure limit_distance "${painted[@]/%//stage.usda}"
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 measure normals "$out"/{character,elbow,sleeve,chequer}/stage.usda
 measure surface "$out"/{character,elbow,sleeve,face}/stage.usda
-measure share "$out"/{elbow,bicep,sleeve,finger,chequer,face}/stage.usda
+measure rules "$out"/{body,trunk,torus,elbow,fine_elbow,bicep,face,finger,sleeve,bump}/stage.usda
 echo
 
 say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"
@@ -95,6 +95,6 @@ And measured:
   smoothness.txt                 how smoothly each rule moves skin
   normals.txt                    how authored normals are carried with the skin
   surface.txt                    how far points slid off the surface of the cache
-  share.txt                      the share of the removable stretch that each rule removes
+  rules.txt                      what each rule makes of them: share of the removable stretch, roughness, folds, cost
   shot/play.txt                  shot/shot.usda, played live with nothing baked
 SUMMARY

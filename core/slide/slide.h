@@ -111,6 +111,12 @@ skinslide_status ss_take_samples(const skinslide_sample *given, int count, skins
 /* BAD_ARGUMENT before the first frame, and after one that failed. */
 skinslide_status ss_check_frame(const skinslide_workspace *workspace, skinslide_error *error);
 
+/* ---- slider.c ---- */
+
+/* Whether a frame goes on: status, or that another thread wants no more of it, for which a stage may have failed. Once it is said,
+ * the next one may. */
+skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error);
+
 /* ---- workspace.c ---- */
 
 /* skinslide_workspace_create, with EGL by another loader. */

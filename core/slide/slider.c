@@ -150,9 +150,7 @@ static double stretch(const ss_patch *patch, const double *lengths) {
 
 /* ---- One frame ---- */
 
-/* Whether the frame goes on: status, or that another thread wants no more of it, for which a stage may have failed. Once it is
- * said, the next one may. */
-static skinslide_status go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error) {
+skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error) {
     if (!ss_is_set(&workspace->stop))
         return status;
     ss_set(&workspace->stop, 0);
@@ -169,17 +167,17 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         status = ss_take_frame_controls(slider, controls, workspace->controls, error);
     if (!status && results && slider->part_count > 0)
         status = ss_check_size(results, "skinslide_patch_result", error);
-    if ((status = go_on(workspace, status, error)))
+    if ((status = ss_go_on(workspace, status, error)))
         return status;
     workspace->has_frame = false;
     for (int32_t p = 0; p < slider->part_count; p++) {
         const skinslide_controls *own = controls ? &workspace->controls[slider->parts[p].patch->setup_index] : NULL;
         workspace->results[p] = (skinslide_patch_result)SKINSLIDE_PATCH_RESULT_DEFAULT;
-        if ((status = go_on(workspace, start_patch(workspace, p, points, own, error), error)))
+        if ((status = ss_go_on(workspace, start_patch(workspace, p, points, own, error), error)))
             return status;
     }
     for (int32_t p = 0; p < slider->part_count; p++) {
-        if ((status = go_on(workspace, slide_patch(workspace, p, error), error)))
+        if ((status = ss_go_on(workspace, slide_patch(workspace, p, error), error)))
             return status;
         workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->patches[p].lengths);
     }

@@ -535,6 +535,16 @@ SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_wor
 SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
                                                              uint32_t *texels, skinslide_error *error);
 
+/* Searches for the least stretch that a pose allows: slow. Vertices inside a patch may go anywhere on it, and faces may turn
+ * over; the search begins where the cache has vertices, and where the last frame that this workspace slid left them. Of the
+ * stretch that can be removed, sliding removes the share (before - after) / (before - least); a workspace of the relaxed rule
+ * finds the lowest.
+ *   points  in  [vertex_count][3] of that frame
+ *   least   out [patch_count] RMS over the edges of log(length / rest length), no more than in the cache
+ * Fails with BAD_ARGUMENT (NULL, no frame yet), BAD_POINTS, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */
+SKINSLIDE_API skinslide_status skinslide_workspace_least_stretch(skinslide_workspace *workspace, const float *points,
+                                                                 double *least, skinslide_error *error);
+
 /* ---- What a slide did, by vertex ---------------------------------------------------------------------------------------- */
 
 /* For pictures and maps. Edges count that are of a patch, each once. Any of the arrays may be NULL: it is not wanted. Start

@@ -230,6 +230,29 @@ class Slider:
         call(lib.skinslide_diagnose, self._slider.pointer, given, wanted, before, after, arrays)
         return result
 
+    def least_stretch(self, points: npt.ArrayLike) -> tuple[float, ...]:
+        """The least stretch that a search finds for a pose, from the cache and from where a slide leaves skin: slow.
+
+        Args:
+            points: Of the deformed mesh (V, 3).
+
+        Returns:
+            One a patch: the RMS of log(length / rest length), as `PatchResult` has it.
+
+        Raises:
+            SliderError: Points that cannot be; the message names patch and element.
+        """
+        native, least = Arguments(), np.empty(len(self.patches))
+        cached = native.points(points, self._sizes.vertices, "points")
+        slid = ffi.new("float[]", 3 * self._sizes.vertices)
+        workspace = self._take_workspace()
+        try:
+            call(lib.skinslide_slide, workspace.pointer, cached, ffi.NULL, slid, ffi.NULL)
+            call(lib.skinslide_workspace_least_stretch, workspace.pointer, cached, writable("double[]", least))
+        finally:
+            self._give_back(workspace)
+        return tuple(least.tolist())
+
     def roughness(self, samples: Sequence[Sample]) -> tuple[Roughness, ...]:
         """How roughly each patch moves at the middle of three times.
 

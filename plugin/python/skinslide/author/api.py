@@ -12,7 +12,7 @@ from skinslide.author.applied import AppliedPatch, AppliedSchema
 
 
 class SkinSlideAPI(AppliedPatch):
-    """A patch of a mesh whose skin slides over the deformed surface, so that texture keeps its rest spacing.
+    """A patch of a mesh, up to a whole character, whose skin slides so that texture keeps its rest spacing.
 
     The instance name is the patch's name: SkinSlideAPI:elbow_L. A mesh may carry many patches, and patches may
     overlap.

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.native import Lookup
-from skinslide.arrays.slider import version
+from skinslide.arrays.native import Controls, Lookup
+from skinslide.arrays.slider import Slider, version
 from skinslide.problems import FrameProblem, Problem, StageProblems
 from skinslide.shot.derived import Derived
 from skinslide.shot.loop import slide
@@ -24,6 +24,7 @@ from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame
 from skinslide.shot.report import BakeReport, MeshReport, roughness_text
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
+from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.schema import SLIDE, STRETCH
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
@@ -46,6 +47,7 @@ def bake_to_file(
     max_folded: int | None = None,
     max_clamped: int | None = None,
     max_roughness: float | None = None,
+    share: bool = False,
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
@@ -68,6 +70,7 @@ def bake_to_file(
         max_clamped: Vertices looked up outside every face that a patch may have at a frame; None: any number.
         max_roughness: How many times as roughly as its cache a patch may move, by the largest second difference in
             time; None: any number.
+        share: Searches at each frame for the least stretch that its pose allows, for the report. Slow.
         diagnostics: Writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points.
         also: What else is made of the frames, each of which is slid once: `Pictures`, `Maps`.
 
@@ -82,7 +85,9 @@ def bake_to_file(
         FrameProblem: A frame cannot be slid, or has more than max_folded, max_clamped or max_roughness.
     """
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    layer = _Layer(LayerOptions(max_folded, max_clamped, max_roughness, diagnostics), given_output("output", output))
+    layer = _Layer(
+        LayerOptions(max_folded, max_clamped, max_roughness, share, diagnostics), given_output("output", output)
+    )
     return slide(Shot.of(stage), options, [layer, *given_products("also", also)], progress)
 
 
@@ -97,6 +102,7 @@ def bake(
     max_folded: int | None = None,
     max_clamped: int | None = None,
     max_roughness: float | None = None,
+    share: bool = False,
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
@@ -116,6 +122,7 @@ def bake(
         max_folded: As for `bake_to_file`.
         max_clamped: As for `bake_to_file`.
         max_roughness: As for `bake_to_file`.
+        share: As for `bake_to_file`.
         diagnostics: As for `bake_to_file`.
         also: As for `bake_to_file`.
 
@@ -130,7 +137,10 @@ def bake(
     """
     check_target(stage)
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    wanted, others = LayerOptions(max_folded, max_clamped, max_roughness, diagnostics), given_products("also", also)
+    wanted, others = (
+        LayerOptions(max_folded, max_clamped, max_roughness, share, diagnostics),
+        given_products("also", also),
+    )
     with replacing_earlier_bake(stage, options.prims) as earlier:
         report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *others], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))
@@ -197,16 +207,24 @@ class _MeshBake(MeshMaking):
         self._derived = Derived(planned.mesh, between=planned.between)
         self.turns = self._derived.carries
         self._diagnostics = baking.options.diagnostics
+        self.sliders = [_least_slider(planned.mesh)] if baking.options.share else []
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return self._derived.times_needed(time)
 
-    def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], object]:
-        return lambda frame: frame.measured() if self._diagnostics else None
+    def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], Sequence[tuple[float, ...]]]:
+        def work(frame: SlidFrame) -> Sequence[tuple[float, ...]]:
+            if self._diagnostics:
+                frame.measured()
+            return [slider.least_stretch(frame.cached) for slider in self.sliders]
 
-    def take(self, time: Usd.TimeCode, frames: SlidFrames, _made: object) -> None:
+        return work
+
+    def take(self, time: Usd.TimeCode, frames: SlidFrames, made: Sequence[tuple[float, ...]]) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim
         self._check_limits(time, frame)
+        for least in made:
+            self._report.add_least(frame_of(time), least)
         geometry, points = UsdGeom.PointBased(prim), Vt.Vec3fArray.FromNumpy(frame.slid)
         overs.set(geometry.GetPointsAttr(), points, time)
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
@@ -242,6 +260,13 @@ class _MeshBake(MeshMaking):
                 ratio = f"{roughness_text(patch.roughness)} times as roughly as the cache"
                 message = f"skin moves {ratio}, where at most {most:g} times are allowed"
                 raise FrameProblem(Problem("error", self._mesh.path, patch.label, patch.roughest, message))
+
+
+def _least_slider(mesh: PatchedMesh) -> Slider:
+    """Of the rule that leaves least stretch, unpainted: the search begins there."""
+    return mesh.build(
+        [replace(patch, rule="relaxed", interpolation="linear", controls=Controls()) for patch in mesh.patches]
+    )
 
 
 def _indices(prim: Usd.Prim) -> list[Usd.Attribute]:

@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 from pxr import Usd
 
 from skinslide.arrays.native import Sample
+from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems
 from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
@@ -44,7 +45,7 @@ def slide(
     with signals_as_exceptions(), ExitStack() as ending:
         for making in makings:
             ending.enter_context(making.running(report))
-        with pool_of(options.jobs, total, [mesh.planned.slider for mesh in meshes]) as pool:
+        with pool_of(options.jobs, total, [slider for mesh in meshes for slider in mesh.sliders]) as pool:
             for mesh in meshes:
                 report.meshes.append(mesh.report)
                 for _ in mesh.run(pool, options.jobs):
@@ -87,6 +88,10 @@ class _Mesh(NamedTuple):
         mesh, patches = planned.mesh, planned.slider.patches
         welded = mesh.weld.info.welded_points
         return cls(planned, MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, welded, patches), [])
+
+    @property
+    def sliders(self) -> list[Slider]:
+        return [self.planned.slider, *(slider for making in self.makings for slider in making.sliders)]
 
     def run(self, pool: ThreadPoolExecutor, jobs: int) -> Iterator[Usd.TimeCode]:
         """Slides the mesh at each of its times, in order; yields each once all is taken."""

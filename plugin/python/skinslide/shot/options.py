@@ -107,6 +107,14 @@ class LayerOptions(Options):
         help="fail, and write nothing, where a patch moves more than X times as roughly as its cache: by the largest "
         "second difference in time, between the frames that are made",
     )
+    share: bool = option(
+        False,
+        checks.truth,
+        "--share",
+        action="store_true",
+        help="search at each frame for the least stretch that its pose allows, and report the share of what can be "
+        "removed that sliding removes; slow, seconds a frame for thousands of vertices",
+    )
     diagnostics: bool = option(
         False,
         checks.truth,

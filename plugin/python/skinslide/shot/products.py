@@ -98,6 +98,7 @@ class MeshMaking(ABC):
     """One mesh of a run."""
 
     turns = False  # whether its frames are to say how the skin turned
+    sliders: Sequence[Slider] = ()  # those of its own, which stop when the loop does
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         """The times that must be slid before `take` is called for `time`; it is one of them."""

@@ -41,12 +41,14 @@ class PatchReport:
         frames: Stage times, ascending; None is the default time.
         results: What happened at each of them.
         motion: How roughly the patch moves at each of them that is between two others.
+        least: The least stretch that a search found at each of them, where it was asked for.
     """
 
     info: PatchInfo
     frames: list[float | None] = field(default_factory=list)
     results: list[PatchResult] = field(default_factory=list)
     motion: dict[float | None, Roughness] = field(default_factory=dict)
+    least: dict[float | None, float] = field(default_factory=dict)
 
     def column(self, name: str) -> np.ndarray:
         """A field of the results, frame by frame.
@@ -87,6 +89,26 @@ class PatchReport:
         """The frame at which the result moves most roughly; None of fewer than three frames."""
         return max(self.motion, key=lambda frame: self.motion[frame].after, default=None)
 
+    def share(self, frame: float | None) -> float | None:
+        """Of the stretch that can be removed at a frame, what sliding removes.
+
+        Args:
+            frame: The stage time.
+
+        Returns:
+            1 where nothing is left to gain, below 0 where sliding adds stretch; None where there is none to remove, or
+            it was not searched for.
+        """
+        result = self.results[self.frames.index(frame)]
+        least = min(self.least.get(frame, np.inf), result.stretch_after)
+        most = result.stretch_before - least
+        return (result.stretch_before - result.stretch_after) / most if self.least and most > _NO_STRETCH else None
+
+    @property
+    def shares(self) -> list[float]:
+        """The share at each frame that has one."""
+        return [share for share in map(self.share, self.frames) if share is not None]
+
     def milliseconds(self) -> dict[str, np.ndarray]:
         """Time by stage of the walk and in total, frame by frame, (frames,) each."""
         stages = {stage: 1e3 * self.column(f"{stage}_seconds") for stage in STAGES}
@@ -107,6 +129,8 @@ class PatchReport:
             "max": {name: values.max().item() for name, values in fields.items()},
             "mean": {name: values.mean().item() for name, values in fields.items()},
             "frames": [self._frame_dict(*each) for each in zip(self.frames, self.results, strict=True)],
+            "least_share": min(self.shares, default=None),
+            "median_share": float(np.median(self.shares)) if self.shares else None,
             "roughness": self.roughness,
             "roughest_frame": self.roughest,
             "worst_frame": self.frames[self.worst],
@@ -121,6 +145,8 @@ class PatchReport:
             **{name: getattr(result, name) for name in _OF_A_FRAME},
             "second_difference_before": motion.before if motion else None,
             "second_difference_after": motion.after if motion else None,
+            "least_stretch": self.least.get(frame),
+            "share": self.share(frame),
         }
 
     def problems(self, prim: str) -> list[Problem]:
@@ -229,6 +255,16 @@ class MeshReport:
             patch.frames.append(frame)
             patch.results.append(result)
 
+    def add_least(self, frame: float | None, least: Sequence[float]) -> None:
+        """Takes in the least stretch that a search found at a frame.
+
+        Args:
+            frame: The stage time.
+            least: Of each patch.
+        """
+        for patch, own in zip(self.patches, least, strict=True):
+            patch.least[frame] = own
+
     def add_motion(self, frame: float | None, roughness: Sequence[Roughness]) -> None:
         """Takes in how it moves at a frame, once it has been slid before and after it, too.
 
@@ -309,6 +345,7 @@ class BakeReport:
             counts = f"{mesh.vertex_count} points, {mesh.frame_count} frames"
             lines.append(f"{mesh.path}: {counts}, rest from {mesh.rest_source}")
             lines.extend(_line(_row(patch), widths) for patch in mesh.patches)
+            lines.extend(_share_line(patch) for patch in mesh.patches if patch.shares)
         made = [line for made in self.made for line in made.lines(self.meshes)]
         return lines_text([*lines, *map(str, self.problems), *made])
 
@@ -343,6 +380,11 @@ def _row(patch: PatchReport) -> list[str]:
         str(patch.column("folded_faces").max()),
         str(patch.column("clamped_vertices").max()),
     ]
+
+
+def _share_line(patch: PatchReport) -> str:
+    shares = f"{min(patch.shares):.2f} at least, {np.median(patch.shares):.2f} in the median frame"
+    return f"  {patch.label}: of the stretch that can be removed, {shares}"
 
 
 def _line(cells: list[str], widths: list[int]) -> str:
