@@ -105,7 +105,8 @@ class LayerOptions(Options):
         type=float,
         metavar="X",
         help="fail, and write nothing, where a patch moves more than X times as roughly as its cache: by the largest "
-        "second difference in time, between the frames that are made",
+        "second difference in time, between the frames that are made. A cache that moves evenly, as linear blends of "
+        "shapes do, has none: any curve of the skin over it is then many times as rough",
     )
     share: bool = option(
         False,
