@@ -184,7 +184,7 @@ static void use_patch(dice *d, const test_mesh *mesh, const skinslide_stage_mesh
     skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     assert_ok(skinslide_stage_patch_create(scene, "elbow", NULL, &patch, &error), &error);
-    take_all(d, mesh, SKINSLIDE_STAGE_PATCH, take_patch, patch, 12);
+    take_all(d, mesh, SKINSLIDE_STAGE_PATCH, take_patch, patch, 16);
     if (roll_below(d, 2))
         expect_said(patch_takes(
             patch, "patch",
@@ -194,7 +194,7 @@ static void use_patch(dice *d, const test_mesh *mesh, const skinslide_stage_mesh
     expect_said(skinslide_stage_patch_take_subset(patch, roll_below(d, 2) ? &subset : NULL, &error));
     take_all(d, mesh, SKINSLIDE_STAGE_SUBSET, take_patch, patch, 0);
     assert_ok(skinslide_stage_controls_create(patch, NULL, &first, &error), &error);
-    take_all(d, mesh, SKINSLIDE_STAGE_CONTROLS, take_controls, first, 6);
+    take_all(d, mesh, SKINSLIDE_STAGE_CONTROLS, take_controls, first, 9);
     give_files(d, mesh, first);
     skinslide_status status = skinslide_stage_patch_get(patch, first, &setup, &error);
     expect_said(status);
