@@ -64,7 +64,7 @@ static likeness compare(ratios *own) {
         spread += fmin(fabs(off - ss_log(median)), ss_log(most_of_one));
         apart += off * off;
     }
-    return (likeness){median, exp(spread / (double)own->count), exp(sqrt(apart / (double)own->count))};
+    return (likeness){median, ss_exp(spread / (double)own->count), ss_exp(sqrt(apart / (double)own->count))};
 }
 
 static bool can_compare(const skinslide_stage_mesh *mesh) {

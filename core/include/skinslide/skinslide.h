@@ -355,7 +355,7 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slide
                                                            skinslide_patch_info *info, skinslide_error *error);
 
 /* The vertices of a patch.
- *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending: more than once where it is split;
+ *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending: again where it is split;
  *                 of those that are one, that which they are one with
  * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,

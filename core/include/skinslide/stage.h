@@ -16,8 +16,8 @@
  *        files that skinslide_stage_controls_need asks for.
  *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the inputs of the group SUBDIVISION to
  *        skinslide_stage_mesh_take.
- *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes; with the weld that comes of
- *        skinslide_stage_mesh_weld, which is shown every sample of points.
+ *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes, with the weld that comes
+ *        of skinslide_stage_mesh_weld, which is shown every sample of points.
  *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
  *        that of step 4, is given those that do, and skinslide_stage_controls_get gives what skinslide_slide takes.
  *     8. What follows from points: skinslide_stage_derived_create, each input of the group DERIVED and each primvar that
@@ -372,8 +372,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage
  *   face_count  out or NULL */
 SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
 
-/* What to warn of once its faces are there: rest points that resemble the cache poorly; NULL: nothing. Lives as long as the patch,
- * until faces are taken again. */
+/* What to warn of once its faces are there: rest points that resemble the cache poorly; NULL: nothing. Lives as long as the
+ * patch, until faces are taken again. */
 SKINSLIDE_API const char *skinslide_stage_patch_warning(const skinslide_stage_patch *patch);
 
 /* Whether its interpolation depends on how the mesh is subdivided. */
