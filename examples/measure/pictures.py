@@ -36,7 +36,7 @@ def columns(mesh: PatchedMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list
     return found
 
 
-def draw(path: Path, rules: Sequence[str], views: Sequence[str], camera: str | None) -> np.ndarray:
+def draw(path: Path, rules: Sequence[str], views: Sequence[str], camera: str | None = None) -> np.ndarray:
     """The picture of a stage: uint8 (height, width, 3)."""
     stage = Usd.Stage.Open(str(path))
     mesh = read_meshes(stage)[0][0]

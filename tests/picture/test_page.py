@@ -48,7 +48,7 @@ def report() -> BakeReport:
             stages.set_primvar(mesh, "rest", mesh.GetPointsAttr().GetTypeName(), "vertex", stages.vectors(shape.points))
             mesh.GetPointsAttr().Set(stages.vectors(shape.moved(FRAMES[2])))
         stages.add_patch(mesh, shape.all_faces if faces is None else faces)
-    baked = bake(stage)
+    baked = bake(stage, frames="authored")
     assert [mesh.patches[0].frames for mesh in baked.meshes] == [FRAMES, RING_FRAMES, [None]]
     return baked
 
