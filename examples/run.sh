@@ -62,7 +62,7 @@ painted=("${examples[@]/#/$out/}")
 measure limit_distance "${painted[@]/%//stage.usda}"
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 measure normals "$out"/{character,elbow,sleeve,chequer}/stage.usda
-measure surface "$out"/{character,elbow,sleeve,face}/stage.usda
+measure surface "$out"/character/stage.usda # the others slide on their limit surface
 measure rules "$out"/{body,trunk,torus,elbow,fine_elbow,bicep,face,finger,sleeve,bump}/stage.usda
 echo
 
