@@ -85,6 +85,8 @@ static inline float ss_half_to_float(uint16_t half) {
 
 /* ---- Vectors of three doubles ---- */
 
+#define SS_PI 3.14159265358979323846
+
 /* As fmin and fmax are, but without a call. Where a is not a number, b. */
 static inline double ss_least(double a, double b) {
     return a < b ? a : b;
@@ -100,6 +102,14 @@ static inline double ss_dot(const double a[3], const double b[3]) {
 
 static inline double ss_length(const double a[3]) {
     return sqrt(ss_dot(a, a));
+}
+
+/* Between two of points [][3]. */
+static inline double ss_distance(const float *points, int32_t a, int32_t b) {
+    double way[3];
+    for (int k = 0; k < 3; k++)
+        way[k] = (double)points[3 * (int64_t)b + k] - points[3 * (int64_t)a + k];
+    return ss_length(way);
 }
 
 static inline void ss_subtract(const double a[3], const double b[3], double out[3]) {

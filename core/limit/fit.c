@@ -30,7 +30,6 @@
 
 static const double edge_stiffness = 0.03;      /* s */
 static const double direction_stiffness = 0.05; /* t */
-static const double pi = 3.14159265358979323846;
 enum { GAUSS_NEWTON_STEPS = 2, GRADIENT_STEPS = 5 };
 
 /* An edge that has a free end. */
@@ -145,7 +144,8 @@ skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index,
     double along = edge_stiffness * (0.5 + direction_stiffness);
     bool is_held = patch->free_count < patch->vertex_count;
     if (!status)
-        status = factor(fit, NULL, along, is_held ? 0 : 4 * pi / patch->free_count * along, patch->label, &fit->along, error);
+        status =
+            factor(fit, NULL, along, is_held ? 0 : 4 * SS_PI / patch->free_count * along, patch->label, &fit->along, error);
     if (status)
         ss_fit_destroy(fit);
     else

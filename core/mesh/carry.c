@@ -35,7 +35,7 @@ typedef struct element {
     int32_t count;
 } element;
 
-static int64_t element_count(const skinslide_mesh *mesh, skinslide_normals_layout layout) {
+int32_t ss_element_count(const skinslide_mesh *mesh, skinslide_normals_layout layout) {
     return layout == SKINSLIDE_NORMALS_VERTEX         ? mesh->vertex_count
            : layout == SKINSLIDE_NORMALS_FACE_VARYING ? mesh->index_count
                                                       : mesh->face_count;
@@ -90,7 +90,7 @@ static void turn_element(ss_vectors vectors, int64_t e, const double turn[3]) {
 /* Turns the elements or, before that, looks whether all can be. */
 static skinslide_status go_through(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout,
                                    ss_vectors vectors, bool turning, skinslide_error *error) {
-    int64_t count = element_count(mesh, layout);
+    int32_t count = ss_element_count(mesh, layout);
     for (int32_t e = 0, corner = 0; e < count; e++) {
         element own = element_at(mesh, layout, e, corner);
         double turn[3];

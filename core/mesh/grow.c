@@ -13,8 +13,7 @@ typedef struct star {
 } star;
 
 static void list_faces(const skinslide_mesh *mesh, star *stars, int32_t *next) {
-    for (int32_t f = 0; f < mesh->face_count; f++)
-        stars->face_start[f + 1] = stars->face_start[f] + mesh->face_counts[f];
+    ss_start_faces(mesh, stars->face_start);
     for (int32_t c = 0; c < mesh->index_count; c++)
         stars->place_start[stars->place[mesh->face_indices[c]] + 1]++;
     for (int32_t v = 0; v < mesh->vertex_count; v++) {
@@ -28,16 +27,12 @@ static void list_faces(const skinslide_mesh *mesh, star *stars, int32_t *next) {
 
 static bool list_stars(const skinslide_mesh *mesh, ss_memory *memory, star *stars) {
     int32_t *scratch = SS_NEW(memory, int32_t, mesh->vertex_count);
-    ss_spot *spots = SS_NEW(memory, ss_spot, mesh->vertex_count);
     stars->place = SS_NEW(memory, int32_t, mesh->vertex_count);
     stars->face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
     stars->place_start = SS_NEW(memory, int32_t, (int64_t)mesh->vertex_count + 1);
     stars->face = SS_NEW(memory, int32_t, mesh->index_count);
-    if (memory->failed)
+    if (memory->failed || !ss_find_places(mesh->rest_points, 0, mesh->vertex_count, stars->place))
         return false;
-    for (int32_t v = 0; v < mesh->vertex_count; v++)
-        scratch[v] = v;
-    ss_split_places(mesh->rest_points, 0, scratch, mesh->vertex_count, spots, stars->place);
     list_faces(mesh, stars, scratch);
     return true;
 }
@@ -63,20 +58,12 @@ static int32_t pop(queue *q) {
     return place;
 }
 
-static double distance(const skinslide_mesh *mesh, int32_t a, int32_t b) {
-    const float *from = mesh->rest_points + 3 * (int64_t)a, *to = mesh->rest_points + 3 * (int64_t)b;
-    double way[3];
-    for (int k = 0; k < 3; k++)
-        way[k] = (double)to[k] - from[k];
-    return ss_length(way);
-}
-
 /* Goes on from a place to all others of its faces. */
 static void go_on(const skinslide_mesh *mesh, const star *stars, int32_t from, double *left, queue *q) {
     for (int32_t i = stars->place_start[from]; i < stars->place_start[from + 1]; i++)
         for (int32_t c = stars->face_start[stars->face[i]]; c < stars->face_start[stars->face[i] + 1]; c++) {
             int32_t to = stars->place[mesh->face_indices[c]];
-            double there = left[from] - distance(mesh, from, to);
+            double there = left[from] - ss_distance(mesh->rest_points, from, to);
             if (there >= 0 && there > left[to]) {
                 left[to] = there;
                 push(q, to);

@@ -87,6 +87,8 @@ typedef struct ss_spot {
  * no more than tolerance. vertices [count] are those to look at; spots is scratch [count]. */
 void ss_split_places(const float *points, double tolerance, const int32_t *vertices, int32_t count, ss_spot *spots,
                      int32_t *place);
+/* The places of all points [count] of a pose: place [count] is the lowest point of each. False where memory is short. */
+bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place);
 /* The root of a vertex in a forest, whose roots are their own parents; joins two trees under the lower root. */
 int32_t ss_root(int32_t *parent, int32_t vertex);
 void ss_join(int32_t *parent, int32_t a, int32_t b);
@@ -111,6 +113,12 @@ static inline void ss_fan(const ss_faces *faces, int32_t face, int32_t triangle,
 
 static inline int32_t ss_fan_size(const ss_faces *faces, int32_t face) {
     return faces->face_start[face + 1] - faces->face_start[face] - 2;
+}
+
+/* Where each face of a mesh begins among its corners: face_start [face_count + 1], whose first is 0. */
+static inline void ss_start_faces(const skinslide_mesh *mesh, int32_t *face_start) {
+    for (int32_t f = 0; f < mesh->face_count; f++)
+        face_start[f + 1] = face_start[f] + mesh->face_counts[f];
 }
 
 /* Corners of the largest face. */
@@ -142,6 +150,8 @@ void ss_smooth_normals(const ss_around *around, const float *points, int32_t ver
 
 /* The turn from one unit normal to another; none, which is 0, where they are opposite, or one is 0. See skinslide_workspace_turns. */
 void ss_least_turn(const double from[3], const double to[3], double turn[3]);
+/* How many elements of a mesh carry a vector. */
+int32_t ss_element_count(const skinslide_mesh *mesh, skinslide_normals_layout layout);
 /* Vectors of either type: the other is NULL. */
 typedef struct ss_vectors {
     float *floats;

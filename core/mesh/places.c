@@ -81,3 +81,15 @@ void ss_split_places(const float *points, double tolerance, const int32_t *verti
     for (int32_t i = 0; i < count; i++)
         place[vertices[i]] = ss_root(place, vertices[i]);
 }
+
+bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place) {
+    ss_memory scratch = {0};
+    int32_t *all = SS_NEW(&scratch, int32_t, count);
+    ss_spot *spots = SS_NEW(&scratch, ss_spot, count);
+    for (int32_t i = 0; !scratch.failed && i < count; i++)
+        all[i] = i, place[i] = 0;
+    if (!scratch.failed)
+        ss_split_places(points, tolerance, all, count, spots, place);
+    ss_free(&scratch);
+    return !scratch.failed;
+}

@@ -269,18 +269,6 @@ static bool allocate(skinslide_weld *weld, const skinslide_mesh *mesh) {
     return !weld->memory.failed;
 }
 
-/* Places at rest, over all vertices. */
-static skinslide_status find_places(skinslide_weld *weld, const skinslide_mesh *mesh, skinslide_error *error) {
-    ss_memory scratch = {0};
-    ss_spot *spots = SS_NEW(&scratch, ss_spot, mesh->vertex_count);
-    for (int32_t v = 0; spots && v < mesh->vertex_count; v++)
-        weld->shared[v] = v;
-    if (spots)
-        ss_split_places(mesh->rest_points, weld->tolerance, weld->shared, mesh->vertex_count, spots, weld->place);
-    ss_free(&scratch);
-    return spots ? SKINSLIDE_OK : ss_out_of_memory(error);
-}
-
 static skinslide_status sew_rest(skinslide_weld *weld, skinslide_error *error) {
     sewing s;
     skinslide_status status = sew(&s, weld, error);
@@ -297,8 +285,8 @@ static skinslide_status build(skinslide_weld *weld, const skinslide_mesh *mesh, 
     skinslide_status status = scratch->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
         status = take_setups(setups, setup_count, scratch, &own, error);
-    if (!status)
-        status = find_places(weld, mesh, error);
+    if (!status && !ss_find_places(mesh->rest_points, weld->tolerance, mesh->vertex_count, weld->place))
+        status = ss_out_of_memory(error);
     if (status)
         return status;
     mark_faces(mesh, own, setup_count, chosen);

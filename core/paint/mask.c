@@ -6,13 +6,6 @@
 
 /* ---- Noting ---- */
 
-static double distance(const float *points, int32_t a, int32_t b) {
-    double way[3];
-    for (int k = 0; k < 3; k++)
-        way[k] = (double)points[3 * (int64_t)b + k] - points[3 * (int64_t)a + k];
-    return ss_length(way);
-}
-
 static skinslide_status take_posed(const skinslide_mesh **mesh, ss_taken_mesh *taken, skinslide_error *error) {
     skinslide_status status = ss_take_mesh(mesh, taken, error);
     return status ? status : ss_check_points((*mesh)->rest_points, (*mesh)->vertex_count, "rest points", error);
@@ -29,7 +22,7 @@ skinslide_status skinslide_note_stretch(const skinslide_mesh *mesh, const float 
     for (int32_t f = 0, begin = 0; !status && f < mesh->face_count; begin += mesh->face_counts[f++])
         for (int32_t k = 0; k < mesh->face_counts[f]; k++) {
             int32_t a = mesh->face_indices[begin + k], b = mesh->face_indices[begin + (k + 1) % mesh->face_counts[f]];
-            double rest = distance(mesh->rest_points, a, b), posed = distance(points, a, b);
+            double rest = ss_distance(mesh->rest_points, a, b), posed = ss_distance(points, a, b);
             if (rest > 0)
                 stretch[begin + k] = fmaxf(stretch[begin + k], (float)fabs(ss_log(fmax(posed / rest, 1e-6))));
         }
@@ -52,7 +45,6 @@ typedef struct masking {
 
 static bool allocate(masking *m, ss_memory *memory) {
     const skinslide_mesh *mesh = m->mesh;
-    ss_spot *spots = SS_NEW(memory, ss_spot, mesh->vertex_count);
     m->face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
     m->touched = SS_NEW(memory, uint8_t, mesh->vertex_count);
     m->core = SS_NEW(memory, uint8_t, mesh->face_count);
@@ -61,13 +53,11 @@ static bool allocate(masking *m, ss_memory *memory) {
     m->region = SS_NEW(memory, int32_t, mesh->vertex_count);
     m->area = SS_NEW(memory, double, mesh->vertex_count);
     m->left = SS_NEW(memory, double, mesh->vertex_count);
-    if (memory->failed)
+    if (memory->failed || !ss_find_places(mesh->rest_points, 0, mesh->vertex_count, m->place))
         return false;
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         m->region[v] = v;
-    ss_split_places(mesh->rest_points, 0, m->region, mesh->vertex_count, spots, m->place);
-    for (int32_t f = 0; f < mesh->face_count; f++)
-        m->face_start[f + 1] = m->face_start[f] + mesh->face_counts[f];
+    ss_start_faces(mesh, m->face_start);
     return true;
 }
 
@@ -108,7 +98,7 @@ static void find_regions(masking *m, double grow) {
     ss_start_at(mesh, m->core, 0, m->left);
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         if (m->left[v] >= 0)
-            m->left[v] = grow * sqrt(m->area[ss_root(m->region, m->place[v])] / 3.14159265358979323846);
+            m->left[v] = grow * sqrt(m->area[ss_root(m->region, m->place[v])] / SS_PI);
 }
 
 /* Adds the faces around those that are near. */

@@ -102,11 +102,10 @@ static int32_t first_candidate(const mirror *m, int32_t vertex) {
 
 static void list_corners(mirror *m) {
     const skinslide_mesh *mesh = m->mesh;
-    for (int32_t f = 0; f < mesh->face_count; f++) {
-        m->face_start[f + 1] = m->face_start[f] + mesh->face_counts[f];
+    ss_start_faces(mesh, m->face_start);
+    for (int32_t f = 0; f < mesh->face_count; f++)
         for (int32_t c = m->face_start[f]; c < m->face_start[f + 1]; c++)
             m->corner_face[c] = f;
-    }
     for (int32_t c = 0; c < mesh->index_count; c++)
         m->vertex_start[mesh->face_indices[c] + 1]++;
     for (int32_t v = 0; v < mesh->vertex_count; v++)

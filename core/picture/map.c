@@ -223,8 +223,7 @@ static skinslide_status prepare(map *m, ss_memory *memory, const float *values, 
         m->rows[k] = SS_NEW(memory, float, m->side + 2);
     if (memory->failed)
         return ss_out_of_memory(error);
-    for (int32_t f = 0; f < mesh->face_count; f++)
-        m->face_start[f + 1] = m->face_start[f] + mesh->face_counts[f];
+    ss_start_faces(mesh, m->face_start);
     skinslide_status status = skinslide_texture_tiles(layout, m->tiles, error);
     return status ? status : check_values(m, values, error);
 }

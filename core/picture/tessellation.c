@@ -258,10 +258,9 @@ static bool copy_faces(skinslide_tessellation *own, const skinslide_mesh *mesh) 
     own->grids = SS_NEW(&own->memory, ss_grid, (int64_t)mesh->index_count + mesh->face_count);
     if (own->memory.failed)
         return false;
-    for (int32_t f = 0; f < mesh->face_count; f++) {
-        own->face_start[f + 1] = own->face_start[f] + mesh->face_counts[f];
+    ss_start_faces(mesh, own->face_start);
+    for (int32_t f = 0; f < mesh->face_count; f++)
         own->largest_face = ss_face_size(own, f) > own->largest_face ? ss_face_size(own, f) : own->largest_face;
-    }
     for (int32_t c = 0; c < mesh->index_count; c++)
         own->corner_vertex[c] = mesh->face_indices[c];
     return true;

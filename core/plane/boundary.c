@@ -5,8 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#define PI 3.14159265358979323846
-
 /* cos and sin of |angle| <= pi/4 by their series: the rest is under 1e-17 there. */
 static void small_circle(double angle, double out[2]) {
     double square = angle * angle, cosine = 1, sine = 1;
@@ -19,7 +17,7 @@ static void small_circle(double angle, double out[2]) {
 
 void ss_circle(double turns, double out[2]) {
     double quarter = floor(4 * turns + 0.5), p[2];
-    small_circle((4 * turns - quarter) * (PI / 2), p);
+    small_circle((4 * turns - quarter) * (SS_PI / 2), p);
     switch ((int)quarter & 3) {
     case 0:
         out[0] = p[0], out[1] = p[1];

@@ -69,32 +69,30 @@ typedef struct neighbours {
     ss_memory memory;
     int32_t count;
     float *points;
-    int32_t *vertices, *place;
+    int32_t *place;
     uint8_t *others; /* [count] by place: another mesh has a point there */
-    ss_spot *spots;
 } neighbours;
 
 static bool allocate(neighbours *own, int64_t count) {
     own->points = SS_NEW(&own->memory, float, 3 * count);
-    own->vertices = SS_NEW(&own->memory, int32_t, count);
     own->place = SS_NEW(&own->memory, int32_t, count);
     own->others = SS_NEW(&own->memory, uint8_t, count);
-    own->spots = SS_NEW(&own->memory, ss_spot, count);
     return !own->memory.failed;
 }
 
-static void meet(neighbours *own, const ss_patch *patch, const float *points, const float *others, int32_t other_count,
+/* False where memory is short. */
+static bool meet(neighbours *own, const ss_patch *patch, const float *points, const float *others, int32_t other_count,
                  double tolerance) {
     own->count = patch->vertex_count + other_count;
     for (int32_t v = 0; v < patch->vertex_count; v++)
         memcpy(own->points + 3 * (int64_t)v, points + 3 * (int64_t)patch->mesh_vertex[v], sizeof(float[3]));
     if (other_count > 0)
         memcpy(own->points + 3 * (int64_t)patch->vertex_count, others, (size_t)other_count * sizeof(float[3]));
-    for (int32_t v = 0; v < own->count; v++)
-        own->vertices[v] = v;
-    ss_split_places(own->points, tolerance, own->vertices, own->count, own->spots, own->place);
+    if (!ss_find_places(own->points, tolerance, own->count, own->place))
+        return false;
     for (int32_t v = patch->vertex_count; v < own->count; v++)
         own->others[own->place[v]] = 1;
+    return true;
 }
 
 skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int32_t patch, const float *points,
@@ -109,12 +107,11 @@ skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int
     if (!status)
         status = ss_check_points(others, other_count, "points of the other mesh", error);
     neighbours own = {0};
-    if (!status && !allocate(&own, (int64_t)part->patch->vertex_count + other_count))
+    if (!status && !(allocate(&own, (int64_t)part->patch->vertex_count + other_count) &&
+                     meet(&own, part->patch, points, others, other_count, tolerance)))
         status = ss_out_of_memory(error);
-    if (!status) {
-        meet(&own, part->patch, points, others, other_count, tolerance);
+    if (!status)
         *held = *loose = 0;
-    }
     for (int32_t v = 0; v < part->patch->vertex_count && !status; v++)
         *(part->patch->fixed[v] ? held : loose) += own.others[own.place[v]];
     ss_free(&own.memory);

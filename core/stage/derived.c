@@ -65,11 +65,9 @@ static const ss_input *find_input(const skinslide_stage_derived *derived, const 
     return NULL;
 }
 
-static int64_t length_of_mesh(const skinslide_stage_mesh *mesh, skinslide_normals_layout layout) {
-    skinslide_mesh faces = ss_faces_of(mesh);
-    return layout == SKINSLIDE_NORMALS_VERTEX         ? faces.vertex_count
-           : layout == SKINSLIDE_NORMALS_FACE_VARYING ? faces.index_count
-                                                      : faces.face_count;
+static int32_t length_of_mesh(const skinslide_stage_mesh *mesh, skinslide_normals_layout layout) {
+    const skinslide_mesh faces = ss_faces_of(mesh);
+    return ss_element_count(&faces, layout);
 }
 
 static const char *element_of(skinslide_normals_layout layout) {
@@ -253,7 +251,7 @@ static void add(skinslide_stage_derived *derived, const ss_input *input, const s
         .name = property_name(derived, &input->shown, ""),
         .type_name = is_primvar ? ss_copy_text(&derived->memory, record->value.type_name) : input->shown.type_name,
         .pose_count = reason ? 0 : input->pose_count,
-        .count = (int32_t)length_of_mesh(derived->mesh, layout),
+        .count = length_of_mesh(derived->mesh, layout),
         .reason = reason ? ss_copy_text(&derived->memory, reason) : NULL,
         .is_carried = is_carried,
         .is_double = is_carried && is_primvar && record->value.type == SKINSLIDE_VALUE_DOUBLE,

@@ -2,9 +2,9 @@
  *
  *     r = |edge in the cache| / |edge at rest|
  *
- * The median over a mesh is the scale between the two, since most of a mesh turns and does not stretch. The mean of |log(r / median)|
- * is the spread, and the RMS of log r how far apart the two are. A patch of other points, or of
- * points in another order, has much of both: a spread of 0.45 on a sheet of squares and more on a body, and 1 to 5 of the other. Poses
+ * The median over a mesh is the scale between the two, since most of a mesh turns and does not stretch. The mean of
+ * |log(r / median)| is the spread, and the RMS of log r how far apart the two are. A patch of other points, or of points in
+ * another order, has much of both: a spread of 0.45 on a sheet of squares and more on a body, and 1 to 5 of the other. Poses
  * have little: the most extreme of the examples, a sleeve at an elbow bent by 110 degrees, has 0.3 or less of either. */
 #include "stage.h"
 
@@ -25,13 +25,6 @@ typedef struct ratios {
     int64_t count;
 } ratios;
 
-static double length_between(const float *points, int32_t a, int32_t b) {
-    double way[3];
-    for (int k = 0; k < 3; k++)
-        way[k] = (double)points[3 * (int64_t)a + k] - points[3 * (int64_t)b + k];
-    return ss_length(way);
-}
-
 /* Sides of no length in either pose tell nothing, and points that are not finite are told where they are slid. */
 static void add_face(ratios *own, int32_t face) {
     const skinslide_stage_mesh *mesh = own->mesh;
@@ -39,7 +32,7 @@ static void add_face(ratios *own, int32_t face) {
     int32_t first = mesh->face_start[face], end = mesh->face_start[face + 1];
     for (int32_t c = first; c < end; c++) {
         int32_t a = indices[c], b = indices[c + 1 < end ? c + 1 : first];
-        double at_rest = length_between(mesh->rest, a, b), cached = length_between(mesh->first, a, b);
+        double at_rest = ss_distance(mesh->rest, a, b), cached = ss_distance(mesh->first, a, b);
         if (at_rest > 0 && cached > 0 && isfinite(cached))
             own->values[own->count++] = cached / at_rest;
     }
