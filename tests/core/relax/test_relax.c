@@ -174,22 +174,6 @@ static void nothing_turns_over(void **state) {
 
 /* ---- In time ---- */
 
-static double second_difference(float *const frames[3], int32_t vertex) {
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        double a = frames[0][3 * vertex + k], b = frames[1][3 * vertex + k], c = frames[2][3 * vertex + k];
-        square += (a - 2 * b + c) * (a - 2 * b + c);
-    }
-    return sqrt(square);
-}
-
-static double largest_second_difference(float *const frames[3], int32_t vertex_count) {
-    double largest = 0;
-    for (int32_t v = 0; v < vertex_count; v++)
-        largest = fmax(largest, second_difference(frames, v));
-    return largest;
-}
-
 /* A bump that wanders over a sheet, in 60 steps of a fifth of a face: in no frame does a slid vertex speed up more than twice
  * as fast as some vertex of the cache. */
 static void slides_are_smooth_in_time(void **state) {

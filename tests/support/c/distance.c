@@ -55,3 +55,19 @@ double distance_to_mesh(const test_mesh *mesh, const float *points, const float 
         }
     return best;
 }
+
+static double second_difference(float *const poses[3], int32_t vertex) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double a = poses[0][3 * vertex + k], b = poses[1][3 * vertex + k], c = poses[2][3 * vertex + k];
+        square += (a - 2 * b + c) * (a - 2 * b + c);
+    }
+    return sqrt(square);
+}
+
+double largest_second_difference(float *const poses[3], int32_t vertex_count) {
+    double largest = 0;
+    for (int32_t v = 0; v < vertex_count; v++)
+        largest = fmax(largest, second_difference(poses, v));
+    return largest;
+}

@@ -1,4 +1,4 @@
-/* How far a point is from a surface, in double. */
+/* How far points are from a surface, and poses from even motion, in double. */
 #ifndef SKINSLIDE_TEST_DISTANCE_H
 #define SKINSLIDE_TEST_DISTANCE_H
 
@@ -7,5 +7,8 @@
 double distance_to_triangle(const double p[3], const float *a, const float *b, const float *c);
 /* To the nearest triangle of all fans of the mesh, its vertices at points. */
 double distance_to_mesh(const test_mesh *mesh, const float *points, const float *p);
+
+/* Of three poses [vertex_count][3] that follow each other: the largest |p0 - 2 p1 + p2|, how roughly they move. */
+double largest_second_difference(float *const poses[3], int32_t vertex_count);
 
 #endif
