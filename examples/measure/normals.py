@@ -14,6 +14,9 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from cells import lines
+
 import skinslide
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
@@ -124,10 +127,7 @@ def row(path: Path) -> list[str]:
 
 
 def main() -> None:
-    table = [list(HEADINGS), *(row(Path(path)) for path in sys.argv[1:])]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    for cells in table:
-        print("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+    print(lines(HEADINGS, (row(Path(path)) for path in sys.argv[1:])), end="")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from pxr import Usd
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import share
+from cells import lines
 from sliders import sliders_of
 from smoothness import RULES, Rough, mean_edge, motions
 
@@ -82,10 +83,7 @@ def rows(path: Path) -> list[list[str]]:
 
 
 def main() -> None:
-    table = [list(HEADINGS), *(row for path in sys.argv[1:] for row in rows(Path(path)))]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    for cells in table:
-        print("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+    print(lines(HEADINGS, (row for path in sys.argv[1:] for row in rows(Path(path)))), end="")
 
 
 if __name__ == "__main__":

@@ -8,8 +8,10 @@ the core; OUTDIR/times.txt has them for each stage of the walk.
 
 import json
 import sys
-from collections.abc import Sequence
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from cells import lines
 
 ORDER = (
     *("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump"),
@@ -48,12 +50,6 @@ def times(example: str, patch: dict) -> list[str]:
     return [example, *sizes, *(f"{value:.3f}" for value in milliseconds(patch))]
 
 
-def lines(rows: Sequence[Sequence[str]]) -> str:
-    """Rows of cells as lines, each column as wide as its widest cell."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "".join("  ".join(map(str.rjust, cells, widths)) + "\n" for cells in rows)
-
-
 def main() -> None:
     """Prints the results and writes the times."""
     folder = Path(sys.argv[1])
@@ -61,8 +57,8 @@ def main() -> None:
     patches = [
         (name, patch) for name, report in reports.items() for mesh in report["meshes"] for patch in mesh["patches"]
     ]
-    print(lines([RESULTS, *(results(*patch) for patch in patches)]), end="")
-    (folder / "times.txt").write_text(lines([TIMES, *(times(*patch) for patch in patches)]))
+    print(lines(RESULTS, (results(*patch) for patch in patches)), end="")
+    (folder / "times.txt").write_text(lines(TIMES, (times(*patch) for patch in patches)))
 
 
 if __name__ == "__main__":

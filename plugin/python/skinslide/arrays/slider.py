@@ -6,7 +6,8 @@ The manual is `skinslide.h`. Arrays of other types are converted where that lose
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -242,15 +243,9 @@ class Slider:
         Raises:
             SliderError: Points that cannot be; the message names patch and element.
         """
-        native, least = Arguments(), np.empty(len(self.patches))
-        cached = native.points(points, self._sizes.vertices, "points")
-        slid = ffi.new("float[]", 3 * self._sizes.vertices)
-        workspace = self._take_workspace()
-        try:
-            call(lib.skinslide_slide, workspace.pointer, cached, ffi.NULL, slid, ffi.NULL)
+        least = np.empty(len(self.patches))
+        with self._slid(points) as (workspace, cached):
             call(lib.skinslide_workspace_least_stretch, workspace.pointer, cached, writable("double[]", least))
-        finally:
-            self._give_back(workspace)
         return tuple(least.tolist())
 
     def roughness(self, samples: Sequence[Sample]) -> tuple[Roughness, ...]:
@@ -341,18 +336,25 @@ class Slider:
             SliderError: The slider's lookup has no texture.
         """
         self._check_patch(patch)
-        native, side = Arguments(), ffi.new("int32_t *")
+        side = ffi.new("int32_t *")
+        with self._slid(points) as (workspace, _):
+            call(lib.skinslide_workspace_id_buffer, workspace.pointer, patch, side, ffi.NULL)
+            texels = np.empty((side[0], side[0]), np.uint32)
+            call(lib.skinslide_workspace_id_buffer, workspace.pointer, patch, side, writable("uint32_t[]", texels))
+        return texels
+
+    @contextmanager
+    def _slid(self, points: npt.ArrayLike) -> Iterator[tuple[Handle, Any]]:
+        """A workspace that has slid a frame by the set-ups' own controls, and the points that it was given."""
+        native = Arguments()
         cached = native.points(points, self._sizes.vertices, "points")
         slid = ffi.new("float[]", 3 * self._sizes.vertices)
         workspace = self._take_workspace()
         try:
             call(lib.skinslide_slide, workspace.pointer, cached, ffi.NULL, slid, ffi.NULL)
-            call(lib.skinslide_workspace_id_buffer, workspace.pointer, patch, side, ffi.NULL)
-            texels = np.empty((side[0], side[0]), np.uint32)
-            call(lib.skinslide_workspace_id_buffer, workspace.pointer, patch, side, writable("uint32_t[]", texels))
+            yield workspace, cached
         finally:
             self._give_back(workspace)
-        return texels
 
     def _info(self, patch: int) -> PatchInfo:
         info = new("patch_info")

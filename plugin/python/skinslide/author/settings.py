@@ -8,11 +8,12 @@ from typing import Self
 
 import numpy as np
 import numpy.typing as npt
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Usd, UsdGeom
 
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh
 from skinslide.problems import Fault
+from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_number, given_primvar
 from skinslide.stage.patch import primvar_faces, subset_faces
 from skinslide.stage.values import FIRST, read_value
@@ -65,7 +66,7 @@ def has_pin(prim: Usd.Prim, name: str) -> bool:
 
 
 def _subset(prim: Usd.Prim, name: str) -> UsdGeom.Subset | None:
-    child = prim.GetChild(name) if Sdf.Path.IsValidIdentifier(name) else None
+    child = schema.child(prim, name)
     return UsdGeom.Subset(child) if child and child.IsA(UsdGeom.Subset) else None
 
 

@@ -212,8 +212,7 @@ def _instance_of(prim: Usd.Prim) -> str | None:
 
 def _variant_of(prim: Usd.Prim) -> _Variant | None:
     """The variant that the points of a mesh come from, unless the edit target is in it."""
-    points = UsdGeom.PointBased(prim).GetPointsAttr()
-    strongest = next(filter(has_values, points.GetPropertyStack() if points else []), None)
+    strongest = _strongest_points(prim)
     found = _variant_below(prim.GetPrimIndex().rootNode, strongest) if strongest else None
     target = prim.GetStage().GetEditTarget().MapToSpecPath(prim.GetPath())
     edited = [path.GetVariantSelection() for path in target.GetPrefixes() if path.IsPrimVariantSelectionPath()]
@@ -231,11 +230,14 @@ def _variant_below(node: Pcp.NodeRef, spec: Sdf.PropertySpec, variant: _Variant 
 
 def _slid_by(prim: Usd.Prim) -> str | None:
     """The `.skinslide` file that computes the points of a mesh."""
+    strongest = _strongest_points(prim)
+    return strongest.layer.identifier if strongest and is_live(strongest.layer) else None
+
+
+def _strongest_points(prim: Usd.Prim) -> Sdf.PropertySpec | None:
+    """The opinion that the points of a mesh come from."""
     points = UsdGeom.PointBased(prim).GetPointsAttr()
-    for spec in points.GetPropertyStack() if points else []:
-        if spec.HasInfo("timeSamples") or spec.HasInfo("default"):
-            return spec.layer.identifier if is_live(spec.layer) else None
-    return None
+    return next(filter(has_values, points.GetPropertyStack() if points else []), None)
 
 
 def _nothing(prim_paths: Sequence[str] | None) -> str:

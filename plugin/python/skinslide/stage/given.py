@@ -16,6 +16,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import as_array
 from skinslide.problems import Fault, SliderError, UsageError
+from skinslide.stage import schema
 from skinslide.stage.opening import check_clocks, open_stage
 
 StrPath: TypeAlias = str | os.PathLike[str]
@@ -104,7 +105,7 @@ def check_face(face: int, face_count: int) -> None:
 
 def given_subset(prim: Usd.Prim, name: str) -> Usd.Prim:
     """The child of a mesh that is to be a GeomSubset. Raises Fault."""
-    child = prim.GetChild(name) if Sdf.Path.IsValidIdentifier(name) else None
+    child = schema.child(prim, name)
     if not child:
         raise Fault(f"there is no GeomSubset {name} under the mesh")
     return child

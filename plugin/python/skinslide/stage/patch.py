@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from functools import cached_property
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Usd, UsdGeom
 
 from skinslide.arrays.meaning import (
     ControlsMeaning,
@@ -22,6 +22,7 @@ from skinslide.arrays.meaning import (
 )
 from skinslide.arrays.native import Controls, PatchSetup
 from skinslide.problems import Fault
+from skinslide.stage import schema
 from skinslide.stage.textures import give_files
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
@@ -170,7 +171,7 @@ def subset_faces(child: Usd.Prim, mesh: MeshMeaning) -> np.ndarray:
 def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Sequence[Input]) -> list[str]:
     """Hands over settings, with the faces of the child of the patch's name. Returns what is wrong."""
     faults = take(meaning, [Source(prim, each, meaning.name) for each in wanted])
-    child = prim.GetChild(meaning.name) if Sdf.Path.IsValidIdentifier(meaning.name) else None
+    child = schema.child(prim, meaning.name)
     return faults + take_subset(meaning, child if child and child.IsActive() else None)
 
 

@@ -42,6 +42,12 @@ def is_of_patch(name: str, patch: str) -> bool:
     return space == f"{NAMESPACE}:{patch}"
 
 
+def child(prim: Usd.Prim, name: str) -> Usd.Prim | None:
+    """The child of any name, be it that of a prim or none."""
+    found = prim.GetChild(name) if Sdf.Path.IsValidIdentifier(name) else None
+    return found or None
+
+
 def primvar(prim: Usd.Prim, patch: str, name: str) -> UsdGeom.Primvar:
     """The primvar of a patch; invalid where there is none."""
     return UsdGeom.PrimvarsAPI(prim).GetPrimvar(property_name(patch, name))
