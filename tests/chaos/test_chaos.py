@@ -1,5 +1,6 @@
 """A few attacks of each kind, and those that once found something; and that the verdict sees what it is to see."""
 
+import errno
 import random
 from pathlib import Path
 
@@ -23,18 +24,20 @@ def test_attacks(ground, kind):
     assert KINDS[kind](Attack(ground, "short", random.Random(f"{SEED} {kind}"))) == []
 
 
-# Each with the command, and the call that fails: where USD renames the file that it has written beside ours, for one.
+# Each with the command, and the call that fails: its kind, its number (below 0: from the last) and errno.
 FOUND = {
-    "USD's own file beside ours": (COMMANDS[1], "rename 2 28"),
+    "USD's own file beside ours": (COMMANDS[1], ("rename", 2, errno.ENOSPC)),
+    "roughness of the last frame but one": (COMMANDS[0], ("ours", -5, errno.ENOMEM)),
 }
 
 
 @pytest.mark.parametrize("found", FOUND)
 def test_what_was_found(ground, found):
-    command, strike = FOUND[found]
+    command, (call, number, value) = FOUND[found]
     unhurt = ground.unhurt(command, True)
+    number += unhurt.calls[call] + 1 if number < 0 else 0
     with ground.folder("found", command, True) as folder:
-        ended = Run(command, folder, ground.preloaded(folder, strike)).ended()
+        ended = Run(command, folder, ground.preloaded(folder, f"{call} {number} {value}")).ended()
         assert ground.counts(folder)["struck"] == 1
         assert list(faults(command, ended, folder, unhurt.before, unhurt.whole)) == []
 

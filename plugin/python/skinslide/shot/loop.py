@@ -29,7 +29,7 @@ from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame
 from skinslide.shot.report import BakeReport, MeshReport
-from skinslide.shot.workers import Progress, pool_of, work_ahead
+from skinslide.shot.workers import Progress, core_named, pool_of, work_ahead
 from skinslide.write.place import signals_as_exceptions
 
 
@@ -120,7 +120,9 @@ class _Mesh(NamedTuple):
         """At the time before the last, once there is one before it. Time codes do for seconds: only ratios count."""
         if len(recent) == 3:
             samples = [Sample(time.GetValue(), frame.cached, frame.slid) for time, frame in recent]
-            self.report.add_motion(frame_of(recent[1][0]), self.planned.slider.roughness(samples))
+            between = recent[1][0]
+            with core_named(self.planned.mesh, between):
+                self.report.add_motion(frame_of(between), self.planned.slider.roughness(samples))
 
     def _reader(self, wanted: set[Usd.TimeCode]) -> Callable[[Usd.TimeCode], Callable[[], tuple[SlidFrame, list[Any]]]]:
         """Reads a time, and what is made of it where it is wanted and not only needed for another."""

@@ -80,8 +80,15 @@ def _submit(time: Usd.TimeCode, read: Callable[[Usd.TimeCode], Callable[[], T]],
 
 
 def _take(mesh: PatchedMesh, time: Usd.TimeCode, future: Future[T]) -> tuple[Usd.TimeCode, T]:
-    try:
+    with core_named(mesh, time):
         return time, future.result()
+
+
+@contextmanager
+def core_named(mesh: PatchedMesh, time: Usd.TimeCode) -> Iterator[None]:
+    """What the core refuses, as a FrameProblem of the mesh and the time."""
+    try:
+        yield
     except SliderError as error:
         names = [patch.name for patch in mesh.patches]
         raise FrameProblem(core_problem(mesh.path, names, str(error), frame_of(time))) from error
