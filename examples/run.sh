@@ -7,7 +7,7 @@ cd "$root"
 
 out=build/examples
 examples=(elbow fine_elbow bicep face finger sleeve chequer bump)
-unpainted=(body trunk torus)
+unpainted=(body fingers trunk torus)
 stage() { echo "$out/$1/stage.usda"; }
 step() { printf ' %s' "$1"; }
 bake() {
@@ -63,7 +63,7 @@ measure limit_distance "${painted[@]/%//stage.usda}"
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 measure normals "$out"/{character,elbow,sleeve,chequer}/stage.usda
 measure surface "$out"/character/stage.usda # the others slide on their limit surface
-measure rules "$out"/{body,trunk,torus,elbow,fine_elbow,bicep,face,finger,sleeve,bump}/stage.usda
+measure rules "$out"/{body,fingers,trunk,torus,elbow,fine_elbow,bicep,face,finger,sleeve,bump}/stage.usda
 echo
 
 say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"

@@ -15,7 +15,7 @@ from cells import lines
 
 ORDER = (
     *("elbow", "fine_elbow", "bicep", "face", "finger", "sleeve", "chequer", "bump"),
-    *("body", "trunk", "torus", "character"),
+    *("body", "fingers", "trunk", "torus", "character"),
 )
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 RESULTS = ("example", "vertices", "cache", "slid", "change", "at frame", "folded", "clamped", "ms a frame")

@@ -277,7 +277,7 @@ def test_the_shot_plays_live(tmp_path):
 # ---- With nothing painted ----
 
 
-@pytest.mark.parametrize("name", ["body", "trunk", "torus"])
+@pytest.mark.parametrize("name", ["body", "fingers", "trunk", "torus"])
 def test_a_shot_that_nobody_painted(name, example_stage, tmp_path):
     """It is no set-up before `setup --whole`, and then each patch stretches less, with nothing folded."""
     shot, output = example_stage(name), tmp_path / "stage.usda"
@@ -288,6 +288,7 @@ def test_a_shot_that_nobody_painted(name, example_stage, tmp_path):
     assert np.array_equal(np.array(points.Get()), np.array(points.Get(1001)))
     (checked,) = skinslide.setup_to_file(shot, output, whole=True).meshes
     assert {patch.name for patch in checked.patches} == {"skin"}
+    assert len(checked.patches) == (4 if name == "body" else 1)
     report = skinslide.bake_to_file(output, tmp_path / "slid.usdc", frames="1012" if name == "torus" else "1024")
     for patch in report.meshes[0].patches:
         (result,) = patch.results
