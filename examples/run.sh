@@ -44,10 +44,10 @@ step "shot"
 echo
 
 say "Drawing pictures"
-step "elbow"
-"$venv/bin/skinslide" preview "$(stage elbow)" -o "$out/elbow/pictures" --html "$out/elbow/report.html" --json --quiet \
-    >"$out/elbow/preview.json"
-"$python" examples/measure/pictures.py "$out/elbow.jpg" "$(stage elbow)" unit chequer >/dev/null
+step "body"
+"$venv/bin/skinslide" preview "$(stage body)" -o "$out/body/pictures" --html "$out/body/report.html" --json --quiet \
+    >"$out/body/preview.json"
+"$python" examples/measure/gain.py "$out/gain.jpg" "$(stage body)" "$(stage elbow),$(stage face)" >/dev/null
 for example in sleeve face; do
     step "$example"
     "$python" examples/measure/pictures.py "$out/$example.jpg" "$(stage "$example")" unit,relaxed chequer,stretch >/dev/null
@@ -68,33 +68,22 @@ echo
 
 say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"
 "$python" examples/measure/table.py "$out"
-
-say "Normals, in degrees: their largest jump at a tiny slide (0), and largest angle across seams (as in the cache)"
-cat "$out/normals.txt"
-
-say "Points that slid off the surface of the cache (0)"
-cat "$out/surface.txt"
-
-say "A character skinned by UsdSkel"
-tail -n 2 "$out/character/play.txt"
 cat <<SUMMARY
 
 Look at these in $out:
-  elbow/report.html              the elbow before and after, frame by frame, in a browser
-  elbow.jpg sleeve.jpg face.jpg character.jpg  the cache, and what the rules make of it
+  body/report.html               a body that nobody painted, in a browser, from the frame at which it gains most
+  gain.jpg                       an elbow and a face there: the cache, a patch that somebody painted, nothing painted
+  sleeve.jpg face.jpg character.jpg  the cache, and what the rules make of it
   id_buffers.png                 the textures in which the lookup finds faces
 Of each example, as elbow:
   elbow/stage.usda               the cache and its patch; sublayer elbow/slid.usdc above it
   elbow/check.txt bake.json      what was found on the stage, and what happened at each frame
   body/shot.usda setup.txt       a shot with nothing painted, of which setup --whole made body/stage.usda
   character/shot.usda play.txt   a character as its rig has it, set up by a joint; its bake above it, and a live layer on its cache
-And measured:
-  times.txt                      milliseconds of each stage of the walk, patch by patch
-  lookup.txt                     how much of the lookup the texture finds
-  limit_distance.txt             how far the limit surface moves
-  smoothness.txt                 how smoothly each rule moves skin
-  normals.txt                    how authored normals are carried with the skin
-  surface.txt                    how far points slid off the surface of the cache
-  rules.txt                      what each rule makes of them: share of the removable stretch, roughness, folds, cost
   shot/play.txt                  shot/shot.usda, played live with nothing baked
+And measured:
+  rules.txt                      what each rule makes of them: share of the removable stretch, roughness, folds, cost
+  times.txt lookup.txt           milliseconds of each stage of the walk, patch by patch; how much of the lookup the texture finds
+  limit_distance.txt surface.txt how far the limit surface moves; how far points slid off the surface of the cache (0)
+  smoothness.txt normals.txt     how smoothly each rule moves skin; how authored normals are carried with it, without a jump
 SUMMARY
