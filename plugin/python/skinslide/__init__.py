@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from skinslide.shot.check import CheckedLookup, CheckedMap, CheckedMesh, CheckedPatch, CheckReport, check
     from skinslide.shot.frames import parse_frames
     from skinslide.shot.report import BakeReport, MeshReport, PatchReport
-    from skinslide.write.stitch import StitchReport, stitch
+    from skinslide.shot.stitch import StitchReport, stitch
 
     __version__: str
 
@@ -140,7 +140,7 @@ _HOMES = {
     "shot.check": ("CheckedLookup", "CheckedMap", "CheckedMesh", "CheckedPatch", "CheckReport", "check"),
     "shot.frames": ("parse_frames",),
     "shot.report": ("BakeReport", "MeshReport", "PatchReport"),
-    "write.stitch": ("StitchReport", "stitch"),
+    "shot.stitch": ("StitchReport", "stitch"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from skinslide.command.outcome import EXIT_CODES, tell
 from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, number_or_name, positive_text
-from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
+from skinslide.shot.options import ChunkOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
 
 _MAP_SIZE = "--map-size"  # of bake, whose --size is that of pictures; maps understands it too
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
@@ -134,7 +134,7 @@ def _add_device(command: argparse._ActionsContainer) -> None:
 
 
 def _add_printing(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    command.add_argument("--quiet", action="store_true", help="print nothing but errors and warnings")
     _add_json(command)
 
 
@@ -168,6 +168,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     )
     _add_options(command, SlideOptions)
     _add_options(command, LayerOptions)
+    _add_options(command, ChunkOptions)
     _add_printing(command)
     pictures = command.add_argument_group("pictures of the same frames, as preview draws them")
     pictures.add_argument("--pictures", metavar="DIR", help="a folder for them, as of preview -o")
@@ -359,6 +360,13 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
         metavar="OUT",
         help="layer of overs to write, with all that one bake of all the frames has; replaced in one step at the end",
     )
+    command.add_argument(
+        "--frames",
+        metavar="SPEC",
+        help="those that the chunks must have, no more and no less, such as 1001:1024 (default: those of which --chunk "
+        "made parts, else all of the shot between the first and the last)",
+    )
+    _add_printing(command)
 
 
 def _processors() -> int:

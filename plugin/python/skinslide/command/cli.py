@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from skinslide.command.arguments import device_of_environment, parse
-from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say
+from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say, tell
 from skinslide.problems import UsageError, one_line
 from skinslide.shot.options import PictureOptions
 
@@ -93,9 +93,9 @@ def _bake(
 ) -> Result:
     also = _also(pictures, html, maps, options)
     report = _followed(bake_to_file, quiet, stage, output, also=also, **options)
-    if json:
-        return as_json({"stage": stage, "output": output, **report.as_dict()}), DONE
-    return "" if quiet else "\n".join([report.text(), *_written(pictures, html), _layer_written(output)]), DONE
+    told = [_layer_there(output)] if report.resumed else [*_written(pictures, html), _layer_written(output)]
+    lines = [report.text(), *told]
+    return _reported(report, {"stage": stage, "output": output}, lines, json, quiet), DONE
 
 
 def _also(pictures: str | None, html: str | None, maps: str | None, options: dict[str, Any]) -> list[Product]:
@@ -134,35 +134,50 @@ def _preview(
     **options: Any,
 ) -> Result:
     report = _followed(preview, quiet, stage, folder, html=html, **options)
-    if json:
-        return as_json({"stage": stage, **report.as_dict()}), DONE
-    return "" if quiet else "\n".join([report.text(), *_written(folder, html)]), DONE
+    return _reported(report, {"stage": stage}, [report.text(), *_written(folder, html)], json, quiet), DONE
 
 
 def _maps(
     maps: Callable[..., Any], stage: str, folder: str, *, json: bool = False, quiet: bool = False, **options: Any
 ) -> Result:
     report = _followed(maps, quiet, stage, folder, **options)
-    if json:
-        return as_json({"stage": stage, "folder": folder, **report.as_dict()}), DONE
-    return "" if quiet else report.text(), DONE
+    return _reported(report, {"stage": stage, "folder": folder}, [report.text()], json, quiet), DONE
 
 
 def _cache(
     cache: Callable[..., Any], stage: str, output: str, *, json: bool = False, quiet: bool = False, **options: Any
 ) -> Result:
     report = _told(cache, quiet, stage, output, **options)
-    if json:
-        return as_json({"stage": stage, "output": output, **report.as_dict()}), DONE
-    return "" if quiet else f"{report.text()}\n{_layer_written(output, 'character')}", DONE
+    lines = [report.text(), _layer_written(output, "character")]
+    return _reported(report, {"stage": stage, "output": output}, lines, json, quiet), DONE
 
 
 def _author(function: Callable[..., Any], stage: str, output: str, **options: Any) -> Result:
     return "\n".join([function(stage, output, **options).text(), *_written(output)]), DONE
 
 
-def _stitch(stitch: Callable[..., Any], chunks: list[str], output: str) -> Result:
-    return f"{stitch(chunks, output).text()}\n{_layer_written(output)}", DONE
+def _stitch(
+    stitch: Callable[..., Any],
+    chunks: list[str],
+    output: str,
+    *,
+    json: bool = False,
+    quiet: bool = False,
+    **options: Any,
+) -> Result:
+    report = stitch(chunks, output, **options)
+    lines = [report.text(), _layer_written(output)]
+    return _reported(report, {"chunks": chunks, "output": output}, lines, json, quiet), DONE
+
+
+def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bool, quiet: bool) -> str:
+    """What is printed of a report: one document, lines, or its warnings alone, which then go to stderr."""
+    if json:
+        return as_json({**named, **report.as_dict()})
+    for problem in report.problems if quiet else ():
+        if problem.severity == "warning":
+            tell(str(problem))
+    return "" if quiet else "\n".join(filter(None, lines))
 
 
 def _followed(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
@@ -191,6 +206,10 @@ def _written(*places: str | None) -> list[str]:
     return [one_line(f"{place}: written") for place in places if place]
 
 
+def _layer_there(output: str) -> str:
+    return one_line(f"{output}: is whole already, and was not baked again")
+
+
 def _layer_written(output: str, below: str = "cache") -> str:
     return one_line(f"{output}: written; sublayer it above the {below}")
 
@@ -205,5 +224,5 @@ _COMMANDS: dict[str, tuple[Callable[..., Result], str, str]] = {
     "setup": (_author, "author.setup", "setup_to_file"),
     "paint": (_author, "author.paint", "paint_to_file"),
     "mirror": (_author, "author.mirror", "mirror_to_file"),
-    "stitch": (_stitch, "write.stitch", "stitch"),
+    "stitch": (_stitch, "shot.stitch", "stitch"),
 }

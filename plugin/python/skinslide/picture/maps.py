@@ -146,6 +146,7 @@ class MapsReport(BakeReport):
         warnings: What reading the stage warned of.
         meshes: One for each mesh.
         made: What was drawn.
+        resumed: Never; that is of layers.
     """
 
     @property

@@ -128,6 +128,7 @@ class PreviewReport(BakeReport):
         warnings: What reading the stage warned of.
         meshes: One for each mesh.
         made: What was drawn.
+        resumed: Never; that is of layers.
     """
 
     @property

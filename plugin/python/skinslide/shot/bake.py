@@ -8,20 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import Controls, Lookup
+from skinslide.arrays.records import PatchResult
 from skinslide.arrays.slider import Slider, version
-from skinslide.problems import FrameProblem, Problem, StageProblems
+from skinslide.problems import FrameProblem, Problem, StageProblems, UsageError
 from skinslide.shot.derived import Derived
+from skinslide.shot.frames import AUTHORED
 from skinslide.shot.loop import slide
-from skinslide.shot.options import Frames, LayerOptions, Prims, SlideOptions
-from skinslide.shot.plan import PlannedMesh, frame_of
+from skinslide.shot.options import ChunkOptions, Frames, LayerOptions, Prims, SlideOptions
+from skinslide.shot.origins import is_whole, record_of
+from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
-from skinslide.shot.report import BakeReport, MeshReport, roughness_text
+from skinslide.shot.report import BakeReport, MeshReport, roughness_text, stretch_text
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh
@@ -46,10 +50,14 @@ def bake_to_file(
     progress: Progress | None = None,
     max_folded: int | None = None,
     max_clamped: int | None = None,
+    max_stretch: float | None = None,
+    max_added_stretch: float | None = None,
     max_roughness: float | None = None,
     share: bool = False,
     diagnostics: bool = False,
     also: Sequence[Product] = (),
+    chunk: str | None = None,
+    resume: bool = False,
 ) -> BakeReport:
     """Bakes a stage into a layer of overs to be sublayered above it.
 
@@ -68,11 +76,15 @@ def bake_to_file(
         progress: Called after each frame with the frames done and in all.
         max_folded: Faces turned over that a patch may have at a frame; None: any number.
         max_clamped: Vertices looked up outside every face that a patch may have at a frame; None: any number.
+        max_stretch: Stretch that a patch may have at a frame, slid: the RMS of log(length / rest length); None: any.
+        max_added_stretch: By how much a patch may have more of it than in the cache; None: any.
         max_roughness: How many times as roughly as its cache a patch may move, by the largest second difference in
             time; None: any number.
         share: Searches at each frame for the least stretch that its pose allows, for the report. Slow.
         diagnostics: Writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points.
         also: What else is made of the frames, each of which is slid once: `Pictures`, `Maps`.
+        chunk: One of several parts of the frames, such as "3/8", to be put together by `stitch`; None: all of them.
+        resume: Bakes nothing where the output is whole already, of the same frames, set-up, cache and options.
 
     Returns:
         What was done, patch by patch.
@@ -82,13 +94,19 @@ def bake_to_file(
         UsageError: Arguments that cannot be.
         StageError: The stage cannot be opened, or the layer not be written.
         StageProblems: The stage cannot be slid.
-        FrameProblem: A frame cannot be slid, or has more than max_folded, max_clamped or max_roughness.
+        FrameProblem: A frame cannot be slid, or has more of something than it may.
     """
-    options = SlideOptions.of(prims, frames, lookup, jobs)
-    layer = _Layer(
-        LayerOptions(max_folded, max_clamped, max_roughness, share, diagnostics), given_output("output", output)
+    limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)
+    given: tuple[Any, ...] = (chunk, resume)
+    options, part, others = (
+        SlideOptions.of(prims, frames, lookup, jobs),
+        ChunkOptions(*given),
+        given_products("also", also),
     )
-    return slide(Shot.of(stage), options, [layer, *given_products("also", also)], progress)
+    if others and part.resume:
+        raise UsageError("resume is for a layer alone, without pictures and maps")
+    layer = _Layer(LayerOptions(*limits, share, diagnostics), part, given_output("output", output))
+    return slide(Shot.of(stage), options, [layer, *others], progress, part.chunk)
 
 
 def bake(
@@ -101,6 +119,8 @@ def bake(
     progress: Progress | None = None,
     max_folded: int | None = None,
     max_clamped: int | None = None,
+    max_stretch: float | None = None,
+    max_added_stretch: float | None = None,
     max_roughness: float | None = None,
     share: bool = False,
     diagnostics: bool = False,
@@ -121,6 +141,8 @@ def bake(
         progress: As for `bake_to_file`.
         max_folded: As for `bake_to_file`.
         max_clamped: As for `bake_to_file`.
+        max_stretch: As for `bake_to_file`.
+        max_added_stretch: As for `bake_to_file`.
         max_roughness: As for `bake_to_file`.
         share: As for `bake_to_file`.
         diagnostics: As for `bake_to_file`.
@@ -133,14 +155,12 @@ def bake(
         TypeError: Something else than a stage or prims.
         UsageError: Arguments that cannot be, or an edit target that takes nothing.
         StageProblems: The stage cannot be slid.
-        FrameProblem: A frame cannot be slid, or has more than max_folded, max_clamped or max_roughness.
+        FrameProblem: A frame cannot be slid, or has more of something than it may.
     """
     check_target(stage)
     options = SlideOptions.of(prims, frames, lookup, jobs)
-    wanted, others = (
-        LayerOptions(max_folded, max_clamped, max_roughness, share, diagnostics),
-        given_products("also", also),
-    )
+    limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)
+    wanted, others = LayerOptions(*limits, share, diagnostics), given_products("also", also)
     with replacing_earlier_bake(stage, options.prims) as earlier:
         report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *others], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))
@@ -152,13 +172,14 @@ class _Layer:
     """A layer in a file."""
 
     options: LayerOptions
+    part: ChunkOptions
     output: Path
 
-    def begin(self, shot: Shot, _options: SlideOptions) -> Making:
+    def begin(self, shot: Shot, asked: SlideOptions) -> Making:
         check_output(self.output, EXTENSIONS)
         check_not_input(self.output, shot.stage, *shot.paths)
         comment = f"Slid by skinslide {version()}. Sublayer this above the cache."
-        return _Baking(self.options, layer_in_place(self.output, shot.stage, comment), in_stage=False)
+        return _BakingFile(self, asked, layer_in_place(self.output, shot.stage, comment))
 
 
 @dataclass(frozen=True)
@@ -197,6 +218,32 @@ class _Baking(Making):
     def running(self, _report: BakeReport) -> Iterator[None]:
         with self._place as self.overs:
             yield
+
+
+class _BakingFile(_Baking):
+    """One in a file, which says what it was baked from."""
+
+    def __init__(self, layer: _Layer, asked: SlideOptions, place: AbstractContextManager[OverLayer]):
+        super().__init__(layer.options, place, in_stage=False)
+        self._layer, self._asked = layer, asked
+
+    def planned(self, plan: Plan) -> bool:
+        self._record = record_of(plan, self._layer.part.chunk, {**_given(self._asked), **_given(self._layer.options)})
+        return self._layer.part.resume and is_whole(self._layer.output, self._record)
+
+    @contextmanager
+    def running(self, report: BakeReport) -> Iterator[None]:
+        with super().running(report):
+            yield
+            self._record.write(self.overs.layer)
+
+
+def _given(options: SlideOptions | LayerOptions) -> dict[str, Any]:
+    """Those options on which the samples of a layer depend, or whether there is one, where they are not the default."""
+    if isinstance(options, SlideOptions):
+        return {AUTHORED: True} if options.frames == AUTHORED else {}
+    told = {each.name: getattr(options, each.name) for each in fields(options) if each.name != "share"}
+    return {name: value for name, value in told.items() if value is not None and value is not False}
 
 
 class _MeshBake(MeshMaking):
@@ -244,13 +291,9 @@ class _MeshBake(MeshMaking):
         return self._derived.problems
 
     def _check_limits(self, time: Usd.TimeCode, frame: SlidFrame) -> None:
-        options = self._baking.options
-        for field, most in (("folded_faces", options.max_folded), ("clamped_vertices", options.max_clamped)):
-            for info, result in zip(self._patches, frame.patches, strict=True):
-                count = getattr(result, field)
-                if most is not None and count > most:
-                    message = f"{count} {field.replace('_', ' ')}, where at most {most} are allowed"
-                    raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
+        for info, result in zip(self._patches, frame.patches, strict=True):
+            for message in _exceeded(result, self._baking.options):
+                raise FrameProblem(Problem("error", self._mesh.path, info.name, frame_of(time), message))
 
     def _check_roughness(self) -> None:
         """Of all frames: a cache may be rough where the skin is not."""
@@ -260,6 +303,20 @@ class _MeshBake(MeshMaking):
                 ratio = f"{roughness_text(patch.roughness)} times as roughly as the cache"
                 message = f"skin moves {ratio}, where at most {most:g} times are allowed"
                 raise FrameProblem(Problem("error", self._mesh.path, patch.label, patch.roughest, message))
+
+
+def _exceeded(result: PatchResult, options: LayerOptions) -> Iterator[str]:
+    """What a patch has at a frame that is more than it may be."""
+    added = result.stretch_after - result.stretch_before
+    measures = [
+        (options.max_folded, result.folded_faces, f"{result.folded_faces} folded faces", "are"),
+        (options.max_clamped, result.clamped_vertices, f"{result.clamped_vertices} clamped vertices", "are"),
+        (options.max_stretch, result.stretch_after, f"stretch of {stretch_text(result.stretch_after)}", "is"),
+        (options.max_added_stretch, added, f"stretch added by {stretch_text(added)}", "is"),
+    ]
+    for most, found, what, verb in measures:
+        if most is not None and found > most:
+            yield f"{what}, where at most {most:g} {verb} allowed"
 
 
 def _least_slider(mesh: PatchedMesh) -> Slider:

@@ -11,7 +11,7 @@ from dataclasses import Field, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from skinslide.problems import SliderError, UsageError, not_one_of
-from skinslide.shot.frames import AUTHORED, checked_frames
+from skinslide.shot.frames import AUTHORED, Chunk, checked_frames
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
@@ -120,6 +120,19 @@ def positive(name: str, number: Any) -> float:
     if not LEAST <= found <= MOST:
         raise UsageError(f"{name} is {found:g}; it must be above 0, from {LEAST:g} to {MOST:g}")
     return found
+
+
+def not_negative(name: str, number: Any) -> float:
+    from skinslide.stage.given import given_number
+
+    found = given_number(name, number)
+    if not 0 <= found <= MOST:
+        raise UsageError(f"{name} is {found:g}; it must be 0 or more, to {MOST:g}")
+    return found
+
+
+def chunk(_name: str, given: object) -> Chunk:
+    return Chunk.parse(given)
 
 
 def frames(_name: str, given: FramesLike) -> AskedFrames:

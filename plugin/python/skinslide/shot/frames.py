@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal, SupportsFloat, TypeAlias
 
-from skinslide.problems import MOST_FRAMES, FrameSpecError
+from skinslide.problems import MOST_FRAMES, FrameSpecError, UsageError
 
 if TYPE_CHECKING:
     from pxr import Usd
@@ -18,6 +19,7 @@ FramesLike: TypeAlias = "Iterable[FrameLike] | str"
 AskedFrames: TypeAlias = list[float] | Literal["authored"] | None  # None: samples, and the frames between
 AUTHORED: Final = "authored"  # samples alone
 
+_CHUNK = re.compile(r"(\d{1,9})/(\d{1,9})", re.ASCII)
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 _PART = re.compile(rf"(?P<first>{_NUMBER})(?:[:-](?P<last>{_NUMBER})(?:x(?P<step>{_NUMBER}))?)?", re.ASCII)
 
@@ -44,6 +46,36 @@ def parse_frames(spec: str) -> list[float]:
             raise FrameSpecError(f"frames {spec!r}: more than {MOST_FRAMES} frames")
         frames.update(_expand(first, step, count))
     return sorted(frames)
+
+
+def spec_of(frames: Sequence[float]) -> str:
+    """A spec of frames in order, from which `parse_frames` makes the same."""
+    exact, parts, start = list(map(Fraction, map(repr, frames))), list[str](), 0
+    while start < len(exact):
+        end = start + 1
+        step = exact[end] - exact[start] if end < len(exact) else Fraction(1)
+        while end + 1 < len(exact) and exact[end + 1] - exact[end] == step:
+            end += 1
+        end = end if end - start > 1 else start
+        parts.append(_range_text(exact[start], exact[end], step))
+        start = end + 1
+    return ",".join(parts)
+
+
+def _range_text(first: Fraction, last: Fraction, step: Fraction) -> str:
+    if first == last:
+        return _decimal(first)
+    return f"{_decimal(first)}:{_decimal(last)}" + (f"x{_decimal(step)}" if step != 1 else "")
+
+
+def _decimal(number: Fraction) -> str:
+    """The digits of a number that has finitely many."""
+    places = 0
+    while (number * 10**places).denominator != 1:
+        places += 1
+    digits = str(abs((number * 10**places).numerator)).rjust(places + 1, "0")
+    sign = "-" if number < 0 else ""
+    return sign + (f"{digits[:-places]}.{digits[-places:]}" if places else digits)
 
 
 def checked_frames(frames: FramesLike) -> list[float]:
@@ -88,3 +120,32 @@ def _expand(first: Fraction, step: Fraction, count: int) -> list[float]:
     denominator = first.denominator * step.denominator
     start, stride = first.numerator * step.denominator, step.numerator * first.denominator
     return [(start + i * stride) / denominator for i in range(count)]
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """One of several parts of a shot's frames, as near to equal as can be: `3/8` is the third of eight."""
+
+    number: int
+    count: int
+
+    @classmethod
+    def parse(cls, text: object) -> Chunk:
+        """Raises UsageError for what is none, and for a number that is beyond the count."""
+        found = _CHUNK.fullmatch(text) if isinstance(text, str) else None
+        if not found:
+            raise UsageError(f"chunk {text!r}: must be a part and how many there are, such as 3/8")
+        chunk = cls(int(found[1]), int(found[2]))
+        if not 1 <= chunk.number <= chunk.count:
+            raise UsageError(f"chunk {chunk}: of {chunk.count} there are 1 to {chunk.count}")
+        return chunk
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.count}"
+
+    def of(self, frames: Sequence[float]) -> Sequence[float]:
+        """Its frames, of all frames in order. Raises UsageError where they do not go round."""
+        if self.count > len(frames):
+            raise UsageError(f"chunk {self}: there are {len(frames)} frames to divide")
+        first, last = (number * len(frames) // self.count for number in (self.number - 1, self.number))
+        return frames[first:last]

@@ -2,6 +2,7 @@
 
 ask each product what it can know           where its files go; any error: stop here, nothing is written
 meshes, problems = read the stage           any error: stop here
+what is made of them is there already       stop here, and say so
 for each mesh: its slider                   patches embedded at rest, once a shot
 for each mesh of which something is made:
     times = --frames, or the samples of points and animated controls and the frames between, or the default
@@ -25,6 +26,7 @@ from pxr import Usd
 from skinslide.arrays.native import Sample
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems
+from skinslide.shot.frames import Chunk
 from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame
@@ -34,11 +36,17 @@ from skinslide.write.place import signals_as_exceptions
 
 
 def slide(
-    shot: Shot, options: SlideOptions, products: Sequence[Product], progress: Progress | None = None
+    shot: Shot,
+    options: SlideOptions,
+    products: Sequence[Product],
+    progress: Progress | None = None,
+    chunk: Chunk | None = None,
 ) -> BakeReport:
     """Makes the products. Raises UsageError, StageProblems, FrameProblem, StageError."""
     makings = [product.begin(shot, options) for product in products]
-    plan = Plan.read(shot.stage, options)
+    plan = Plan.read(shot.stage, options, chunk)
+    if all([making.planned(plan) for making in makings]):
+        return BakeReport(list(plan.problems), resumed=True)
     meshes = _wanted(plan, makings)
     report = BakeReport(list(plan.problems))
     total = sum(len(mesh.planned.times) for mesh in meshes)

@@ -15,7 +15,7 @@ from skinslide.shot.checks import Options, option, or_none
 
 if TYPE_CHECKING:
     from skinslide.arrays.native import Lookup
-    from skinslide.shot.frames import AskedFrames, FramesLike
+    from skinslide.shot.frames import AskedFrames, Chunk, FramesLike
     from skinslide.stage.given import PrimLike, PrimsLike
 
 Names: TypeAlias = Sequence[str] | str | None
@@ -98,6 +98,23 @@ class LayerOptions(Options):
         metavar="N",
         help="fail, and write nothing, where a patch has more than N vertices looked up outside every face at a frame",
     )
+    max_stretch: float | None = option(
+        None,
+        or_none(checks.not_negative),
+        "--max-stretch",
+        type=float,
+        metavar="X",
+        help="fail, and write nothing, where a patch has more stretch than X, slid, at a frame: the RMS of "
+        "log(length / rest length) over its edges",
+    )
+    max_added_stretch: float | None = option(
+        None,
+        or_none(checks.not_negative),
+        "--max-added-stretch",
+        type=float,
+        metavar="X",
+        help="fail, and write nothing, where a patch has over X more stretch slid than in the cache, at a frame",
+    )
     max_roughness: float | None = option(
         None,
         or_none(checks.positive),
@@ -123,6 +140,27 @@ class LayerOptions(Options):
         action="store_true",
         help="write two primvars by vertex beside the points: primvars:skinSlide:stretch, the RMS of log(length / rest "
         "length) over the edges of patches at the vertex, slid; and primvars:skinSlide:slide, how far it slid",
+    )
+
+
+@dataclass(frozen=True)
+class ChunkOptions(Options):
+    """Of a bake into a file that is one of several."""
+
+    chunk: Chunk | None = option(
+        None,
+        or_none(checks.chunk),
+        "--chunk",
+        metavar="K/N",
+        help="bake the Kth of N parts of the frames, such as 3/8, as a task of a farm does; stitch puts them together",
+    )
+    resume: bool = option(
+        False,
+        checks.truth,
+        "--resume",
+        action="store_true",
+        help="bake nothing where the output is whole already, of the same frames, set-up, cache and options, by the "
+        "same version",
     )
 
 

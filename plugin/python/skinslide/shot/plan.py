@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ from pxr import Usd
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems, UsageError, errors, frame_text
-from skinslide.shot.frames import AUTHORED, AskedFrames
+from skinslide.shot.frames import AUTHORED, AskedFrames, Chunk
 from skinslide.shot.options import SlideOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
@@ -34,17 +35,22 @@ class Plan:
 
     meshes: list[PlannedMesh]
     problems: list[Problem]  # warnings
+    wanted: list[float]  # every frame of any mesh, of which a chunk takes a part
+    own: list[float]  # those of the shot, whatever was asked for
 
     @classmethod
-    def read(cls, stage: Usd.Stage, options: SlideOptions) -> Plan:
-        """Raises StageProblems where any mesh cannot be slid."""
+    def read(cls, stage: Usd.Stage, options: SlideOptions, chunk: Chunk | None = None) -> Plan:
+        """Raises StageProblems where any mesh cannot be slid, and UsageError for a chunk of more parts than frames."""
         found, problems = read_sliders(stage, options.prims, options.lookup)
         if errors(problems):
             raise StageProblems(problems)
         planned = [_planned(mesh, slider, options.frames) for mesh, slider in found if slider]
         if options.frames is None:
             problems += [said for mesh, *_ in planned for said in mesh.between_problems()]
-        return cls(planned, problems + list(_outside(planned, options.named)))
+        wanted = sorted({frame for mesh in planned for frame in mesh.frames})
+        problems += _outside(planned, options.named)
+        own = sorted({frame for mesh, *_ in planned for frame in _own_frames(mesh)}) if options.named else wanted
+        return cls(_part(planned, set(chunk.of(wanted))) if chunk else planned, problems, wanted, own)
 
     def check_patches(self, wanted: Sequence[str] | None) -> None:
         """Raises UsageError for no names, and StageProblems for those that no mesh has."""
@@ -55,6 +61,22 @@ class Plan:
         if missing:
             message = f"no mesh has it; there are {', '.join(sorted(there))}"
             raise StageProblems([Problem("error", "", name, None, message) for name in missing])
+
+
+def _own_frames(mesh: PatchedMesh) -> list[float]:
+    """None where they are so many that they have to be named."""
+    with suppress(StageProblems, UsageError):
+        return mesh.frame_times()
+    return []
+
+
+def _part(meshes: Sequence[PlannedMesh], frames: set[float]) -> list[PlannedMesh]:
+    """The meshes with no other frames than these; a default value is in every chunk."""
+    parts = [
+        mesh._replace(times=[time for time in mesh.times if time.IsDefault() or time.GetValue() in frames])
+        for mesh in meshes
+    ]
+    return [part for part in parts if part.times]
 
 
 def read_sliders(

@@ -21,7 +21,7 @@ from skinslide.shot.options import SlideOptions
 from skinslide.stage.given import StageLike, StrPath, given_stage
 
 if TYPE_CHECKING:
-    from skinslide.shot.plan import PlannedMesh
+    from skinslide.shot.plan import Plan, PlannedMesh
     from skinslide.shot.report import BakeReport, MeshReport
 
 
@@ -80,6 +80,10 @@ class Making(ABC):
     """One run of a product."""
 
     patches: Sequence[str] | None = None  # names of those it is made of; None: all
+
+    def planned(self, _plan: Plan) -> bool:
+        """Learns what is going to be slid; whether all that it makes of it is there already, and need not be made."""
+        return False
 
     @abstractmethod
     def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking | None:

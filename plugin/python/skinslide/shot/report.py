@@ -308,11 +308,13 @@ class BakeReport:
         warnings: What reading the stage warned of.
         meshes: One for each mesh.
         made: What was made of the frames beside a layer, such as pictures.
+        resumed: Whether the layer was there already, whole and of the same, and nothing was slid.
     """
 
     warnings: list[Problem]
     meshes: list[MeshReport] = field(default_factory=list)
     made: list[Made] = field(default_factory=list)
+    resumed: bool = False
 
     @property
     def frame_count(self) -> int:
@@ -338,6 +340,8 @@ class BakeReport:
 
     def text(self) -> str:
         """The table for a terminal, every problem, and what was made."""
+        if self.resumed:
+            return lines_text(map(str, self.problems))
         rows = [_HEADINGS, *(_row(patch) for mesh in self.meshes for patch in mesh.patches)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [_line(_HEADINGS, widths)]

@@ -1,7 +1,9 @@
 """Puts the chunks of a bake together. Time samples of sublayers do not merge, so a shot wants them in one layer.
 
 open every chunk                       any that is missing, or is no bake: stop here
-compare                                clocks, attributes, defaults, and samples of frames that several chunks have
+each alone                             whole, by its own record, and not being written
+each with the first                    records, clocks, attributes, defaults, and samples of frames that several have
+all of them                            no frame is left out
 block what any chunk blocks            as a bake of all the frames would have
 stitch, and put the layer in place
 """
@@ -9,22 +11,28 @@ stitch, and put the layer in place
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from pxr import Sdf, Tf, UsdUtils
 
-from skinslide.problems import Problem, StageError, StageProblems, UsageError, frame_text, lines_text
+from skinslide.problems import Fault, Problem, StageError, StageProblems, UsageError, frame_text, lines_text
+from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
 from skinslide.write.overs import EXTENSIONS
-from skinslide.write.place import check_output, given_output, replacing, saved, writing
+from skinslide.write.place import check_output, given_output, replacing, saved, state, writing
+from skinslide.write.record import MeshRecord, Record
 
 # Fields of a chunk that say what is in it.
-_OWN_FIELDS = {"primChildren", "comment"}
+_OWN_FIELDS = {"primChildren", "comment", "customLayerData"}
+
+_ORIGINS = {"topology": "topology", "rest": "rest points", "setup": "set-ups or paint", "cache": "caches"}
+_LIMIT = "max_"  # how options begin on which no sample depends
+_MOST_PARTS = 6  # of a spec in a sentence
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,10 @@ class StitchReport:
     frames: list[float]
     problems: list[Problem]
 
+    def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
+        return asdict(self)
+
     def text(self) -> str:
         """What it holds, and every problem, for a terminal."""
         first_to_last = f", {frame_text(self.frames[0])} to {frame_text(self.frames[-1])}" if self.frames else ""
@@ -48,12 +60,14 @@ class StitchReport:
         return lines_text([f"{meshes}, {len(self.frames)} frames{first_to_last}", *map(str, self.problems)])
 
 
-def stitch(chunks: Iterable[StrPath], output: StrPath) -> StitchReport:
+def stitch(chunks: Iterable[StrPath], output: StrPath, *, frames: FramesLike | None = None) -> StitchReport:
     """Writes one layer with the samples of several that were baked from one stage: the layer of one bake.
 
     Args:
         chunks: The paths of layers that bake wrote, each with other frames.
         output: The layer: .usda, .usdc or .usd, written whole or not at all.
+        frames: Those that the chunks must have, no more and no less; None: those of which they say that they are
+            parts, or else all of the shot from the first to the last that they have.
 
     Returns:
         What the layer holds.
@@ -61,18 +75,22 @@ def stitch(chunks: Iterable[StrPath], output: StrPath) -> StitchReport:
     Raises:
         UsageError: Arguments that cannot be, or a layer that no bake wrote.
         StageError: A chunk cannot be opened, or the layer not be written.
-        StageProblems: The chunks do not fit together.
+        StageProblems: A chunk is not whole, the chunks do not fit together, or leave a frame out.
     """
     files, stitched = _given_chunks(chunks), given_output("output", output)
+    asked = None if frames is None else checked_frames(frames)
     check_output(stitched, EXTENSIONS)
     opened = [_Chunk(file) for file in files]
     _refuse_repeated(files)
     if stitched.exists() and any(file.samefile(stitched) for file in files):
         raise UsageError(f"output {stitched}: is one of the chunks")
     blocked = {path for chunk in opened for path in chunk.blocked}
-    problems = [*_differences(opened, blocked), *_overlaps(opened, blocked)]
+    alone = [problem for chunk in opened for problem in chunk.problems()]
+    among = [*_mixtures(opened), *_differences(opened, blocked), *_overlaps(opened, blocked)]
+    problems = alone + among or list(_left_out(opened, asked))
     if problems:
         raise StageProblems(problems)
+    opened.sort(key=lambda chunk: chunk.record.frames)
     _write(opened, sorted(blocked), stitched)
     return _report(opened, blocked)
 
@@ -99,12 +117,36 @@ class _Chunk:
     """One baked layer."""
 
     def __init__(self, path: Path):
+        self._state = state(path)
         self.path, self.layer = path, _open(path)
         self.attributes: dict[Sdf.Path, Sdf.AttributeSpec] = {}
         self.layer.Traverse(Sdf.Path.absoluteRootPath, self._add)
         if not self.attributes or not all(map(is_marked, self.attributes.values())):
             raise UsageError(f"{path} is not a layer that skinslide bake has written")
         self.blocked = [at for at, spec in self.attributes.items() if isinstance(spec.default, Sdf.ValueBlock)]
+        self.fault, self.record = "", Record({})
+        try:
+            self.record = Record.read(self.layer)
+        except Fault as fault:
+            self.fault = str(fault)
+
+    def problems(self) -> Iterator[Problem]:
+        """Why it is not whole."""
+        if self.fault:
+            yield Problem("error", "", None, None, f"{self.path} {self.fault}")
+        for prim, lost in self.record.lacking(self.layer).items():
+            what = f"frames {_spec(lost)}" if lost else "its value"
+            message = f"{self.path} is not whole: it lacks {what}"
+            yield Problem("error", prim, None, lost[0] if lost else None, message)
+        yield from self.changes()
+
+    def changes(self) -> Iterator[Problem]:
+        if state(self.path) != self._state:
+            yield Problem("error", "", None, None, f"{self.path} is being written: it changed as it was read")
+
+    def has(self, path: Sdf.Path) -> bool:
+        """Whether it is to have what is on a prim: a mesh without frames in a chunk is not in it."""
+        return not self.record.meshes or str(path.GetPrimPath()) in self.record.meshes
 
     def _add(self, path: Sdf.Path) -> None:
         spec = self.layer.GetAttributeAtPath(path) if path.IsPropertyPath() else None
@@ -124,6 +166,70 @@ def _open(path: Path) -> Sdf.Layer:
         raise StageError(f"cannot open {path}: {why_not_opened(str(path), error)}") from error
 
 
+def _mixtures(chunks: Sequence[_Chunk]) -> Iterator[Problem]:
+    """What tells that chunks are not of one job: versions, options, and what their meshes were baked from."""
+    recorded = [chunk for chunk in chunks if not chunk.fault]
+    for first, chunk in ((recorded[0], other) for other in recorded[1:]):
+        pair = f"{first.path} and {chunk.path}"
+        one, other = first.record, chunk.record
+        if one.version != other.version:
+            message = f"{pair} were baked by skinslide {one.version} and {other.version}"
+            yield Problem("error", "", None, None, message)
+        for name in _unequal(_written_by(one), _written_by(other)):
+            yield Problem("error", "", None, None, f"{pair} were baked with another option {name}")
+        if one.wanted != other.wanted:
+            yield Problem("error", "", None, None, f"{pair} are parts of other frames")
+        for prim in sorted(one.meshes.keys() & other.meshes.keys()):
+            for name in _unequal(one.meshes[prim].origins, other.meshes[prim].origins):
+                message = f"{pair} were baked from other {_ORIGINS.get(name, name)}"
+                yield Problem("error", prim, None, None, message)
+
+
+def _written_by(record: Record) -> dict[str, Any]:
+    return {name: value for name, value in record.options.items() if not name.startswith(_LIMIT)}
+
+
+def _left_out(chunks: Sequence[_Chunk], asked: list[float] | None) -> Iterator[Problem]:
+    """Frames that are in no chunk, and where it was said which are wanted, those that are too many."""
+    there = {frame for chunk in chunks for frame in chunk.record.frames}
+    wanted = asked or sorted(chunks[0].record.wanted)
+    missing = sorted(set(wanted) - there) if there else []
+    if missing:
+        files = ", ".join(str(chunk.path) for chunk in chunks)
+        yield Problem("error", "", None, missing[0], f"{_count(missing)} in none of {files}: {_spec(missing)}")
+    for chunk in chunks if asked else ():
+        more = [frame for frame in chunk.record.frames if frame not in set(wanted)]
+        if more:
+            message = f"{_count(more)} not asked for, but in {chunk.path}: {_spec(more)}"
+            yield Problem("error", "", None, more[0], message)
+    if not wanted:
+        yield from _gaps(chunks)
+
+
+def _gaps(chunks: Sequence[_Chunk]) -> Iterator[Problem]:
+    """Frames of the shot that lie between what chunks have."""
+    framed = sorted((chunk for chunk in chunks if chunk.record.frames), key=lambda chunk: chunk.record.frames[0])
+    last = framed[0] if framed else None
+    for chunk in framed[1:]:
+        assert last
+        end, begin = last.record.after, chunk.record.before
+        if chunk.record.frames[0] > last.record.frames[-1] and end is not None and end < chunk.record.frames[0]:
+            to = f" to {frame_text(begin)}" if begin is not None and begin > end else ""
+            lost = f"no chunk has frame{'s' * bool(to)} {frame_text(end)}{to} of the shot"
+            message = f"{lost}, between {last.path} and {chunk.path}; where others are wanted, name them"
+            yield Problem("error", "", None, end, message)
+        last = max(last, chunk, key=lambda each: each.record.frames[-1])
+
+
+def _count(frames: Sequence[float]) -> str:
+    return "1 frame is" if len(frames) == 1 else f"{len(frames)} frames are"
+
+
+def _spec(frames: Sequence[float]) -> str:
+    parts = spec_of(frames).split(",")
+    return ",".join(parts[:_MOST_PARTS]) + (",..." if parts[_MOST_PARTS:] else "")
+
+
 def _differences(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> Iterator[Problem]:
     """What tells that chunks are not of one stage: clocks, prims, attributes, and values that do not vary."""
     first = chunks[0]
@@ -132,6 +238,8 @@ def _differences(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> Iterator[P
         for field in _unequal(first.clock(), chunk.clock()):
             yield Problem("error", "", None, None, f"{pair} differ in {field}")
         for path in sorted((first.attributes.keys() ^ chunk.attributes.keys()) - blocked):
+            if not (first.has(path) and chunk.has(path)):
+                continue
             only = first if path in first.attributes else chunk
             yield Problem(
                 "error", str(path.GetPrimPath()), None, None, f"{path.name} is in {only.path}, not in both {pair}"
@@ -142,7 +250,7 @@ def _differences(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> Iterator[P
                 yield Problem("error", str(path.GetPrimPath()), None, None, f"{path.name} differs between {pair}")
 
 
-def _unequal(one: dict[str, Any], other: dict[str, Any]) -> list[str]:
+def _unequal(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
     return [key for key in sorted(one.keys() | other.keys()) if one.get(key) != other.get(key)]
 
 
@@ -170,7 +278,26 @@ def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) 
             spec = layer.GetAttributeAtPath(path)
             spec.ClearInfo("timeSamples")
             spec.default = Sdf.ValueBlock()
+        _joined([chunk.record for chunk in chunks]).write(layer)
         _save(layer, output)
+        changed = [problem for chunk in chunks for problem in chunk.changes()]
+        if changed:
+            raise StageProblems(changed)
+
+
+def _joined(records: Sequence[Record]) -> Record:
+    """That of one bake of all frames."""
+    meshes: dict[str, MeshRecord] = {}
+    for record in records:
+        for path, mesh in record.meshes.items():
+            known = meshes.get(path, mesh)
+            meshes[path] = replace(known, frames=tuple(sorted({*known.frames, *mesh.frames})))
+    common = [record.options for record in records]
+    options = {name: value for name, value in common[0].items() if all(each.get(name) == value for each in common)}
+    framed = [record for record in records if record.frames]
+    before = min(framed, key=lambda record: record.frames[0]).before if framed else None
+    after = max(framed, key=lambda record: record.frames[-1]).after if framed else None
+    return replace(records[0].whole(), meshes=dict(sorted(meshes.items())), options=options, before=before, after=after)
 
 
 def _save(layer: Sdf.Layer, output: Path) -> None:

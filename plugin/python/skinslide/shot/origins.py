@@ -1,0 +1,104 @@
+"""What a layer is baked from, as its record says it: meshes in a few digests, and frames.
+
+Two bakes of which a digest differs do not belong into one shot.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pxr import Sdf, Tf, Usd
+
+from skinslide.problems import Fault, FrameProblem
+from skinslide.shot.frames import Chunk
+from skinslide.shot.plan import Plan
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.write.record import MeshRecord, Record
+
+_BYTES = 8
+
+
+def record_of(plan: Plan, chunk: Chunk | None, options: dict[str, Any]) -> Record:
+    """The record of a layer with all that is planned."""
+    meshes = {planned.mesh.path: MeshRecord(origins_of(planned.mesh), tuple(planned.frames)) for planned in plan.meshes}
+    record = Record(meshes, options)
+    if chunk:
+        record = replace(record, chunk=str(chunk), wanted=tuple(plan.wanted))
+    frames = record.frames
+    if not frames:
+        return record
+    before = max((frame for frame in plan.own if frame < frames[0]), default=None)
+    after = min((frame for frame in plan.own if frame > frames[-1]), default=None)
+    return replace(record, before=before, after=after)
+
+
+def is_whole(file: Path, record: Record) -> bool:
+    """Whether a file holds all that its record says, and that is the record."""
+    if not file.is_file():
+        return False
+    try:
+        layer = Sdf.Layer.OpenAsAnonymous(str(file))
+        if Record.read(layer) != record:
+            return False
+    except (Tf.ErrorException, Fault):
+        return False
+    return not record.lacking(layer)
+
+
+def origins_of(mesh: PatchedMesh) -> dict[str, str]:
+    """A digest of topology, of rest, of settings and paint at every time, and of three poses of the cache."""
+    return {
+        "topology": _digest(mesh.face_counts, mesh.face_indices, mesh.left_handed, mesh.subdivision),
+        "rest": _digest(mesh.rest_points, mesh.weld.vertices),
+        "setup": _digest(mesh.patches, *_animated(mesh)),
+        "cache": _digest(mesh.points_times(), *_poses(mesh)),
+    }
+
+
+def _animated(mesh: PatchedMesh) -> Iterator[Any]:
+    """What is animated on the patches, wherever in the shot."""
+    for index, patch in enumerate(mesh.animation):
+        for time in patch.samples():
+            with suppress(FrameProblem):  # said of that frame, where it is slid
+                yield time, mesh.patch_controls_at(index, Usd.TimeCode(time))
+
+
+def _poses(mesh: PatchedMesh) -> Iterator[np.ndarray]:
+    """The first, the middle and the last: to read all would take each chunk as long as the shot."""
+    times = mesh.points_times()
+    chosen = [times[0], times[len(times) // 2], times[-1]] if times else []
+    for time in map(Usd.TimeCode, chosen) if chosen else [Usd.TimeCode.Default()]:
+        with suppress(FrameProblem):
+            yield mesh.points_at(time)
+
+
+def _digest(*values: Any) -> str:
+    digest = hashlib.blake2b(digest_size=_BYTES)
+    for part in _parts(values):
+        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(part)
+    return digest.hexdigest()
+
+
+def _parts(value: Any) -> Iterator[bytes]:
+    if isinstance(value, np.ndarray):
+        yield f"{value.dtype.str}{value.shape}".encode()
+        yield np.ascontiguousarray(value).tobytes()
+    elif is_dataclass(value):
+        yield type(value).__name__.encode()
+        for each in fields(value):
+            yield each.name.encode()
+            yield from _parts(getattr(value, each.name))
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        yield f"{len(value)}".encode()
+        for each in value:
+            yield from _parts(each)
+    else:
+        plain = value.item() if isinstance(value, np.generic) else value  # numpy's versions spell theirs differently
+        yield repr(plain).encode(errors="backslashreplace")

@@ -1,0 +1,100 @@
+"""What a baked layer says of itself, in its customLayerData: what it was made from, and which frames it is to hold.
+
+By it chunks are known to belong together, to be whole, and to leave no frame out between them. Layers of sublayers do
+not compose it, and no sample depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from pxr import Sdf, UsdGeom, Vt
+
+from skinslide.arrays.slider import version
+from skinslide.problems import Fault
+
+_KEY = "skinslide"  # in customLayerData
+_FORM = 1  # of the record itself
+
+
+@dataclass(frozen=True)
+class MeshRecord:
+    """One mesh of a layer.
+
+    origins  a digest of each of: its topology, its rest, its set-up, its cache
+    frames   that its points have samples at, ascending; none: they have a default
+    """
+
+    origins: Mapping[str, str]
+    frames: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Record:
+    """A layer.
+
+    meshes   those that were slid, by their paths
+    options  of the bake, those that are not as they are by default
+    before   the frame of the shot before the first in the layer; None: there is none
+    after    the one after the last
+    chunk    which of how many parts of `wanted` it is, such as 3/8; empty: it is all that was asked for
+    wanted   all frames that were asked for, of which it is a part
+    """
+
+    meshes: Mapping[str, MeshRecord]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    before: float | None = None
+    after: float | None = None
+    chunk: str = ""
+    wanted: tuple[float, ...] = ()
+    version: str = field(default_factory=version)
+
+    @property
+    def frames(self) -> list[float]:
+        """Of all meshes, ascending."""
+        return sorted({frame for mesh in self.meshes.values() for frame in mesh.frames})
+
+    def whole(self) -> Record:
+        """That of a layer which is no part."""
+        return replace(self, chunk="", wanted=())
+
+    def lacking(self, layer: Sdf.Layer) -> dict[str, list[float]]:
+        """The meshes that a layer does not hold whole, each with the frames that it lacks; none of a default value."""
+        found: dict[str, list[float]] = {}
+        for path, mesh in self.meshes.items():
+            points = Sdf.Path(path).AppendProperty(UsdGeom.Tokens.points)
+            lost = sorted(set(mesh.frames).difference(layer.ListTimeSamplesForPath(points)))
+            if lost or not (mesh.frames or layer.GetAttributeAtPath(points)):
+                found[path] = lost
+        return found
+
+    def write(self, layer: Sdf.Layer) -> None:
+        meshes = {path: {**mesh.origins, "frames": _array(mesh.frames)} for path, mesh in self.meshes.items()}
+        told: dict[str, Any] = {"form": _FORM, "version": self.version, "meshes": meshes, "options": dict(self.options)}
+        told |= {name: at for name in ("before", "after") if (at := getattr(self, name)) is not None}
+        if self.chunk:
+            told |= {"chunk": self.chunk, "wanted": _array(self.wanted)}
+        layer.customLayerData = {**layer.customLayerData, _KEY: told}
+
+    @classmethod
+    def read(cls, layer: Sdf.Layer) -> Record:
+        """Raises Fault where there is none, or one of another kind."""
+        told = layer.customLayerData.get(_KEY)
+        if not isinstance(told, dict):
+            raise Fault("does not say what it was baked from: it is not finished, or older than skinslide 0.2")
+        if told.get("form") != _FORM:
+            raise Fault(f"was baked by skinslide {told.get('version')}, whose record this one cannot read")
+        meshes = {path: _mesh(dict(mesh)) for path, mesh in told["meshes"].items()}
+        ends, wanted = (told.get("before"), told.get("after")), tuple(told.get("wanted", ()))
+        return cls(meshes, told["options"], *ends, told.get("chunk", ""), wanted, told["version"])
+
+
+def _mesh(told: dict[str, Any]) -> MeshRecord:
+    frames = tuple(told.pop("frames"))
+    return MeshRecord(told, frames)
+
+
+def _array(frames: Sequence[float]) -> Vt.DoubleArray:
+    return Vt.DoubleArray(list(frames))
