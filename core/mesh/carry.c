@@ -69,12 +69,13 @@ static double part(ss_vectors vectors, int64_t e, int k) {
 }
 
 /* Turned, each part may become as large as all three together. */
-static bool stays_finite(ss_vectors vectors, int64_t e) {
-    double most = vectors.doubles ? DBL_MAX / 8 : (double)FLT_MAX / 2;
+skinslide_status ss_check_vector(const double vector[3], bool is_double, int64_t number, skinslide_error *error) {
+    double most = is_double ? DBL_MAX / 8 : (double)FLT_MAX / 2;
     for (int k = 0; k < 3; k++)
-        if (isfinite(part(vectors, e, k)) && fabs(part(vectors, e, k)) > most)
-            return false;
-    return true;
+        if (isfinite(vector[k]) && fabs(vector[k]) > most)
+            return ss_fail(error, SKINSLIDE_BAD_POINTS, "vector %lld is too long to be carried: (%g, %g, %g)",
+                           (long long)number, vector[0], vector[1], vector[2]);
+    return SKINSLIDE_OK;
 }
 
 static void turn_element(ss_vectors vectors, int64_t e, const double turn[3]) {
@@ -90,20 +91,20 @@ static void turn_element(ss_vectors vectors, int64_t e, const double turn[3]) {
 /* Turns the elements or, before that, looks whether all can be. */
 static skinslide_status go_through(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout,
                                    ss_vectors vectors, bool turning, skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
     int32_t count = ss_element_count(mesh, layout);
-    for (int32_t e = 0, corner = 0; e < count; e++) {
+    for (int32_t e = 0, corner = 0; e < count && !status; e++) {
         element own = element_at(mesh, layout, e, corner);
-        double turn[3];
+        double turn[3], vector[3] = {part(vectors, e, 0), part(vectors, e, 1), part(vectors, e, 2)};
         corner += own.count;
         if (!find_turn(&own, turns, turn))
             continue;
         if (turning)
             turn_element(vectors, e, turn);
-        else if (!stays_finite(vectors, e))
-            return ss_fail(error, SKINSLIDE_BAD_POINTS, "vector %d is too long to be carried: (%g, %g, %g)", e,
-                           part(vectors, e, 0), part(vectors, e, 1), part(vectors, e, 2));
+        else
+            status = ss_check_vector(vector, vectors.doubles, e, error);
     }
-    return SKINSLIDE_OK;
+    return status;
 }
 
 skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout, ss_vectors vectors,

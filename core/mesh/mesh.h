@@ -157,6 +157,8 @@ typedef struct ss_vectors {
     float *floats;
     double *doubles;
 } ss_vectors;
+/* Names a vector, by its number, that might not stay finite where it turned. */
+skinslide_status ss_check_vector(const double vector[3], bool is_double, int64_t number, skinslide_error *error);
 /* skinslide_carry. The mesh is checked. */
 skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout, ss_vectors vectors,
                           skinslide_error *error);

@@ -348,10 +348,22 @@ static bool has_parted(const skinslide_weld *weld, int32_t vertex) {
     return weld->place[vertex] != weld->place[weld->rest_weld[vertex]];
 }
 
+/* Other points tell it nothing. */
+static skinslide_status check_shared(const skinslide_weld *weld, const float *points, skinslide_error *error) {
+    if (!points)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no points");
+    for (int32_t i = 0; i < weld->shared_count; i++) {
+        const float *point = points + 3 * (int64_t)weld->shared[i];
+        if (!isfinite(point[0]) || !isfinite(point[1]) || !isfinite(point[2]))
+            return ss_refuse_vertex("points", weld->shared[i], point, 3, SKINSLIDE_BAD_POINTS, error);
+    }
+    return SKINSLIDE_OK;
+}
+
 skinslide_status skinslide_weld_show(skinslide_weld *weld, double frame, const float *points, skinslide_error *error) {
     if (!weld)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no weld");
-    skinslide_status status = ss_check_points(points, weld->vertex_count, "points", error);
+    skinslide_status status = check_shared(weld, points, error);
     if (status)
         return status;
     ss_split_places(points, weld->tolerance, weld->shared, weld->shared_count, weld->spots, weld->place);

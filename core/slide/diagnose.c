@@ -130,8 +130,10 @@ typedef struct measures {
 
 static measures measure(const tally *at, const float *cached, const float *slid, int32_t v) {
     double edges = at->edge_count > 0 ? at->edge_count : 1, way[3];
-    for (int k = 0; k < 3; k++)
-        way[k] = (double)slid[3 * (int64_t)v + k] - cached[3 * (int64_t)v + k];
+    for (int k = 0; k < 3; k++) { /* what is not finite passed as it was */
+        double from = cached[3 * (int64_t)v + k], to = slid[3 * (int64_t)v + k];
+        way[k] = isfinite(from) ? to - from : 0;
+    }
     return (measures){
         .before = (float)sqrt(at->before / edges),
         .after = (float)sqrt(at->after / edges),
@@ -179,9 +181,9 @@ skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinsl
                                     skinslide_error *error) {
     if (!slider || !cached || !slid || !diagnostics)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, points, or place for the diagnostics");
-    skinslide_status status = ss_check_points(cached, slider->vertex_count, "cached points", error);
+    skinslide_status status = ss_check_reads(slider, cached, "cached points", error);
     if (!status)
-        status = ss_check_points(slid, slider->vertex_count, "slid points", error);
+        status = ss_check_reads(slider, slid, "slid points", error);
     skinslide_diagnostics out = SKINSLIDE_DIAGNOSTICS_DEFAULT;
     if (!status)
         status = ss_take(diagnostics, "skinslide_diagnostics", &out, sizeof out, error);

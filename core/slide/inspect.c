@@ -103,7 +103,7 @@ skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int
         return SKINSLIDE_BAD_ARGUMENT;
     if (!loose || other_count < 0 || !(tolerance >= 0) || part->patch->vertex_count > INT32_MAX - other_count)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the count, or a tolerance or a count that cannot be");
-    skinslide_status status = ss_check_points(points, slider->vertex_count, "points", error);
+    skinslide_status status = ss_check_reads(slider, points, "points", error);
     if (!status)
         status = ss_check_points(others, other_count, "points of the other mesh", error);
     neighbours own = {0};

@@ -256,7 +256,7 @@ skinslide_status skinslide_workspace_least_stretch(skinslide_workspace *workspac
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, points, or place for the least stretch");
     skinslide_status status = ss_check_frame(workspace, error);
     if (!status)
-        status = ss_check_points(points, workspace->slider->vertex_count, "points", error);
+        status = ss_check_reads(workspace->slider, points, "points", error);
     ss_memory memory = {0};
     double *own = SS_NEW(&memory, double, workspace->slider->part_count);
     if (!status && memory.failed)

@@ -279,14 +279,14 @@ static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_me
     return status;
 }
 
-/* The faces that smooth normals of the patches are made of. */
+/* The faces that smooth normals of the patches are made of, and the points of those. */
 static skinslide_status take_around(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error) {
     ss_memory scratch = {0};
     uint8_t *chosen = SS_NEW(&scratch, uint8_t, mesh->vertex_count);
     for (int32_t p = 0; p < slider->part_count && chosen; p++)
         for (int32_t v = 0; v < slider->parts[p].patch->vertex_count; v++)
             chosen[slider->parts[p].patch->mesh_vertex[v]] = 1;
-    bool done = chosen && ss_take_around(mesh, chosen, &slider->memory, &slider->around);
+    bool done = chosen && ss_take_around(mesh, chosen, &slider->memory, &slider->around) && ss_list_reads(slider, mesh, chosen);
     ss_free(&scratch);
     return done ? SKINSLIDE_OK : ss_out_of_memory(error);
 }

@@ -30,6 +30,7 @@ struct skinslide_slider {
     int32_t *weld;         /* [vertex_count] the mesh's; NULL: none */
     ss_topology *topology; /* while the slider is built, once a set-up needs it */
     ss_around around;      /* the patches' vertices, for smooth normals */
+    uint8_t *reads;        /* [vertex_count] of a face at a patch */
 };
 
 /* What is painted on an edge by name, maybe on several copies of it. */
@@ -100,6 +101,13 @@ void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls,
 /* The caller's controls of one frame, in controls [setup_count], and checked. */
 skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
                                         skinslide_controls *controls, skinslide_error *error);
+
+/* ---- reads.c ---- */
+
+/* Fills slider->reads, for patches of the vertices chosen [vertex_count]. False where memory is short. */
+bool ss_list_reads(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen);
+/* Names the first point that a slide reads, and that is not finite. */
+skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error);
 
 /* ---- motion.c ---- */
 

@@ -162,7 +162,7 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     if (!workspace || !points || !slid)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, points, or place for the slid points");
     const skinslide_slider *slider = workspace->slider;
-    skinslide_status status = ss_check_points(points, slider->vertex_count, "points", error);
+    skinslide_status status = ss_check_reads(slider, points, "points", error);
     if (!status && controls)
         status = ss_take_frame_controls(slider, controls, workspace->controls, error);
     if (!status && results && slider->part_count > 0)

@@ -58,7 +58,7 @@ skinslide_status skinslide_workspace_turns(skinslide_workspace *workspace, const
     if (!workspace || !turns)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, or no place for the turns");
     const skinslide_slider *slider = workspace->slider;
-    skinslide_status status = ss_check_points(points, slider->vertex_count, "points", error);
+    skinslide_status status = ss_check_reads(slider, points, "points", error);
     if (!status)
         status = ss_check_frame(workspace, error);
     if (!status)

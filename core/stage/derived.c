@@ -161,10 +161,28 @@ static skinslide_status check_shape(const skinslide_stage_mesh *mesh, const ss_r
                   : ss_check_length(record, length_of_mesh(mesh, layout), element_of(layout), SKINSLIDE_BAD_POINTS, error);
 }
 
-static skinslide_status check_value(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_normals_layout layout,
-                                    skinslide_error *error) {
+/* A primvar keeps the type that it has; of the others USD says which. */
+static bool is_written_double(const ss_input *input, const ss_record *record) {
+    return input->shown.is_primvar && record->value.type == SKINSLIDE_VALUE_DOUBLE;
+}
+
+/* Those that are too long block an output at all times, whatever slides where they are. */
+static skinslide_status check_lengths(const ss_input *input, const ss_record *record, skinslide_error *error) {
+    skinslide_status status = SKINSLIDE_OK;
+    bool is_double = is_written_double(input, record);
+    for (int64_t i = 0; i < record->length && !status; i++) {
+        double vector[3] = {ss_number(record, i, 0), ss_number(record, i, 1), ss_number(record, i, 2)};
+        status = ss_check_vector(vector, is_double, i, error);
+    }
+    return status;
+}
+
+static skinslide_status check_value(const skinslide_stage_mesh *mesh, const ss_input *input, const ss_record *record,
+                                    skinslide_normals_layout layout, skinslide_error *error) {
     skinslide_status status = check_shape(mesh, record, layout, error);
-    return status ? status : ss_check_indices(record, SKINSLIDE_BAD_POINTS, error);
+    if (!status)
+        status = ss_check_indices(record, SKINSLIDE_BAD_POINTS, error);
+    return status || input->kind != SS_KIND_CARRIED ? status : check_lengths(input, record, error);
 }
 
 /* ---- Rates of change ---- */
@@ -239,7 +257,6 @@ static derivation *append(skinslide_stage_derived *derived, const ss_input *inpu
     return made;
 }
 
-/* A primvar keeps the type that it has; of the others USD says which. */
 static void add(skinslide_stage_derived *derived, const ss_input *input, const ss_record *record,
                 skinslide_normals_layout layout, const char *reason) {
     bool is_primvar = input->shown.is_primvar, is_carried = input->kind == SS_KIND_CARRIED && !reason;
@@ -254,7 +271,7 @@ static void add(skinslide_stage_derived *derived, const ss_input *input, const s
         .count = length_of_mesh(derived->mesh, layout),
         .reason = reason ? ss_copy_text(&derived->memory, reason) : NULL,
         .is_carried = is_carried,
-        .is_double = is_carried && is_primvar && record->value.type == SKINSLIDE_VALUE_DOUBLE,
+        .is_double = is_carried && is_written_double(input, record),
     };
 }
 
@@ -272,7 +289,7 @@ static skinslide_status judge(const skinslide_stage_derived *derived, const ss_i
                               skinslide_normals_layout *layout, skinslide_error *error) {
     skinslide_status status = input->kind == SS_KIND_CARRIED ? choose_layout(record, interpolation, layout, error)
                                                              : check_rate(derived, input->pose_count, times, time_count, error);
-    return status ? status : check_value(derived->mesh, record, *layout, error);
+    return status ? status : check_value(derived->mesh, input, record, *layout, error);
 }
 
 /* Normals that the primvar hides are read again where it has to be blocked. */
@@ -340,7 +357,7 @@ skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
     skinslide_error why;
     skinslide_status status = ss_open(value, &record, error);
     for (derivation *own = status ? NULL : derived->first; own; own = own->next) {
-        if (own->input != of || !own->output.pose_count || !check_shape(derived->mesh, &record, own->layout, &why))
+        if (own->input != of || !own->output.pose_count || !check_value(derived->mesh, of, &record, own->layout, &why))
             continue;
         own->output.pose_count = 0, own->output.is_carried = false;
         own->output.reason = ss_copy_text(&derived->memory, why.message);
@@ -449,7 +466,7 @@ skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *de
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
     if (!status)
-        status = check_value(derived->mesh, &record, own->layout, error);
+        status = check_value(derived->mesh, own->input, &record, own->layout, error);
     if (!status && pose_count != output->pose_count)
         status = refuse_count(pose_count, output->pose_count, error);
     const skinslide_stage_pose standard = SKINSLIDE_STAGE_POSE_DEFAULT;
@@ -461,4 +478,40 @@ skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *de
     ss_vectors vectors = output->is_double ? (ss_vectors){NULL, out} : (ss_vectors){out, NULL};
     copy(&record, vectors);
     return compute(derived, own, taken, vectors, error);
+}
+
+/* ---- What is not finite ---- */
+
+static bool is_finite(const ss_record *record, int64_t element) {
+    return isfinite(ss_number(record, element, 0)) && isfinite(ss_number(record, element, 1)) &&
+           isfinite(ss_number(record, element, 2));
+}
+
+static void tell(skinslide_error *told, const ss_record *record, int32_t count, int32_t first) {
+    bool several = count > 1;
+    ss_fail(told, SKINSLIDE_BAD_POINTS, SS_NAMED " has %d value%s not finite, which pass%s as %s: number %d%s is (%g, %g, %g)",
+            SS_NAME(record->value.name), count, several ? "s that are" : " that is", several ? "" : "es",
+            several ? "they are" : "it is", first, several ? ", the first," : "", ss_number(record, first, 0),
+            ss_number(record, first, 1), ss_number(record, first, 2));
+}
+
+skinslide_status skinslide_stage_derived_look(const skinslide_stage_derived *derived, const skinslide_stage_output *output,
+                                              const skinslide_value *value, int32_t *faults, skinslide_error *told,
+                                              skinslide_error *error) {
+    const derivation *own = find(derived, output);
+    if (!own || !faults)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such output, or no place for how many faults it has");
+    ss_record record;
+    skinslide_error why;
+    skinslide_status status = ss_open(value, &record, error);
+    bool can_be_used = !status && !check_value(derived->mesh, own->input, &record, own->layout, &why);
+    int32_t count = 0, first = -1;
+    for (int64_t i = 0; can_be_used && i < record.length; i++)
+        if (!is_finite(&record, i))
+            first = count++ ? first : (int32_t)i;
+    if (!status)
+        *faults = count;
+    if (!status && count)
+        tell(told, &record, count, first);
+    return status;
 }

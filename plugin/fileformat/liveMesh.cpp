@@ -67,7 +67,38 @@ void LiveMesh::say(double time, const std::string &message) {
         if (!_said.insert(_problem.empty() ? frameText(time) : "").second)
             return;
     }
+    warn(time, message);
+}
+
+// One message in all.
+void LiveMesh::sayOnce(const std::string &what, double time, const std::string &message) {
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        if (!_said.insert(what).second)
+            return;
+    }
+    warn(time, message);
+}
+
+void LiveMesh::warn(double time, const std::string &message) const {
     TF_WARN("%s: %s: frame %s: %s", _layerName.c_str(), _mesh->path.GetText(), frameText(time).c_str(), message.c_str());
+}
+
+// Points that pass as they are.
+void LiveMesh::sayFaults(double time, const VtVec3fArray &cached) {
+    int32_t passed = 0;
+    skinslide_error told;
+    if (skinslide_slider_check_points(_slider, floatsOf(cached), &passed, &told, nullptr) == SKINSLIDE_OK && passed)
+        sayOnce("points", time, told.message);
+}
+
+void LiveMesh::sayFaults(const Derived &derived, double time) {
+    int32_t faults = 0;
+    skinslide_error told;
+    if (skinslide_stage_derived_look(_mesh->derivation.get(), derived.output, derived.cached.at(time), &faults, &told,
+                                     nullptr) == SKINSLIDE_OK &&
+        faults)
+        sayOnce(derived.output->name, time, told.message);
 }
 
 // ---- The slider ----
@@ -215,6 +246,7 @@ Frame LiveMesh::slide(double time) {
         throw;
     }
     giveBack(std::move(work));
+    sayFaults(time, cached);
     int arrays = record.value().IsHolding<VtVec3fArray>() ? 1 : 2;
     return {VtValue(slid), cached, turns, (arrays * slid.size() + turns.size()) * sizeof(GfVec3f)};
 }
@@ -271,6 +303,7 @@ VtValue LiveMesh::derived(const Derived &derived, double time) {
         VtVec3dArray doubles(output->is_double ? static_cast<size_t>(output->count) : 0);
         void *out = output->is_double ? static_cast<void *>(doubles.data()) : floats.data();
         call(skinslide_stage_derived_value, _mesh->derivation.get(), output, derived.cached.at(time), poses.data(), count, out);
+        sayFaults(derived, time);
         return output->is_double ? VtValue(doubles) : VtValue(floats);
     } catch (const std::exception &bad) {
         say(time, std::string(output->name) + " cannot be recomputed, so they are blocked here: " + bad.what());

@@ -48,6 +48,10 @@ class LiveMesh {
     Work takeWork();
     void giveBack(Work work);
     void say(double time, const std::string &message);
+    void warn(double time, const std::string &message) const;
+    void sayOnce(const std::string &what, double time, const std::string &message);
+    void sayFaults(double time, const VtVec3fArray &cached);
+    void sayFaults(const Derived &derived, double time);
 
     const std::shared_ptr<const PatchedMesh> _mesh;
     const skinslide_lookup _lookup;

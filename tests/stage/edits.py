@@ -349,6 +349,17 @@ def normals(interpolation: str | None, count: int, times: Iterable[float | None]
     return edit
 
 
+def one_of(attribute: str, index: int, value: tuple, time: float) -> Edit:
+    """One of its vectors at a time."""
+
+    def edit(scene: Scene) -> None:
+        found = np.array(scene.prim.GetAttribute(attribute).Get(time))
+        found[index] = value
+        scene.prim.GetAttribute(attribute).Set(stages.vectors(found), time)
+
+    return edit
+
+
 # ---- Maps ----
 
 

@@ -9,6 +9,8 @@ import rigs
 import stages
 from edits import (
     FACES,
+    INFINITY,
+    NAN,
     PLACE,
     Edit,
     Scene,
@@ -24,6 +26,7 @@ from edits import (
     on_subset,
     over,
     painted,
+    point,
     points_as,
     put,
     ramp,
@@ -454,6 +457,18 @@ REST = [
         rest="rest",
     ),
     Good("rest: on an ancestor, which does not count", inherited("rest", [(0, 0, 0)], type_name=Types.Point3fArray)),
+]
+
+
+FAULTS = [
+    Good(
+        f"points: {fault} off the patch at a frame",
+        all_of(point(0, fault, FRAMES[1]), point(99, fault, FRAMES[2]), *more),
+        shape=lambda: stages.grid(9, 9),
+        faces=lambda: stages.block(9, range(3, 6), range(3, 6)),
+        warns="1 point that no patch uses is not finite, and stays as it is: vertex 0 at (",
+    )
+    for fault, more in ((NAN, [normals("vertex", 100)]), (INFINITY, [subdivided]))
 ]
 
 

@@ -9,6 +9,7 @@ import good_textures
 GOOD = [
     *good_meshes.CHOSEN,
     *good_meshes.POINTS,
+    *good_meshes.FAULTS,
     *good_meshes.REST,
     *good_meshes.TIMES,
     *good_settings.CONTROLS,

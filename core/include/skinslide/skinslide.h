@@ -273,7 +273,8 @@ SKINSLIDE_API skinslide_bool skinslide_weld_wants_poses(const skinslide_weld *we
 /* Shows a pose, in the order of time: points that are apart in it are not one. One thread a weld.
  *   frame   in  its time, for the answer
  *   points  in  [vertex_count][3]
- * Fails with BAD_POINTS (not finite: names the vertex), BAD_ARGUMENT; then the pose was not looked at. */
+ * Fails with BAD_POINTS (a point that shares a place is not finite: names it), BAD_ARGUMENT; then the pose was not looked
+ * at. */
 SKINSLIDE_API skinslide_status skinslide_weld_show(skinslide_weld *weld, double frame, const float *points,
                                                    skinslide_error *error);
 
@@ -366,6 +367,15 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_s
  * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, int32_t patch, int32_t *faces,
                                                             skinslide_error *error);
+
+/* Whether the points of a frame can be slid. Those that no slide reads, of no face at a patch, may hold anything: they pass as
+ * they are.
+ *   points  in  [vertex_count][3]
+ *   passed  out how many of them are not finite
+ *   told    out where there are any, what to warn of: names the first; or NULL
+ * Fails as skinslide_slide does: with BAD_POINTS (not finite: names the vertex), BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, const float *points,
+                                                             int32_t *passed, skinslide_error *told, skinslide_error *error);
 
 /* How many vertices of a patch have a point of another mesh in their place, as where a head and a body meet at the neck.
  *   points     in  [vertex_count][3] the slider's mesh in some pose
@@ -511,9 +521,10 @@ typedef struct skinslide_patch_result {
  *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force
  *                 densities that differ from the set-up's cost a second embedding, since rest is then embedded anew.
  *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches keep their bits
- *                 (but for those welded to one that slides), so do those on the outer boundary or a pinned hole of every
- *                 patch they are in, and so does every vertex when points are the rest points. A vertex that may slide in
- *                 several patches moves by the mean of their displacements, weighted by weight times envelope.
+ *                 (but for those welded to one that slides), finite or not where they are of no face at a patch; so do
+ *                 those on the outer boundary or a pinned hole of every patch they are in, and so does every vertex when
+ *                 points are the rest points. A vertex that may slide in several patches moves by the mean of their
+ *                 displacements, weighted by weight times envelope.
  *   results   out [patch_count], or NULL; only the first need have its size
  * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid to where a float is not: names the
  * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */

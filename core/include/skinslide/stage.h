@@ -561,8 +561,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_take(skinslide_stage_deri
  * nobody knows how to carry, but that follow the skin by their names. Lives as long as derived. */
 SKINSLIDE_API const char *skinslide_stage_derived_warning(const skinslide_stage_derived *derived, int32_t number);
 
-/* Looks at a later sample of an input, once all inputs are taken: a type or a length that it cannot have blocks its output, at
- * all times. What else keeps it from being recomputed skinslide_stage_derived_value says.
+/* Looks at a later sample of an input, once all inputs are taken: what it cannot be, such as of another length, or vectors too
+ * long to be turned, blocks its output, at all times.
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
                                                              const skinslide_stage_input *input, const skinslide_value *value,
@@ -613,6 +613,15 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_sta
                                                              const skinslide_stage_output *output, const skinslide_value *value,
                                                              const skinslide_stage_pose *poses, int32_t pose_count, void *out,
                                                              skinslide_error *error);
+
+/* Looks for vectors or rates in a value of an output that are not finite: they pass as they are.
+ *   value   in  the cache's, of the input that the output is of
+ *   faults  out how many there are; 0 of a value that cannot be used
+ *   told    out where there are any, what to warn of: names the property, and the first; or NULL
+ * Fails with BAD_ARGUMENT. */
+SKINSLIDE_API skinslide_status skinslide_stage_derived_look(const skinslide_stage_derived *derived,
+                                                            const skinslide_stage_output *output, const skinslide_value *value,
+                                                            int32_t *faults, skinslide_error *told, skinslide_error *error);
 
 /* ---- Text ---------------------------------------------------------------------------------------------------------------- */
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -115,6 +115,14 @@ def lines_text(lines: Iterable[str]) -> str:
 
 def errors(problems: Sequence[Problem]) -> list[Problem]:
     return [problem for problem in problems if problem.severity == "error"]
+
+
+def first_of(problems: Iterable[Problem]) -> Iterator[Problem]:
+    """Of problems of one kind, each at a frame, the first, which says at how many more there is one."""
+    there = list(problems)
+    more = len(there) - 1
+    frames = f" (and something like it at {more} more frame{'s' * (more > 1)})" if more > 0 else ""
+    yield from (replace(first, message=first.message + frames) for first in there[:1])
 
 
 def core_problem(prim: str, patches: Sequence[str], message: str, frame: float | None = None) -> Problem:

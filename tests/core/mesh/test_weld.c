@@ -426,6 +426,27 @@ static void points_of_other_meshes_are_counted(void **state) {
     free_mesh(&sheet), free_mesh(&beside);
 }
 
+/* A pose tells nothing of points that share no place, and is not looked at where one that does is not finite. */
+static void faults_are_named_where_they_are_looked_at(void **state) {
+    (void)state;
+    test_mesh grid = quad_grid(3, 4);
+    split_mesh split = split_everywhere(&grid);
+    skinslide_mesh view = view_of(&split.mesh);
+    int32_t *faces = all_faces(&split.mesh);
+    skinslide_patch_setup setup = setup_of(faces, split.mesh.face_count);
+    skinslide_weld *weld;
+    assert_ok(skinslide_weld_create(&view, &setup, 1, 0, &weld, &error), &error);
+    float *pose = copy_points(&split.mesh);
+    pose[3 * 0] = NAN; /* the corner of the grid, of one face */
+    assert_ok(skinslide_weld_show(weld, 1, pose, &error), &error);
+    pose[3 * 1] = NAN;
+    assert_fails(skinslide_weld_show(weld, 1, pose, &error), &error, SKINSLIDE_BAD_POINTS,
+                 "points: vertex 1 is not finite: (nan, 0, 0)");
+    skinslide_weld_destroy(weld);
+    free(pose), free(faces);
+    free_split(&split), free_mesh(&grid);
+}
+
 /* ---- Bad input ---- */
 
 static void bad_input_is_named(void **state) {
@@ -448,7 +469,8 @@ static void bad_input_is_named(void **state) {
     assert_false(skinslide_weld_wants_poses(weld));
     float *pose = copy_points(&grid);
     pose[7] = NAN;
-    assert_fails(skinslide_weld_show(weld, 1, pose, &error), &error, SKINSLIDE_BAD_POINTS, "points: vertex 2 is not finite...");
+    assert_ok(skinslide_weld_show(weld, 1, pose, &error), &error); /* no point that shares its place */
+    assert_fails(skinslide_weld_show(weld, 1, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no points");
     assert_fails(skinslide_weld_get(weld, NULL, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no weld...");
     assert_ok(skinslide_weld_get(weld, one, NULL, &error), &error);
     skinslide_weld_destroy(weld);
@@ -479,6 +501,7 @@ int main(void) {
         cmocka_unit_test(what_welding_would_break_is_named),
         cmocka_unit_test(points_off_the_patches_follow),
         cmocka_unit_test(points_of_other_meshes_are_counted),
+        cmocka_unit_test(faults_are_named_where_they_are_looked_at),
         cmocka_unit_test(bad_input_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -177,11 +177,120 @@ static void diagnostics_are_finite_or_fail(void **state) {
     free_mesh(&mesh);
 }
 
+/* ---- Points that no slide reads ---- */
+
+/* The middle of a grid of 9 x 9 quads, and the points of it beyond the faces around that. */
+enum { SIDE = 9, FIRST = 3, END = 6, READ = 36 };
+
+static skinslide_slider *slider_of_middle(const test_mesh *mesh, skinslide_interpolation interpolation) {
+    int32_t faces[(END - FIRST) * (END - FIRST)], count = 0;
+    for (int32_t j = FIRST; j < END; j++)
+        for (int32_t i = FIRST; i < END; i++)
+            faces[count++] = j * SIDE + i;
+    skinslide_subdivision smooth = SKINSLIDE_SUBDIVISION_DEFAULT;
+    smooth.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK;
+    skinslide_mesh view = view_of(mesh);
+    skinslide_patch_setup setup = setup_of(faces, count);
+    skinslide_slider *slider;
+    skinslide_error error;
+    view.subdivision = &smooth, setup.interpolation = interpolation, setup.rule = SKINSLIDE_RULE_EVEN;
+    assert_ok(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error);
+    return slider;
+}
+
+static bool is_read(int32_t vertex) {
+    int32_t i = vertex % (SIDE + 1), j = vertex / (SIDE + 1);
+    return i >= FIRST - 1 && i <= END + 1 && j >= FIRST - 1 && j <= END + 1;
+}
+
+/* All that comes of a frame: points, turns, diagnostics, the least stretch. */
+typedef struct outcome {
+    float *slid, *turns, *stretch, *slide;
+    double least;
+} outcome;
+
+static outcome outcome_of(const rig *r, const test_mesh *mesh, const float *points) {
+    outcome o = {slide_with(r, mesh, points, NULL, NULL), malloc(POINT_BYTES(mesh)), malloc(POINT_BYTES(mesh)),
+                 malloc(POINT_BYTES(mesh)), 0};
+    skinslide_error error;
+    skinslide_diagnostics wanted = {.size = sizeof wanted, .stretch_after = o.stretch, .slide = o.slide};
+    assert_ok(skinslide_workspace_turns(r->workspace, points, o.turns, &error), &error);
+    assert_ok(skinslide_diagnose(r->slider, NULL, NULL, points, o.slid, &wanted, &error), &error);
+    assert_ok(skinslide_workspace_least_stretch(r->workspace, points, &o.least, &error), &error);
+    return o;
+}
+
+static void free_outcome(outcome *o) {
+    free(o->slid), free(o->turns), free(o->stretch), free(o->slide);
+}
+
+/* With faults beyond, everything at the patch is as without, to the bit, and the faults are as they were. */
+static void faults_off_the_patch_pass(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(SIDE, SIDE);
+    float *clean = random_pose(&mesh, 3), *faulty = copy_points(&mesh);
+    for (skinslide_interpolation way = SKINSLIDE_INTERPOLATION_LINEAR; way <= SKINSLIDE_INTERPOLATION_LIMIT; way++) {
+        rig r = {slider_of_middle(&mesh, way), NULL};
+        skinslide_error error, told;
+        assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
+        memcpy(faulty, clean, POINT_BYTES(&mesh));
+        int32_t passed;
+        assert_ok(skinslide_slider_check_points(r.slider, clean, &passed, &told, &error), &error);
+        assert_int_equal(passed, 0);
+        for (int32_t v = 0; v < mesh.vertex_count; v++)
+            if (!is_read(v))
+                faulty[3 * v + v % 3] = v % 2 ? NAN : INFINITY;
+        outcome a = outcome_of(&r, &mesh, clean), b = outcome_of(&r, &mesh, faulty);
+        assert_same_bytes(a.turns, b.turns, POINT_BYTES(&mesh));
+        assert_true(a.least == b.least);
+        for (int32_t v = 0; v < mesh.vertex_count; v++) {
+            const float *expected = is_read(v) ? a.slid : faulty;
+            assert_same_bytes(b.slid + 3 * v, expected + 3 * v, sizeof(float[3]));
+            assert_true(a.stretch[v] == b.stretch[v] && a.slide[v] == b.slide[v]);
+        }
+        assert_ok(skinslide_slider_check_points(r.slider, faulty, &passed, &told, &error), &error);
+        assert_int_equal(passed, mesh.vertex_count - READ);
+        const char *says = "64 points that no patch uses are not finite, and stay as they are: vertex 0, the first, at (inf, ";
+        assert_memory_equal(told.message, says, strlen(says));
+        free_outcome(&a), free_outcome(&b);
+        free_rig(&r);
+    }
+    free(clean), free(faulty);
+    free_mesh(&mesh);
+}
+
+/* One in a face at the patch, of whose normals it would have a say. */
+static void faults_at_the_patch_fail(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(SIDE, SIDE);
+    rig r = {slider_of_middle(&mesh, SKINSLIDE_INTERPOLATION_LINEAR), NULL};
+    float *points = copy_points(&mesh), *slid = copy_points(&mesh);
+    skinslide_error error;
+    int32_t passed = 7;
+    assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
+    points[3 * 22] = NAN;
+    assert_true(is_read(22));
+    const char *says = "points: vertex 22 is not finite: (nan, 2, 0)";
+    assert_fails(skinslide_slide(r.workspace, points, NULL, slid, NULL, &error), &error, SKINSLIDE_BAD_POINTS, says);
+    assert_fails(skinslide_slider_check_points(r.slider, points, &passed, NULL, &error), &error, SKINSLIDE_BAD_POINTS, says);
+    assert_int_equal(passed, 7);
+    assert_fails(skinslide_slider_check_points(r.slider, NULL, &passed, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no points");
+    points[3 * 22] = 2, points[0] = NAN;
+    skinslide_error told;
+    assert_ok(skinslide_slider_check_points(r.slider, points, &passed, &told, &error), &error);
+    assert_string_equal(told.message, "1 point that no patch uses is not finite, and stays as it is: vertex 0 at (nan, 0, 0)");
+    free(points), free(slid);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_far_away_are_finite_or_fail), cmocka_unit_test(the_vertex_is_named),
         cmocka_unit_test(limit_points_far_away_are_finite),   cmocka_unit_test(rates_are_finite_or_fail),
-        cmocka_unit_test(diagnostics_are_finite_or_fail),
+        cmocka_unit_test(diagnostics_are_finite_or_fail),     cmocka_unit_test(faults_off_the_patch_pass),
+        cmocka_unit_test(faults_at_the_patch_fail),
     };
     return cmocka_run_group_tests_name("finite", tests, NULL, NULL);
 }

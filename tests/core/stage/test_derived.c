@@ -1,6 +1,7 @@
 /* What follows from points: which vectors are carried, which poses a rate takes, and what is blocked or warned of, with why. */
 #include "records.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -152,15 +153,11 @@ static void later_samples_are_looked_at(void **state) {
     scene s = set_up();
     const skinslide_stage_input *primvar = input_of(SKINSLIDE_STAGE_DERIVED, "primvars:", "normals");
     const skinslide_stage_input *velocities = input_of(SKINSLIDE_STAGE_DERIVED, "", "velocities");
-    const int32_t far[VERTICES] = {99};
-    const skinslide_value indices = array_of("indices", SKINSLIDE_VALUE_INT32, 1, VERTICES, far);
     const skinslide_value good = vectors("x", VERTICES), few = vectors("primvars:normals", 5), none = blocked_of("x");
-    const skinslide_value indexed = indexed_by(vectors("x", 1), &indices); /* which are not looked at yet */
     take(&s, "primvars:", "normals", painted_as(vectors("primvars:normals", VERTICES), "vertex"), frames, 4);
     take(&s, "", "normals", vectors("normals", VERTICES), frames, 4);
     take(&s, "", "velocities", vectors("velocities", VERTICES), frames, 4);
     assert_ok(skinslide_stage_derived_check(s.derived, primvar, &good, &error), &error);
-    assert_ok(skinslide_stage_derived_check(s.derived, primvar, &indexed, &error), &error);
     assert_ok(skinslide_stage_derived_check(s.derived, velocities, &good, &error), &error);
     expect(&s, 0, "primvars:normals", 1, NULL);
     expect(&s, 1, "velocities", 2, NULL);
@@ -171,6 +168,54 @@ static void later_samples_are_looked_at(void **state) {
     expect(&s, 1, "velocities", 0, "there is no value");
     expect(&s, 2, "normals", 0, NULL);
     expect_no_more(&s, 3);
+    tear_down(&s);
+}
+
+/* Indices that are out of range at a later sample, and vectors that could not be turned, whether they would be or not. */
+static void later_samples_that_cannot_be_carried(void **state) {
+    (void)state;
+    static const float too_long[3 * VERTICES] = {[7] = FLT_MAX};
+    const int32_t far[VERTICES] = {99};
+    const skinslide_value indices = array_of("indices", SKINSLIDE_VALUE_INT32, 1, VERTICES, far);
+    const skinslide_value bad[] = {indexed_by(vectors("primvars:normals", 1), &indices),
+                                   array_of("primvars:normals", SKINSLIDE_VALUE_FLOAT, 3, VERTICES, too_long)};
+    static const char *const says[] = {"primvars:normals:indices[0] is 99, but primvars:normals has 1 values",
+                                       "vector 2 is too long to be carried: (0, 3.40282e+38, 0)"};
+    const skinslide_stage_input *input = input_of(SKINSLIDE_STAGE_DERIVED, "primvars:", "normals");
+    for (int i = 0; i < 2; i++) {
+        scene s = set_up();
+        take(&s, "primvars:", "normals", painted_as(vectors("primvars:normals", VERTICES), "vertex"), frames, 4);
+        assert_ok(skinslide_stage_derived_check(s.derived, input, &bad[i], &error), &error);
+        expect(&s, 0, "primvars:normals", 0, says[i]);
+        tear_down(&s);
+    }
+}
+
+/* What is not finite passes, and is told of. */
+static void faults_are_counted(void **state) {
+    (void)state;
+    float faulty[3 * VERTICES] = {[1] = NAN};
+    scene s = set_up();
+    skinslide_error told;
+    int32_t faults = 7;
+    const skinslide_value good = painted_as(vectors("primvars:normals", VERTICES), "vertex"), few = vectors("x", 5);
+    const skinslide_value bad = array_of("primvars:normals", SKINSLIDE_VALUE_FLOAT, 3, VERTICES, faulty);
+    take(&s, "primvars:", "normals", good, frames, 4);
+    const skinslide_stage_output *output = skinslide_stage_derived_output(s.derived, 0);
+    assert_ok(skinslide_stage_derived_look(s.derived, output, &good, &faults, &told, &error), &error);
+    assert_int_equal(faults, 0);
+    assert_ok(skinslide_stage_derived_look(s.derived, output, &few, &faults, NULL, &error), &error);
+    assert_int_equal(faults, 0);
+    assert_ok(skinslide_stage_derived_look(s.derived, output, &bad, &faults, &told, &error), &error);
+    assert_int_equal(faults, 1);
+    assert_string_equal(told.message,
+                        "primvars:normals has 1 value that is not finite, which passes as it is: number 0 is (0, nan, 0)");
+    faulty[6] = INFINITY;
+    assert_ok(skinslide_stage_derived_look(s.derived, output, &bad, &faults, &told, &error), &error);
+    assert_string_equal(told.message, "primvars:normals has 2 values that are not finite, which pass as they are: number 0, "
+                                      "the first, is (0, nan, 0)");
+    assert_fails(skinslide_stage_derived_look(NULL, output, &bad, &faults, &told, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no such output, or no place for how many faults it has");
     tear_down(&s);
 }
 
@@ -513,6 +558,8 @@ int main(void) {
         cmocka_unit_test(bad_normals_are_blocked_with_what_they_hide),
         cmocka_unit_test(why_normals_are_blocked),
         cmocka_unit_test(later_samples_are_looked_at),
+        cmocka_unit_test(later_samples_that_cannot_be_carried),
+        cmocka_unit_test(faults_are_counted),
         cmocka_unit_test(normals_are_carried),
         cmocka_unit_test(doubles_are_carried),
         cmocka_unit_test(static_vectors_are_warned_of),

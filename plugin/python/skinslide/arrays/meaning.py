@@ -601,6 +601,12 @@ class DerivedMeaning:
         count = lib.skinslide_stage_derived_times(self.handle.pointer, output.pointer, time, times)
         return list(times[0:count])
 
+    def look(self, output: Output, cached: Value | None) -> str:
+        """What to warn of in a value of the cache: what is not finite and passes as it is; or nothing."""
+        faults, told = ffi.new("int32_t *"), ffi.new("skinslide_error *")
+        _call(lib.skinslide_stage_derived_look, self.handle, output, cached, faults, told)
+        return text(told.message) if faults[0] else ""
+
     def value(self, output: Output, cached: Value | None, poses: Sequence[Pose]) -> np.ndarray:
         """The value at a time, (n, 3) of float32 or, where the output is double, float64. Raises Fault."""
         out = np.empty((output.value_count, 3), np.float64 if output.is_double else np.float32)

@@ -248,6 +248,23 @@ class Slider:
             call(lib.skinslide_workspace_least_stretch, workspace.pointer, cached, writable("double[]", least))
         return tuple(least.tolist())
 
+    def check_points(self, points: npt.ArrayLike) -> str:
+        """Whether a frame can be slid.
+
+        Args:
+            points: Of the deformed mesh (V, 3).
+
+        Returns:
+            What to warn of: points that are not finite and stay as they are, since no patch uses them; or nothing.
+
+        Raises:
+            SliderError: Points that cannot be; the message names the element.
+        """
+        native, passed, told = Arguments(), ffi.new("int32_t *"), ffi.new("skinslide_error *")
+        given = native.points(points, self._sizes.vertices, "points")
+        call(lib.skinslide_slider_check_points, self._slider.pointer, given, passed, told)
+        return text(told.message) if passed[0] else ""
+
     def roughness(self, samples: Sequence[Sample]) -> tuple[Roughness, ...]:
         """How roughly each patch moves at the middle of three times.
 

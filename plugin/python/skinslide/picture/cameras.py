@@ -100,7 +100,7 @@ def to_world(mesh: PatchedMesh, time: Usd.TimeCode) -> np.ndarray:
 def _framed(mesh: PatchedMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:
     """Raises FrameProblem for a pose that cannot be, and SliderError where no camera sees them."""
     up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
-    poses = [mesh.points_at(time) for time in times]
+    poses = [mesh.drawn_points(mesh.points_at(time)) for time in times]
     matrices = np.array([to_world(mesh, time) for time in times])
     shape = Shape(mesh.face_counts, mesh.face_indices)
     try:

@@ -179,12 +179,12 @@ class MeshPictures(MeshMaking):
 
     def _draw(self, canvas: Canvas, moments: list[Moment], frame: SlidFrame) -> Iterator[np.ndarray]:
         """Before and after, series by series, view by view."""
-        measured = frame.measured()
+        measured, drawn = frame.measured(), self._mesh.drawn_points
         for series, moment in zip(self._series, moments, strict=True):
             result = frame.patches[series.index]
             columns = [
-                Column("before", frame.cached, measured.stretch_before, result.stretch_before),
-                Column("after", frame.slid, measured.stretch_after, result.stretch_after),
+                Column("before", drawn(frame.cached), measured.stretch_before, result.stretch_before),
+                Column("after", drawn(frame.slid), measured.stretch_after, result.stretch_after),
             ]
             for view in self._options.views:
                 yield series.draw(canvas, view, moment, columns, self._options.most_stretch)

@@ -288,7 +288,7 @@ class _MeshBake(MeshMaking):
             self._baking.overs.block(attribute)
         if self._mesh.skinning:
             self._baking.overs.end_skinning(self._mesh.prim)
-        return self._derived.problems
+        return [*self._derived.problems, *self._derived.faults()]
 
     def _check_limits(self, time: Usd.TimeCode, frame: SlidFrame) -> None:
         for info, result in zip(self._patches, frame.patches, strict=True):

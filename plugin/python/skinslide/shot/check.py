@@ -278,9 +278,10 @@ def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem
     problems += _overlaps(mesh)
     problems += _neighbours(mesh, slider) if slider else ()
     problems += _cache_problems(mesh)
-    problems += Derived(mesh, between=mesh.interpolates).problems
+    derived = Derived(mesh, between=mesh.interpolates)
+    problems += [*derived.problems, *derived.sample_faults()]
     samples = mesh.sample_times()
-    problems += sample_problems(mesh, samples)
+    problems += sample_problems(mesh, slider, samples)
     try:
         times = mesh.frame_times()
         problems += mesh.between_problems()

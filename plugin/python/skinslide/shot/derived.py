@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.meaning import DerivedMeaning, Output, Pose, inputs
-from skinslide.problems import Fault, Problem
+from skinslide.arrays.meaning import Value as CachedValue
+from skinslide.problems import Fault, Problem, first_of
 from skinslide.shot.products import SlidFrames
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.values import FIRST, Source
@@ -31,6 +32,7 @@ class Derived:
         """between: whether the frames between samples are slid too."""
         self.problems: list[Problem] = []
         self.blocked: list[Usd.Attribute] = []
+        self._faults: dict[str, list[Problem]] = {}  # of each output, at each time at which it has one
         self._mesh = mesh
         self._meaning = DerivedMeaning(mesh.meaning, mesh.points_times(), mesh.stage.GetTimeCodesPerSecond())
         with contextlib.suppress(Fault):  # too many, of which some are named
@@ -70,6 +72,24 @@ class Derived:
                 if output.hidden:
                     self._block(output.hidden)
 
+    def sample_faults(self) -> list[Problem]:
+        """What is not finite in all samples of the cache."""
+        for output in self._recomputed:
+            source = self._sources[output.name]
+            for time in map(Usd.TimeCode, source.samples() or [FIRST]):
+                self._note_faults(output, source.at(time), time)
+        return self.faults()
+
+    def faults(self) -> list[Problem]:
+        """What was not finite in the values so far."""
+        return [first for found in self._faults.values() for first in first_of(found)]
+
+    def _note_faults(self, output: Output, cached: CachedValue | None, time: Usd.TimeCode) -> None:
+        told = self._meaning.look(output, cached)
+        if told:
+            problem = replace(self._mesh.problem(told, time), severity="warning")
+            self._faults.setdefault(output.name, []).append(problem)
+
     def _times_of(self, output: Output, time: Usd.TimeCode) -> list[Usd.TimeCode]:
         if output.pose_count == 1:
             return [time]
@@ -82,7 +102,9 @@ class Derived:
         samples = source.samples() if time.IsDefault() else []
         array = Vt.Vec3dArray if output.is_double else Vt.Vec3fArray
         for sample in map(Usd.TimeCode, samples or [time]):
-            recomputed = self._meaning.value(output, source.at(sample), poses)
+            cached = source.at(sample)
+            recomputed = self._meaning.value(output, cached, poses)
+            self._note_faults(output, cached, sample)
             yield Value(source.attribute, sample, array.FromNumpy(recomputed))
 
     def _block(self, name: str, time: Usd.TimeCode = FIRST, reason: str | None = None) -> None:

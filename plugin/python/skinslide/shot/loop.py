@@ -19,13 +19,14 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from pxr import Usd
 
 from skinslide.arrays.native import Sample
 from skinslide.arrays.slider import Slider
-from skinslide.problems import Problem, StageProblems
+from skinslide.problems import Problem, StageProblems, first_of
 from skinslide.shot.frames import Chunk
 from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
@@ -59,6 +60,7 @@ def slide(
                 for _ in mesh.run(pool, options.jobs):
                     if progress:
                         progress(report.frame_count, total)
+                report.warnings.extend(first_of(mesh.told))
                 report.warnings.extend(problem for made in mesh.makings for problem in made.end())
     return report
 
@@ -90,12 +92,13 @@ class _Mesh(NamedTuple):
     planned: PlannedMesh
     report: MeshReport
     makings: list[MeshMaking]
+    told: list[Problem]  # what to warn of in the points of each frame
 
     @classmethod
     def of(cls, planned: PlannedMesh) -> _Mesh:
         mesh, patches = planned.mesh, planned.slider.patches
         welded = mesh.weld.info.welded_points
-        return cls(planned, MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, welded, patches), [])
+        return cls(planned, MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, welded, patches), [], [])
 
     @property
     def sliders(self) -> list[Slider]:
@@ -118,6 +121,8 @@ class _Mesh(NamedTuple):
             for making, result in zip(self.makings, made.pop(time), strict=True):
                 making.take(time, frames, result)
             self.report.add(frame_of(time), frames[time].patches)
+            if frames[time].told:
+                self.told.append(replace(self.planned.mesh.problem(frames[time].told, time), severity="warning"))
             recent.append((time, frames[time]))
             self._measure_motion(recent)
             yield time

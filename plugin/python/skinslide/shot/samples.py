@@ -2,46 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.native import Controls
-from skinslide.problems import Fault, FrameProblem, Problem
+from skinslide.arrays.slider import Slider
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError, first_of
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.values import FIRST
 
 
-def sample_problems(mesh: PatchedMesh, times: Sequence[float]) -> Iterator[Problem]:
+def sample_problems(mesh: PatchedMesh, slider: Slider | None, times: Sequence[float]) -> Iterator[Problem]:
     """For points, and for each patch, the first problem of a kind, and at how many more frames there is one."""
     codes = [Usd.TimeCode(time) for time in times]
-    yield from _first_of(_points_problem(mesh, code) for code in codes)
+    yield from _by_severity(_points_problem(mesh, slider, code) for code in codes)
     for index, animation in enumerate(mesh.animation):
         moments = codes if animation.varies else [FIRST]
-        found = [_controls_problem(mesh, index, moment) for moment in moments]
-        for severity in ("error", "warning"):
-            yield from _first_of(problem for problem in found if problem and problem.severity == severity)
+        yield from _by_severity(_controls_problem(mesh, index, moment) for moment in moments)
 
 
-def _first_of(found: Iterator[Problem | None]) -> Iterator[Problem]:
+def _by_severity(found: Iterable[Problem | None]) -> Iterator[Problem]:
     there = [problem for problem in found if problem]
-    if not there:
-        return
-    first, more = there[0], len(there) - 1
-    frames = f" (and something like it at {more} more frame{'s' * (more > 1)})" if more else ""
-    yield replace(first, message=first.message + frames)
+    for severity in ("error", "warning"):
+        yield from first_of(problem for problem in there if problem.severity == severity)
 
 
-def _points_problem(mesh: PatchedMesh, time: Usd.TimeCode) -> Problem | None:
+def _points_problem(mesh: PatchedMesh, slider: Slider | None, time: Usd.TimeCode) -> Problem | None:
     try:
-        mesh.meaning.check_points(mesh.points_at(time))
+        points = mesh.points_at(time)
+        if slider is None:
+            mesh.meaning.check_points(points)
+            return None
+        told = slider.check_points(points)
     except FrameProblem as bad:
         return bad.problem
-    except Fault as fault:
+    except (Fault, SliderError) as fault:
         return mesh.problem(str(fault), time)
-    return None
+    return replace(mesh.problem(told, time), severity="warning") if told else None
 
 
 def _controls_problem(mesh: PatchedMesh, index: int, time: Usd.TimeCode) -> Problem | None:

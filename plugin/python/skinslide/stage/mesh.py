@@ -138,6 +138,16 @@ class PatchedMesh:
         except Fault as fault:
             raise FrameProblem(self.problem(str(fault), time)) from fault
 
+    def drawn_points(self, points: np.ndarray) -> np.ndarray:
+        """Points (V, 3) as pictures show them: those off the patches that are not finite where they are at rest."""
+        shown = np.isfinite(points).all(axis=1) | self._patched
+        return np.where(shown[:, None], points, self.rest_points)
+
+    @cached_property
+    def _patched(self) -> np.ndarray:
+        """Which points are of a patch, bool (V,)."""
+        return self.topology.vertices_of(np.concatenate([patch.faces for patch in self.patches]))
+
     @property
     def skeleton(self) -> str:
         """The path of the Skeleton by which UsdSkel skins it; empty: it does not."""

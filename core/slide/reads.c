@@ -1,0 +1,65 @@
+/* Which points of a mesh a slide reads: those of the faces at its patches, which slide, or have a say in normals and limits. Others
+ * pass as they are, whatever they hold. */
+#include "slide.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static bool is_at_patch(const skinslide_mesh *mesh, const int32_t *vertices, int32_t count, const uint8_t *chosen) {
+    for (int32_t k = 0; k < count; k++)
+        if (chosen[ss_one(mesh, vertices[k])])
+            return true;
+    return false;
+}
+
+bool ss_list_reads(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen) {
+    slider->reads = SS_NEW(&slider->memory, uint8_t, mesh->vertex_count);
+    for (int32_t f = 0, c = 0; slider->reads && f < mesh->face_count; c += mesh->face_counts[f++]) {
+        const int32_t *vertices = mesh->face_indices + c;
+        if (!is_at_patch(mesh, vertices, mesh->face_counts[f], chosen))
+            continue;
+        for (int32_t k = 0; k < mesh->face_counts[f]; k++)
+            slider->reads[vertices[k]] = slider->reads[ss_one(mesh, vertices[k])] = 1;
+    }
+    return slider->reads != NULL;
+}
+
+static bool is_finite(const float *point) {
+    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
+}
+
+skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error) {
+    if (!points)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
+    for (int32_t v = 0; v < slider->vertex_count; v++)
+        if (slider->reads[v] && !is_finite(points + 3 * (int64_t)v))
+            return ss_refuse_vertex(what, v, points + 3 * (int64_t)v, 3, SKINSLIDE_BAD_POINTS, error);
+    return SKINSLIDE_OK;
+}
+
+static void tell(skinslide_error *told, const float *points, int32_t count, int32_t first) {
+    const float *at = points + 3 * (int64_t)first;
+    const char *words = count == 1 ? "1 point that no patch uses is not finite, and stays as it is"
+                                   : "points that no patch uses are not finite, and stay as they are";
+    char number[16] = "";
+    if (count > 1)
+        snprintf(number, sizeof number, "%d ", count);
+    ss_fail(told, SKINSLIDE_BAD_POINTS, "%s%s: vertex %d%s at (%g, %g, %g)", number, words, first,
+            count > 1 ? ", the first," : "", (double)at[0], (double)at[1], (double)at[2]);
+}
+
+skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, const float *points, int32_t *passed,
+                                               skinslide_error *told, skinslide_error *error) {
+    if (!slider || !passed)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, or no place for how many points pass");
+    skinslide_status status = ss_check_reads(slider, points, "points", error);
+    int32_t count = 0, first = -1;
+    for (int32_t v = 0; v < slider->vertex_count && !status; v++)
+        if (!is_finite(points + 3 * (int64_t)v))
+            first = count++ ? first : v;
+    if (!status)
+        *passed = count;
+    if (!status && count)
+        tell(told, points, count, first);
+    return status;
+}
