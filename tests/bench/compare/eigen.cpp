@@ -190,8 +190,8 @@ void eigen_frame(Sheet *sheet, const float *points, double *uv, float *slid, dou
     std::vector<std::array<double, 3>> weights(sheet->queries.size());
     for (size_t q = 0; q < sheet->queries.size(); q++) {
         int from = sheet->queries[q].from;
-        sheet->found[q] = walk(*sheet, from < 0 ? 0 : sheet->found[from], &sheet->rest[2 * sheet->queries[q].vertex],
-                               weights[q].data());
+        sheet->found[q] =
+            walk(*sheet, from < 0 ? 0 : sheet->found[from], &sheet->rest[2 * sheet->queries[q].vertex], weights[q].data());
     }
     double located = now();
     std::copy(points, points + 3 * sheet->vertices, slid);
@@ -201,7 +201,8 @@ void eigen_frame(Sheet *sheet, const float *points, double *uv, float *slid, dou
         for (int axis = 0; axis < 3; axis++)
             slid[3 * sheet->queries[q].vertex + axis] =
                 (float)((w[1] * points[3 * corner[0] + axis] + w[2] * points[3 * corner[1] + axis] +
-                         w[0] * points[3 * corner[2] + axis]) / whole);
+                         w[0] * points[3 * corner[2] + axis]) /
+                        whole);
     }
     double end = now();
     seconds[0] = embedded - start, seconds[1] = located - embedded, seconds[2] = end - located;
