@@ -63,6 +63,7 @@ measure limit_distance "${painted[@]/%//stage.usda}"
 measure smoothness "$out"/{elbow,fine_elbow,bicep,sleeve,finger,chequer,face}/stage.usda
 measure normals "$out"/{character,elbow,sleeve,chequer}/stage.usda
 measure surface "$out"/character/stage.usda # the others slide on their limit surface
+measure stability "$out/stability.svg"
 measure rules "$out"/{body,fingers,trunk,torus,elbow,fine_elbow,bicep,face,finger,sleeve,bump}/stage.usda
 echo
 
@@ -82,6 +83,7 @@ Of each example, as elbow:
   character/shot.usda play.txt   a character as its rig has it, set up by a joint; its bake above it, and a live layer on its cache
   shot/play.txt                  shot/shot.usda, played live with nothing baked
 And measured:
+  stability.txt stability.svg    how a triangle turned along a sphere displaces it in the plane, by each kind of weight
   rules.txt                      what each rule makes of them: share of the removable stretch, roughness, folds, cost
   times.txt lookup.txt           milliseconds of each stage of the walk, patch by patch; how much of the lookup the texture finds
   limit_distance.txt surface.txt how far the limit surface moves; how far points slid off the surface of the cache (0)
