@@ -18,6 +18,7 @@ from skinslide.arrays.native import Controls, Lookup
 from skinslide.arrays.records import PatchResult
 from skinslide.arrays.slider import Slider, version
 from skinslide.problems import FrameProblem, Problem, StageProblems, UsageError
+from skinslide.shot.advice import advice
 from skinslide.shot.derived import Derived
 from skinslide.shot.frames import AUTHORED
 from skinslide.shot.loop import slide
@@ -25,7 +26,7 @@ from skinslide.shot.options import ChunkOptions, Frames, LayerOptions, Prims, Sl
 from skinslide.shot.origins import is_whole, record_of
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
-from skinslide.shot.report import BakeReport, MeshReport, roughness_text, stretch_text
+from skinslide.shot.report import MEASURES, BakeReport, MeshReport, roughness_text, stretch_text
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh
@@ -37,6 +38,14 @@ from skinslide.write.target import check_target, hidden_by, spec_path
 
 # Primvars, each with the field of skinslide.arrays.slider.Diagnostics that it holds.
 DIAGNOSTICS = {STRETCH: "stretch_after", SLIDE: "slide"}
+
+# What may be limited at each frame, in words.
+_LIMITED = {
+    "folded": ("{} folded faces", "are"),
+    "clamped": ("{} clamped vertices", "are"),
+    "stretch": ("stretch of {}", "is"),
+    "added_stretch": ("stretch {} above that of the cache", "is"),
+}
 
 
 def bake_to_file(
@@ -251,7 +260,7 @@ class _MeshBake(MeshMaking):
 
     def __init__(self, planned: PlannedMesh, report: MeshReport, baking: _Baking):
         self._mesh, self._patches, self._report, self._baking = planned.mesh, planned.slider.patches, report, baking
-        self._derived = Derived(planned.mesh, between=planned.between)
+        self._slider, self._derived = planned.slider, Derived(planned.mesh, between=planned.between)
         self.turns = self._derived.carries
         self._diagnostics = baking.options.diagnostics
         self.sliders = [_least_slider(planned.mesh)] if baking.options.share else []
@@ -288,7 +297,8 @@ class _MeshBake(MeshMaking):
             self._baking.overs.block(attribute)
         if self._mesh.skinning:
             self._baking.overs.end_skinning(self._mesh.prim)
-        return [*self._derived.problems, *self._derived.faults()]
+        advised = advice(self._mesh, self._patches, self._slider)
+        return [*advised, *self._derived.problems, *self._derived.faults()]
 
     def _check_limits(self, time: Usd.TimeCode, frame: SlidFrame) -> None:
         for info, result in zip(self._patches, frame.patches, strict=True):
@@ -307,16 +317,11 @@ class _MeshBake(MeshMaking):
 
 def _exceeded(result: PatchResult, options: LayerOptions) -> Iterator[str]:
     """What a patch has at a frame that is more than it may be."""
-    added = result.stretch_after - result.stretch_before
-    measures = [
-        (options.max_folded, result.folded_faces, f"{result.folded_faces} folded faces", "are"),
-        (options.max_clamped, result.clamped_vertices, f"{result.clamped_vertices} clamped vertices", "are"),
-        (options.max_stretch, result.stretch_after, f"stretch of {stretch_text(result.stretch_after)}", "is"),
-        (options.max_added_stretch, added, f"stretch added by {stretch_text(added)}", "is"),
-    ]
-    for most, found, what, verb in measures:
+    for name, (words, verb) in _LIMITED.items():
+        most, found = getattr(options, f"max_{name}"), MEASURES[name](result)
         if most is not None and found > most:
-            yield f"{what}, where at most {most:g} {verb} allowed"
+            number = str(found) if isinstance(found, int) else stretch_text(found)
+            yield f"{words.format(number)}, where at most {most:g} {verb} allowed"
 
 
 def _least_slider(mesh: PatchedMesh) -> Slider:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import combinations
 from typing import Any
 
-import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.meaning import Texture
@@ -16,7 +14,6 @@ from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider, choose_lookup
 from skinslide.problems import (
-    FrameProblem,
     Problem,
     SliderError,
     StageProblems,
@@ -25,6 +22,7 @@ from skinslide.problems import (
     frame_text,
     lines_text,
 )
+from skinslide.shot.advice import advice
 from skinslide.shot.candidates import Candidate, find_candidates
 from skinslide.shot.derived import Derived
 from skinslide.shot.plan import read_sliders
@@ -271,13 +269,11 @@ def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Loo
 
 
 def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem]) -> CheckedMesh:
-    patches = [_checked(info) for each in ([slider] if slider else _good_sliders(mesh)) for info in each.patches]
+    pieces = [info for each in ([slider] if slider else _good_sliders(mesh)) for info in each.patches]
+    patches = [_checked(info) for info in pieces]
     for name in dict.fromkeys(patch.name for patch in patches):
         problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
-    problems += _unread(mesh)
-    problems += _overlaps(mesh)
-    problems += _neighbours(mesh, slider) if slider else ()
-    problems += _cache_problems(mesh)
+    problems += advice(mesh, pieces, slider)
     derived = Derived(mesh, between=mesh.interpolates)
     problems += [*derived.problems, *derived.sample_faults()]
     samples = mesh.sample_times()
@@ -330,10 +326,7 @@ def _checked(info: PatchInfo) -> CheckedPatch:
 
 def _patch_problems(mesh: PatchedMesh, pieces: list[CheckedPatch]) -> Iterator[Problem]:
     """What is worth knowing of the pieces of one patch, a line for each kind."""
-    stuck = sum(not piece.free for piece in pieces)
-    where = f"in {stuck} of its {len(pieces)} pieces " if len(pieces) > 1 else ""
     told = {
-        f"nothing can slide {where}since every vertex is on a boundary": stuck,
         "{} edges have no length at rest": sum(piece.zero_length_edges for piece in pieces),
         "{} faces have no area in the rest embedding": sum(piece.collapsed_faces for piece in pieces),
         "{} faces are turned over in the rest embedding": sum(piece.folded_faces for piece in pieces),
@@ -341,45 +334,3 @@ def _patch_problems(mesh: PatchedMesh, pieces: list[CheckedPatch]) -> Iterator[P
     for message, count in told.items():
         if count:
             yield Problem("warning", mesh.path, pieces[0].name, None, message.format(count))
-
-
-def _unread(mesh: PatchedMesh) -> Iterator[Problem]:
-    for patch, animation in zip(mesh.patches, mesh.animation, strict=True):
-        for name in animation.unread():
-            message = f"{name} counts for nothing under the rule {patch.rule}"
-            yield Problem("warning", mesh.path, patch.name, None, message)
-
-
-def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:
-    for a, b in combinations(mesh.patches, 2):
-        if np.intersect1d(a.faces, b.faces).size:
-            shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
-            message = f"overlaps patch {b.name} in {np.count_nonzero(shared)} vertices, which take the mean of both"
-            yield Problem("note", mesh.path, a.name, None, message)
-
-
-def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
-    """Points that another mesh has in the same place: what is open there stays closed as long as they stay."""
-    try:
-        points = mesh.points_at(Usd.TimeCode.EarliestTime())
-    except FrameProblem:
-        return  # which is said of its frame
-    for path, others in mesh.others():
-        found = [slider.neighbours(patch, points, others) for patch in range(len(slider.patches))]
-        for name in dict.fromkeys(patch.name for patch in mesh.patches):
-            of_name = [(each, info) for each, info in zip(found, slider.patches, strict=True) if info.name == name]
-            held, loose = (sum(counts) for counts in zip(*(each for each, _ in of_name), strict=True))
-            if held + loose == sum(info.vertex_count for _, info in of_name):
-                continue  # a copy of the mesh, such as a proxy
-            if held:
-                message = f"{held} border points coincide with points of {path}, and stay with them"
-                yield Problem("note", mesh.path, name, None, message)
-            if loose:
-                message = f"{loose} points that slide coincide with points of {path}, which do not follow"
-                yield Problem("warning", mesh.path, name, None, message)
-
-
-def _cache_problems(mesh: PatchedMesh) -> Iterator[Problem]:
-    if not mesh.skinning and not mesh.points_times() and mesh.rest_source == "points (default)":
-        message = "points have no samples and are themselves the rest points, so nothing slides"
-        yield Problem("warning", mesh.path, None, None, message)

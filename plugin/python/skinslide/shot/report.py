@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
 
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
+from skinslide.arrays.slider import version
 from skinslide.problems import Problem, frame_text, lines_text
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
@@ -30,6 +31,16 @@ _AT_FRAMES = {
 
 
 _NO_STRETCH = 1e-4  # less is not to be seen
+
+
+RECORD = 1  # the version of what --json prints: more where a name goes or means something else
+# Of a frame: what a bake's limits are set to.
+MEASURES: dict[str, Callable[[PatchResult], float]] = {
+    "folded": lambda result: result.folded_faces,
+    "clamped": lambda result: result.clamped_vertices,
+    "stretch": lambda result: result.stretch_after,
+    "added_stretch": lambda result: result.stretch_after - result.stretch_before,
+}
 
 
 @dataclass
@@ -108,6 +119,21 @@ class PatchReport:
     def shares(self) -> list[float]:
         """The share at each frame that has one."""
         return [share for share in map(self.share, self.frames) if share is not None]
+
+    def most(self, measure: str) -> tuple[float, float | None] | None:
+        """How much of what a limit may be set to the patch has at most, and the frame.
+
+        Args:
+            measure: folded, clamped, stretch, added_stretch or roughness.
+
+        Returns:
+            The value and the frame; None where there is none, as roughness of fewer than three frames.
+        """
+        if measure == "roughness":
+            return None if self.roughness is None else (self.roughness, self.roughest)
+        values = [MEASURES[measure](result) for result in self.results]
+        index = int(np.argmax(values))
+        return values[index], self.frames[index]
 
     def milliseconds(self) -> dict[str, np.ndarray]:
         """Time by stage of the walk and in total, frame by frame, (frames,) each."""
@@ -328,15 +354,29 @@ class BakeReport:
         return self.warnings + [problem for prim, patch in patches for problem in patch.problems(prim)]
 
     def as_dict(self) -> dict[str, Any]:
-        """What `--json` prints. Frame None is the default time; stretch is RMS log(length / rest length).
-
-        Roughness is the largest second difference in time of the result over that of the cache, between these frames.
-        """
+        """What `--json` prints, as record.schema.json beside this file says."""
         return {
+            "record": RECORD,
+            "version": version(),
+            "resumed": self.resumed,
+            "worst": {name: self._worst(name) for name in (*MEASURES, "roughness")},
             "meshes": [mesh.as_dict() for mesh in self.meshes],
             "problems": [problem.as_dict() for problem in self.problems],
             **{name: value for made in self.made for name, value in made.as_dict().items()},
         }
+
+    def _worst(self, measure: str) -> dict[str, Any] | None:
+        """Where most of a measure is; None where it is nowhere."""
+        found = [
+            (*most, mesh.path, patch.label)
+            for mesh in self.meshes
+            for patch in mesh.patches
+            if (most := patch.most(measure)) is not None
+        ]
+        if not found:
+            return None
+        value, frame, prim, patch = max(found, key=lambda each: each[0])
+        return {"value": value, "prim": prim, "patch": patch, "frame": frame}
 
     def text(self) -> str:
         """The table for a terminal, every problem, and what was made."""

@@ -1,0 +1,88 @@
+"""What is worth knowing of a mesh and its patches before they are slid, and stops nobody: for checks and bakes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+import numpy as np
+from pxr import Usd
+
+from skinslide.arrays.records import PatchInfo
+from skinslide.arrays.slider import Slider
+from skinslide.problems import FrameProblem, Problem
+from skinslide.stage.mesh import PatchedMesh
+
+
+def advice(mesh: PatchedMesh, pieces: Sequence[PatchInfo], slider: Slider | None) -> Iterator[Problem]:
+    """Warnings and notes, of the pieces of good patches; without a slider of them all, those that need none."""
+    yield from _stuck(mesh.path, pieces)
+    yield from _unread(mesh)
+    yield from _overlaps(mesh)
+    if slider:
+        yield from _neighbours(mesh, slider)
+    yield from _cache_problems(mesh)
+
+
+def _stuck(mesh: str, every: Sequence[PatchInfo]) -> Iterator[Problem]:
+    for name in dict.fromkeys(info.name for info in every):
+        pieces = [info for info in every if info.name == name]
+        stuck = sum(not piece.free_count for piece in pieces)
+        where = f"in {stuck} of its {len(pieces)} pieces " if len(pieces) > 1 else ""
+        if stuck:
+            message = f"nothing can slide {where}since every vertex is on a boundary"
+            yield Problem("warning", mesh, name, None, message)
+
+
+def _unread(mesh: PatchedMesh) -> Iterator[Problem]:
+    for patch, animation in zip(mesh.patches, mesh.animation, strict=True):
+        for name in animation.unread():
+            message = f"{name} counts for nothing under the rule {patch.rule}"
+            yield Problem("warning", mesh.path, patch.name, None, message)
+
+
+def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:
+    taken = np.bincount(np.concatenate([patch.faces for patch in mesh.patches]))
+    if taken.max(initial=0) < 2:
+        return
+    for a, b in combinations(mesh.patches, 2):
+        if np.intersect1d(a.faces, b.faces).size:
+            shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
+            message = f"overlaps patch {b.name} in {np.count_nonzero(shared)} vertices, which take the mean of both"
+            yield Problem("note", mesh.path, a.name, None, message)
+
+
+def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
+    """Points that another mesh has in the same place: what is open there stays closed as long as they stay."""
+    try:
+        points = mesh.points_at(Usd.TimeCode.EarliestTime())
+    except FrameProblem:
+        return  # which is said of its frame
+    for path, others in mesh.others():
+        if _apart(points, others):
+            continue
+        found = [slider.neighbours(patch, points, others) for patch in range(len(slider.patches))]
+        for name in dict.fromkeys(patch.name for patch in mesh.patches):
+            of_name = [(each, info) for each, info in zip(found, slider.patches, strict=True) if info.name == name]
+            held, loose = (sum(counts) for counts in zip(*(each for each, _ in of_name), strict=True))
+            if held + loose == sum(info.vertex_count for _, info in of_name):
+                continue  # a copy of the mesh, such as a proxy
+            if held:
+                message = f"{held} border points coincide with points of {path}, and stay with them"
+                yield Problem("note", mesh.path, name, None, message)
+            if loose:
+                message = f"{loose} points that slide coincide with points of {path}, which do not follow"
+                yield Problem("warning", mesh.path, name, None, message)
+
+
+def _apart(points: np.ndarray, others: np.ndarray) -> bool:
+    """Whether boxes around them are by more than a hundredth of the first."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.01 * np.linalg.norm(high - low)
+    return bool((others.min(axis=0) > high + margin).any() or (others.max(axis=0) < low - margin).any())
+
+
+def _cache_problems(mesh: PatchedMesh) -> Iterator[Problem]:
+    if not mesh.skinning and not mesh.points_times() and mesh.rest_source == "points (default)":
+        message = "points have no samples and are themselves the rest points, so nothing slides"
+        yield Problem("warning", mesh.path, None, None, message)
