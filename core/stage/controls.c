@@ -13,6 +13,7 @@ typedef struct control {
     layout layout; /* of values */
     const float *values;
     float *own;
+    double *plain;        /* of paint that has to be made so */
     const float *product; /* of paint by vertex and its map; NULL: not made yet */
     float *own_product;
     const ss_texture *texture;
@@ -47,7 +48,7 @@ static void start(skinslide_stage_controls *controls, const skinslide_stage_cont
         if (!base)
             continue;
         *own = base->controls[row];
-        own->own = own->own_product = NULL;
+        own->own = own->own_product = NULL, own->plain = NULL;
         own->base_texture = own->texture, own->own_texture = NULL;
     }
     if (base)
@@ -78,17 +79,17 @@ void skinslide_stage_controls_destroy(skinslide_stage_controls *controls) {
 
 /* ---- Paint ---- */
 
-static skinslide_status check_paint(const ss_input *input, const ss_record *record, layout *found, skinslide_error *error) {
-    const skinslide_value *value = &record->value;
-    const char *interpolation = ss_interpolation(record), *name = value->name;
-    if (ss_has_value(record) && (value->type != SKINSLIDE_VALUE_FLOAT || value->width != 1))
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " is " SS_NAMED "; it must be float[]", SS_NAME(name),
-                       SS_NAME(value->type_name));
+static skinslide_status check_paint(const skinslide_stage_patch *patch, const ss_input *input, const ss_record *record,
+                                    layout *found, skinslide_error *error) {
+    const char *interpolation = ss_interpolation(record);
+    skinslide_status status = ss_check_paint_type(patch, record, false, SKINSLIDE_BAD_CONTROL, error);
+    if (status)
+        return status;
     bool is_constant = strcmp(interpolation, "constant") == 0, by_face = strcmp(interpolation, "uniform") == 0;
-    if (!is_constant && strcmp(interpolation, "vertex") != 0 && !(by_face && input->face_place))
+    if (!is_constant && !ss_is_painted_by_vertex(record) && !(by_face && input->face_place))
         return ss_fail(error, SKINSLIDE_BAD_CONTROL,
-                       SS_NAMED " has interpolation " SS_NAMED "; it must be vertex%s or constant", SS_NAME(name),
-                       SS_NAME(interpolation), input->face_place ? " or uniform" : "");
+                       SS_NAMED " has interpolation " SS_NAMED "; it must be vertex, faceVarying%s or constant",
+                       SS_NAME(record->value.name), SS_NAME(interpolation), input->face_place ? ", uniform" : "");
     *found = is_constant ? LAYOUT_NONE : by_face ? LAYOUT_FACE : LAYOUT_VERTEX;
     if (!ss_has_value(record))
         return ss_refuse_empty(record, SKINSLIDE_BAD_CONTROL, error);
@@ -98,7 +99,7 @@ static skinslide_status check_paint(const ss_input *input, const ss_record *reco
 static skinslide_status check_count(const skinslide_stage_patch *patch, const ss_record *record, layout found,
                                     skinslide_error *error) {
     if (found == LAYOUT_VERTEX)
-        return ss_check_length(record, patch->mesh->vertex_count, "points", SKINSLIDE_BAD_CONTROL, error);
+        return ss_check_painted_vertices(patch->mesh, record, SKINSLIDE_BAD_CONTROL, error);
     if (found == LAYOUT_FACE)
         return ss_check_length(record, patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count, "faces", SKINSLIDE_BAD_CONTROL,
                                error);
@@ -118,16 +119,34 @@ static float *own_values(skinslide_stage_controls *controls, int32_t row) {
     return own->own;
 }
 
+/* Paint of one number for each point or face: as it stands, or made so, in memory that is kept as well. */
+static skinslide_status make_plain(skinslide_stage_controls *controls, int32_t row, ss_record *record, skinslide_error *error) {
+    control *own = &controls->controls[row];
+    if (ss_is_plain_paint(record))
+        return SKINSLIDE_OK;
+    if (!own->plain)
+        own->plain = SS_NEW(&controls->memory, double, ss_plain_paint_room(controls->patch->mesh));
+    if (!own->plain)
+        return ss_out_of_memory(error);
+    *record = ss_plain_paint(controls->patch, record, own->plain);
+    return SKINSLIDE_OK;
+}
+
 static skinslide_status bad_number(const ss_input *input, const ss_record *record, int64_t i, skinslide_error *error) {
     return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED "[%lld] is %g; it must be %s", SS_NAME(record->value.name),
                    (long long)i, ss_number(record, i, 0), input->wanted);
+}
+
+/* What becomes of a number: a double may be too large for a float, or too near 0. */
+static double as_float(const ss_record *record, int64_t i) {
+    return (double)(float)ss_number(record, i, 0);
 }
 
 /* Expands what is inside the patch. */
 static skinslide_status expand(const ss_input *input, const ss_record *record, const uint8_t *inside, float *values,
                                skinslide_error *error) {
     for (int64_t i = 0; i < record->length; i++) {
-        double number = inside[i] ? ss_number(record, i, 0) : (double)input->off_patch;
+        double number = inside[i] ? as_float(record, i) : (double)input->off_patch;
         if (inside[i] && !ss_in_range(input->range, number))
             return bad_number(input, record, i, error);
         values[i] = (float)number;
@@ -137,7 +156,7 @@ static skinslide_status expand(const ss_input *input, const ss_record *record, c
 
 static skinslide_status expand_constant(const ss_input *input, const ss_record *record, int32_t count, float *values,
                                         skinslide_error *error) {
-    double number = ss_number(record, 0, 0);
+    double number = as_float(record, 0);
     if (!ss_in_range(input->range, number))
         return bad_number(input, record, 0, error);
     for (int32_t i = 0; i < count; i++)
@@ -145,8 +164,9 @@ static skinslide_status expand_constant(const ss_input *input, const ss_record *
     return SKINSLIDE_OK;
 }
 
-static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
+static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t row, const ss_record *given,
                                    skinslide_error *error) {
+    ss_record own_record = *given, *record = &own_record;
     const skinslide_stage_patch *patch = controls->patch;
     const ss_input *input = &inputs()[row];
     layout found = LAYOUT_NONE;
@@ -154,9 +174,11 @@ static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t r
     own->values = NULL, own->layout = LAYOUT_NONE;
     if (record->value.type == SKINSLIDE_VALUE_NONE)
         return SKINSLIDE_OK;
-    skinslide_status status = check_paint(input, record, &found, error);
+    skinslide_status status = check_paint(patch, input, record, &found, error);
     if (!status)
         status = check_count(patch, record, found, error);
+    if (!status)
+        status = make_plain(controls, row, record, error);
     float *values = status ? NULL : own_values(controls, row);
     if (!status && !values)
         status = ss_out_of_memory(error);

@@ -13,16 +13,6 @@ static int32_t face_count_of(const skinslide_stage_patch *patch) {
 
 /* ---- Chosen by a primvar ---- */
 
-static skinslide_status check_type(const ss_record *record, skinslide_error *error) {
-    const skinslide_value *value = &record->value;
-    bool good = value->type == SKINSLIDE_VALUE_BLOCKED || value->type == SKINSLIDE_VALUE_BOOL ||
-                value->type == SKINSLIDE_VALUE_INT32 || value->type == SKINSLIDE_VALUE_FLOAT;
-    if (!good || (ss_has_value(record) && (!value->is_array || value->width != 1)))
-        return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED " is " SS_NAMED "; it must be bool[], int[] or float[]",
-                       SS_NAME(value->name), SS_NAME(value->type_name));
-    return SKINSLIDE_OK;
-}
-
 static skinslide_status check_finite(const ss_record *record, skinslide_error *error) {
     for (int64_t i = 0; i < record->length; i++)
         if (!isfinite(ss_number(record, i, 0)))
@@ -35,21 +25,21 @@ static skinslide_status check_primvar(const skinslide_stage_patch *patch, const 
                                       skinslide_error *error) {
     const skinslide_value *value = &record->value;
     const char *interpolation = ss_interpolation(record);
-    skinslide_status status = check_type(record, error);
+    skinslide_status status = ss_check_paint_type(patch, record, true, SKINSLIDE_BAD_PATCH, error);
     if (status)
         return status;
     *by_face = strcmp(interpolation, "uniform") == 0;
-    if (!*by_face && strcmp(interpolation, "vertex") != 0)
+    if (!*by_face && !ss_is_painted_by_vertex(record))
         return ss_fail(error, SKINSLIDE_BAD_PATCH,
-                       SS_NAMED " has interpolation " SS_NAMED "; it must be uniform (by face) or vertex", SS_NAME(value->name),
-                       SS_NAME(interpolation));
+                       SS_NAMED " has interpolation " SS_NAMED "; it must be uniform (by face), vertex or faceVarying",
+                       SS_NAME(value->name), SS_NAME(interpolation));
     if (!ss_has_value(record))
         return ss_refuse_empty(record, SKINSLIDE_BAD_PATCH, error);
     status = ss_check_indices(record, SKINSLIDE_BAD_PATCH, error);
     if (status)
         return status;
     return *by_face ? ss_check_length(record, face_count_of(patch), "faces", SKINSLIDE_BAD_PATCH, error)
-                    : ss_check_length(record, patch->mesh->vertex_count, "points", SKINSLIDE_BAD_PATCH, error);
+                    : ss_check_painted_vertices(patch->mesh, record, SKINSLIDE_BAD_PATCH, error);
 }
 
 static bool is_chosen(const skinslide_stage_mesh *mesh, const ss_record *record, bool by_face, int32_t face) {
@@ -63,10 +53,16 @@ static bool is_chosen(const skinslide_stage_mesh *mesh, const ss_record *record,
 }
 
 /* The chosen faces into memory, ascending. */
-static skinslide_status choose(const skinslide_stage_patch *patch, const ss_record *record, ss_memory *memory, ss_array *faces,
+static skinslide_status choose(const skinslide_stage_patch *patch, const ss_record *given, ss_memory *memory, ss_array *faces,
                                skinslide_error *error) {
+    ss_record plain = *given, *record = &plain;
     bool by_face = false;
     skinslide_status status = check_primvar(patch, record, &by_face, error);
+    double *room = status || ss_is_plain_paint(record) ? NULL : SS_NEW(memory, double, ss_plain_paint_room(patch->mesh));
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    if (room)
+        plain = ss_plain_paint(patch, record, room);
     if (!status)
         status = check_finite(record, error);
     if (status)
@@ -116,7 +112,7 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
 /* ---- Painted on points ---- */
 
 static skinslide_status check_painted(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_error *error) {
-    skinslide_status status = check_type(record, error);
+    skinslide_status status = ss_check_paint_type(NULL, record, true, SKINSLIDE_BAD_PATCH, error);
     if (!status)
         status = ss_check_by_vertex(record, "", SKINSLIDE_BAD_PATCH, error);
     if (!status)

@@ -39,6 +39,7 @@ static const ss_input mesh_inputs[SS_MESH_ROWS] = {
     [SS_ROW_WELD] = {MESH_SETTING(SS_MESH_WELD), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_WELD_NUMBER},
     [SS_ROW_WELD_TOLERANCE] = {MESH_SETTING(SS_MESH_WELD_TOLERANCE), .kind = SS_KIND_NUMBER, .range = SS_RANGE_NOT_NEGATIVE,
                                .wanted = not_negative, .fallback = SS_MESH_WELD_TOLERANCE_NUMBER},
+    [SS_ROW_FOLD_CASE] = {MESH_SETTING(SS_MESH_FOLD_CASE), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_FOLD_CASE_NUMBER},
     [SS_ROW_COMPARE_REST] = {MESH_SETTING(SS_MESH_COMPARE_REST), .kind = SS_KIND_NUMBER,
                              .fallback = SS_MESH_COMPARE_REST_NUMBER},
 };
@@ -73,6 +74,7 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
 #define PAINT(name)       PRIMVAR(name, "float[]", SKINSLIDE_STAGE_CONTROLS, SKINSLIDE_STAGE_ANIMATED, 1), .kind = SS_KIND_PAINT
 
 static const ss_input patch_inputs[SS_PATCH_ROWS] = {
+    [SS_ROW_CHANNEL] = {SETTING(SS_PATCH_PAINT_CHANNEL), .kind = SS_KIND_CHOICE},
     [SS_ROW_FACES] = {PRIMVAR("patch", "bool[]", SKINSLIDE_STAGE_PATCH, SKINSLIDE_STAGE_STILL, 0), .kind = SS_KIND_FACES},
     [SS_ROW_BOUNDARY] = {SETTING(SS_PATCH_BOUNDARY), .kind = SS_KIND_CHOICE, .rules = SS_PLANE},
     [SS_ROW_HOLES] = {SETTING(SS_PATCH_HOLES), .kind = SS_KIND_CHOICE},

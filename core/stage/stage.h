@@ -134,6 +134,7 @@ enum {
     SS_ROW_DEFAULT_POINTS,
     SS_ROW_WELD,
     SS_ROW_WELD_TOLERANCE,
+    SS_ROW_FOLD_CASE,
     SS_ROW_COMPARE_REST, /* after all that it compares */
     SS_MESH_ROWS
 };
@@ -150,6 +151,7 @@ enum {
     SS_SUBDIVISION_ROWS
 };
 enum {
+    SS_ROW_CHANNEL, /* before the paint that it is of */
     SS_ROW_FACES,
     SS_ROW_BOUNDARY,
     SS_ROW_HOLES,
@@ -241,6 +243,7 @@ struct skinslide_stage_mesh {
     int32_t rest_row; /* of the candidate that counts, good or bad; -1: none yet */
     bool left_handed;
     double weld, weld_tolerance; /* whether points in one place are one, and how near that is */
+    double fold_case;            /* whether names of paint count in any case */
     double compare_rest;         /* whether rest is to be compared with the cache */
     float *first;                /* [vertex_count][3] points of the first time */
     const char *warning;         /* NULL: none */
@@ -283,6 +286,22 @@ struct skinslide_stage_patch {
     double unlike;          /* the factor by which rest differs, where sliding is senseless; 0: it is not */
     const char *warning;    /* NULL: none */
 };
+
+/* ---- paint.c ---- */
+
+/* Checks that a record is of real numbers, or of what chooses faces, of which one counts for each element. patch: which says what
+ * channel that is; NULL: none does. */
+skinslide_status ss_check_paint_type(const skinslide_stage_patch *patch, const ss_record *record, bool of_faces,
+                                     skinslide_status status, skinslide_error *error);
+/* Whether it is by point, or by face corner, which is averaged to points; and that it then has one for each. */
+bool ss_is_painted_by_vertex(const ss_record *record);
+skinslide_status ss_check_painted_vertices(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_status status,
+                                           skinslide_error *error);
+/* Whether it has one number for each point, for each face or for all, as it stands. */
+bool ss_is_plain_paint(const ss_record *record);
+/* The same as a record that has, of doubles in room; and how many of these that takes. */
+ss_record ss_plain_paint(const skinslide_stage_patch *patch, const ss_record *record, double *room);
+int64_t ss_plain_paint_room(const skinslide_stage_mesh *mesh);
 
 /* faces.c */
 skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_record *record, skinslide_error *error);

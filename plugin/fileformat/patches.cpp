@@ -85,11 +85,11 @@ void addUntiled(const Property &texture, std::set<std::string> *files) {
 Patch::Patch(Composition &composition, const Prim &prim, const skinslide_stage_mesh *mesh, const std::string &name,
              const skinslide_stage_live &live)
     : _name(name), _patch(make<PatchHandle>(skinslide_stage_patch_create, mesh, name.c_str(), &live)) {
-    for (const Property &setting : properties(composition, prim, SKINSLIDE_STAGE_PATCH, name))
+    for (const Property &setting : properties(composition, prim, SKINSLIDE_STAGE_PATCH, name, _patch.get()))
         setting.give(_patch.get(), skinslide_stage_patch_take, skinslide_stage_patch_check);
     giveSubset(composition, prim);
     _first = make<ControlsHandle>(skinslide_stage_controls_create, _patch.get(), nullptr);
-    _controls = properties(composition, prim, SKINSLIDE_STAGE_CONTROLS, name);
+    _controls = properties(composition, prim, SKINSLIDE_STAGE_CONTROLS, name, _patch.get());
     for (const Property &control : _controls) {
         call(skinslide_stage_controls_take, _first.get(), control.input(), control.first());
         if (skinslide_stage_is_texture(control.input()))

@@ -99,9 +99,43 @@ void Record::take() {
 
 // ---- Properties ----
 
-Property::Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch)
+namespace {
+
+// The property of a prim that an input of a patch is; empty where it has none.
+TfToken paintedName(const Prim &prim, const skinslide_stage_input *input, const skinslide_stage_patch *meaning) {
+    TfTokenVector properties = prim.propertyNames();
+    std::vector<const char *> words;
+    for (const TfToken &property : properties)
+        words.push_back(property.GetText());
+    int32_t found = -1;
+    while ((found = skinslide_stage_patch_property(meaning, input, words.data(), static_cast<int32_t>(words.size()))) >= 0) {
+        Attribute attribute = prim.attribute(TfToken(words[static_cast<size_t>(found)]));
+        if (attribute.authored() || attribute.clipped())
+            return TfToken(attribute.name());
+        words.erase(words.begin() + found);
+    }
+    return TfToken();
+}
+
+// The same of a prim or, where that is inherited, of the nearest that it is below and that has any; else the schema's own name.
+TfToken nameOf(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch,
+               const skinslide_stage_patch *meaning) {
+    TfToken own(input->prefix + (patch.empty() ? "" : patch + ":") + input->name);
+    if (!meaning || !input->is_primvar)
+        return own;
+    TfToken found = paintedName(prim, input, meaning);
+    SdfPath path = input->is_inherited ? prim.path().GetParentPath() : SdfPath();
+    for (; found.IsEmpty() && path.IsPrimPath(); path = path.GetParentPath())
+        found = paintedName(composition.prim(path), input, meaning);
+    return found.IsEmpty() ? own : found;
+}
+
+} // namespace
+
+Property::Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch,
+                   const skinslide_stage_patch *meaning)
     : _input(input) {
-    TfToken name(input->prefix + (patch.empty() ? "" : patch + ":") + input->name);
+    TfToken name = nameOf(composition, prim, input, patch, meaning);
     Prim owner = input->is_inherited ? ownerOf(composition, prim, name) : prim;
     _values = owner.attribute(name);
     if (input->is_primvar)
@@ -134,11 +168,11 @@ std::vector<double> Property::samples() const {
 }
 
 std::vector<Property> properties(Composition &composition, const Prim &prim, skinslide_stage_group group,
-                                 const std::string &patch) {
+                                 const std::string &patch, const skinslide_stage_patch *meaning) {
     std::vector<Property> found;
     const skinslide_stage_input *input = nullptr;
     while ((input = skinslide_stage_next_input(group, input)))
-        found.emplace_back(composition, prim, input, patch);
+        found.emplace_back(composition, prim, input, patch, meaning);
     return found;
 }
 

@@ -76,9 +76,11 @@ class Record {
 class Property {
   public:
     Property() = default;
-    // patch  whose input it is; empty: the mesh's own
+    // patch    whose input it is; empty: the mesh's own
+    // meaning  of that patch, which knows the names that its paint may have; null: the schema's alone
     // Throws Fault where it is authored as something that this reader cannot read.
-    Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch = "");
+    Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch = "",
+             const skinslide_stage_patch *meaning = nullptr);
 
     const skinslide_stage_input *input() const {
         return _input;
@@ -121,7 +123,7 @@ class Property {
 
 // Every property of a group, in the order in which the core wants them. Throws Fault.
 std::vector<Property> properties(Composition &composition, const Prim &prim, skinslide_stage_group group,
-                                 const std::string &patch = "");
+                                 const std::string &patch = "", const skinslide_stage_patch *meaning = nullptr);
 
 // The prim that an inherited primvar comes from: the nearest ancestor that has any, where that is constant; else the prim
 // itself.

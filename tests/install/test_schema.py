@@ -34,6 +34,7 @@ FALLBACKS = {
     "weightMapChannel": None,
     "holdMap": None,
     "holdMapChannel": None,
+    "paintChannel": "none",
     "mapSt": "st",
 }
 

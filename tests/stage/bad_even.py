@@ -65,7 +65,7 @@ EVEN = [
     Bad(
         "hold: interpolation",
         painted(HOLD, "uniform", floats(36)),
-        f"primvars:{HOLD} has interpolation uniform; it must be vertex or constant",
+        f"primvars:{HOLD} has interpolation uniform; it must be vertex, faceVarying or constant",
     ),
     Bad("hold: a map that is missing", all_of(st(), mapped("hold", "./m.exr")), f"{HOLD_AT}: there is no such file"),
     Bad(

@@ -10,6 +10,7 @@ from edits import (
     FACES,
     INFINITY,
     NAN,
+    PLACE,
     Edit,
     Scene,
     Types,
@@ -220,12 +221,13 @@ CHOSEN = [
     Bad(
         "faces: type",
         put(FACES, Types.Color3fArray, "uniform", [Gf.Vec3f(1)] * 36),
-        f"primvars:{FACES} is color3f[]; it must be bool[], int[] or float[]",
+        f"primvars:{FACES} is color3f[]; it must be bool[], int[] or float[], or "
+        f"{PLACE}:paintChannel must name the channel that counts",
     ),
     Bad(
-        "faces: double",
-        put(FACES, Types.DoubleArray, "uniform", Vt.DoubleArray([1.0] * 36)),
-        f"primvars:{FACES} is double[]; it must be bool[], int[] or float[]",
+        "faces: unsigned",
+        put(FACES, Types.UIntArray, "uniform", Vt.UIntArray([1] * 36)),
+        f"primvars:{FACES} is uint[]; it must be bool[], int[] or float[]",
     ),
     Bad(
         "faces: no array",
@@ -234,13 +236,13 @@ CHOSEN = [
     ),
     Bad(
         "faces: interpolation",
-        put(FACES, Types.BoolArray, "faceVarying", [True] * 144),
-        f"primvars:{FACES} has interpolation faceVarying; it must be uniform (by face) or vertex",
+        put(FACES, Types.BoolArray, "constant", [True]),
+        f"primvars:{FACES} has interpolation constant; it must be uniform (by face), vertex or faceVarying",
     ),
     Bad(
         "faces: no interpolation",
         put(FACES, Types.BoolArray, "constant", [True] * 36),
-        f"primvars:{FACES} has interpolation constant; it must be uniform (by face) or vertex",
+        f"primvars:{FACES} has interpolation constant; it must be uniform (by face), vertex or faceVarying",
     ),
     Bad(
         "faces: interpolation of another case",
@@ -248,7 +250,7 @@ CHOSEN = [
             put(FACES, Types.BoolArray, "uniform", [True] * 36),
             lambda scene: scene.prim.GetAttribute(f"primvars:{FACES}").SetMetadata("interpolation", "Uniform"),
         ),
-        f"primvars:{FACES} has interpolation Uniform; it must be uniform (by face) or vertex",
+        f"primvars:{FACES} has interpolation Uniform; it must be uniform (by face), vertex or faceVarying",
     ),
     Bad("faces: not a number", painted(FACES, "uniform", floats(36, 7, NAN)), f"primvars:{FACES}[7] is nan"),
     Bad(

@@ -1,5 +1,7 @@
 """Controls and settings of a patch that cannot be used."""
 
+from pxr import Gf
+
 from edits import (
     DENSITY,
     FARTHEST,
@@ -81,8 +83,8 @@ CONTROLS = [
     ),
     Bad(
         "density: interpolation",
-        painted(DENSITY, "faceVarying", floats(144)),
-        f"primvars:{DENSITY} has interpolation faceVarying; it must be vertex or uniform or constant",
+        painted(DENSITY, "faceVarying", floats(49)),
+        f"primvars:{DENSITY} has 49 values, but the mesh has 144 face corners",
     ),
     Bad(
         "density: type",
@@ -145,12 +147,33 @@ CONTROLS = [
     Bad(
         "weight: interpolation",
         painted(WEIGHT, "uniform", floats(36)),
-        f"primvars:{WEIGHT} has interpolation uniform; it must be vertex or constant",
+        f"primvars:{WEIGHT} has interpolation uniform; it must be vertex, faceVarying or constant",
     ),
     Bad(
-        "weight: varying",
-        painted(WEIGHT, "varying", floats(49)),
-        f"primvars:{WEIGHT} has interpolation varying; it must be vertex or constant",
+        "weight: corners",
+        painted(WEIGHT, "faceVarying", floats(49)),
+        f"primvars:{WEIGHT} has 49 values, but the mesh has 144 face corners",
+    ),
+    Bad(
+        "weight: underscores",
+        painted(WEIGHT.replace(":", "_"), "vertex", floats(48)),
+        f"primvars:{WEIGHT.replace(':', '_')} has 48 values, but the mesh has 49 points",
+    ),
+    Bad(
+        "paint: a channel that is none",
+        retyped(f"{PLACE}:paintChannel", Types.Token, "red"),
+        f"{PLACE}:paintChannel is 'red'; it must be one of none, r, g, b, a",
+    ),
+    Bad(
+        "paint: a channel that colours have not",
+        all_of(put(WEIGHT, Types.Color3fArray, "vertex", [Gf.Vec3f(1)] * 49), setting("paintChannel", "a")),
+        f"primvars:{WEIGHT} is color3f[], which has no channel a; {PLACE}:paintChannel names it",
+    ),
+    Bad(
+        "paint: folding that is neither",
+        retyped("skinSlide:foldCase", Types.Token, "yes"),
+        "skinSlide:foldCase is 'yes'; it must be a bool",
+        None,
     ),
     Bad(
         "weight: indexed badly",

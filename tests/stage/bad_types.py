@@ -80,14 +80,20 @@ TYPES = [
         None,
     ),
     Bad(
-        "type: weight, double",
-        put(WEIGHT, Types.DoubleArray, "vertex", Vt.DoubleArray([1.0] * 49)),
-        f"primvars:{WEIGHT} is double[]; it must be float[]",
+        "type: weight, double beyond float",
+        put(WEIGHT, Types.DoubleArray, "vertex", Vt.DoubleArray([1.0] * 48 + [1e300])),
+        f"primvars:{WEIGHT}[48] is 1e+300; it must be a number",
     ),
     Bad(
-        "type: max distance, half",
-        put(FARTHEST, Types.HalfArray, "vertex", Vt.HalfArray([1.0] * 49)),
-        f"primvars:{FARTHEST} is half[]; it must be float[]",
+        "type: max distance, whole numbers",
+        put(FARTHEST, Types.IntArray, "vertex", Vt.IntArray([1] * 49)),
+        f"primvars:{FARTHEST} is int[]; it must be float[]",
+    ),
+    Bad(
+        "type: weight, a colour without a channel",
+        put(WEIGHT, Types.Color3fArray, "vertex", [Gf.Vec3f(1)] * 49),
+        f"primvars:{WEIGHT} is color3f[]; it must be float[], or "
+        f"{PLACE}:paintChannel must name the channel that counts",
     ),
     Bad(
         "type: subset beyond int",

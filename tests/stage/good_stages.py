@@ -3,6 +3,7 @@
 import good_derived
 import good_even
 import good_meshes
+import good_paint
 import good_settings
 import good_textures
 
@@ -14,6 +15,7 @@ GOOD = [
     *good_meshes.TIMES,
     *good_settings.CONTROLS,
     *good_settings.SETTINGS,
+    *good_paint.PAINT,
     *good_textures.TEXTURES,
     *good_derived.DERIVED,
     *good_even.EVEN,

@@ -10,7 +10,7 @@
  *     2. skinslide_stage_mesh_create, and each input of the group MESH to skinslide_stage_mesh_take.
  *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, the child
  *        prim of the patch's name to skinslide_stage_patch_take_subset and, where there is one, each input of the group SUBSET
- *        to skinslide_stage_patch_take.
+ *        to skinslide_stage_patch_take. Paint, here and in 4, is found by skinslide_stage_patch_property.
  *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
  *        skinslide_stage_controls_take; then, for textures, the input that skinslide_stage_controls_coordinates gives, and the
  *        files that skinslide_stage_controls_need asks for.
@@ -366,6 +366,22 @@ typedef struct skinslide_stage_subset {
  * Fails with BAD_PATCH (no such child, no GeomSubset), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
+
+/* Paint counts under the schema's name, else under that with underscores for colons, as tools leave it that know no namespaces
+ * (primvars:skinSlide_elbow_L_weight); else, where skinSlide:foldCase is on, under either in another case.
+ *   input  in  of the group PATCH or CONTROLS
+ *   names  in  [count] the properties of a prim that have values, in any order
+ * Returns which of them the input is; -1: none, and always where it is no primvar. */
+SKINSLIDE_API int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
+                                                     const char *const *names, int32_t count);
+
+/* What there is to say of paint that is not as the schema has it: its name, its type, the channel that counts, its mean.
+ *   value  in   of an input of the group PATCH or CONTROLS
+ *   text   out  [512] "weight comes from primvars:skinSlide_elbow_L_weight, color3f[], channel r"
+ * Returns 0, and leaves text alone, where it is as the schema has it, or no primvar. */
+SKINSLIDE_API skinslide_bool skinslide_stage_patch_describe(const skinslide_stage_patch *patch,
+                                                            const skinslide_stage_input *input, const skinslide_value *value,
+                                                            char text[512]);
 
 /* The faces of the patch so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before. They are
  * those chosen and, once its grow and its rule are taken, those that join them.

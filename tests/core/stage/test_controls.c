@@ -186,11 +186,14 @@ static void bad_paint_is_named(void **state) {
     skinslide_value good = painted_as(FLOATS(WEIGHT, 1, 1, 1, 1, 1, 1), "vertex"), wide = painted_as(good, "vertex");
     wide.width = 2, wide.type_name = "float2[]";
     expect(&s, "weight", painted_as(INTS(WEIGHT, 1), "vertex"), WEIGHT " is int[]; it must be float[]");
-    expect(&s, "weight", wide, WEIGHT " is float2[]; it must be float[]");
+    expect(&s, "weight", wide,
+           WEIGHT " is float2[]; it must be float[], or skinSlide:elbow:paintChannel must name the channel that counts");
     expect(&s, "weight", other_of(WEIGHT, "string"), WEIGHT " is string; it must be float[]");
-    expect(&s, "weight", painted_as(good, "uniform"), WEIGHT " has interpolation uniform; it must be vertex or constant");
-    expect(&s, "forceDensity", painted_as(good, "faceVarying"),
-           WEIGHT " has interpolation faceVarying; it must be vertex or uniform or constant");
+    expect(&s, "weight", painted_as(good, "uniform"),
+           WEIGHT " has interpolation uniform; it must be vertex, faceVarying or constant");
+    expect(&s, "weight", painted_as(good, "faceVarying"), WEIGHT " has 6 values, but the mesh has 8 face corners");
+    expect(&s, "forceDensity", painted_as(good, "sideways"),
+           WEIGHT " has interpolation sideways; it must be vertex, faceVarying, uniform or constant");
     expect(&s, "weight", painted_as(blocked_of(WEIGHT), "vertex"), WEIGHT " has no value");
     expect(&s, "weight", painted_as(FLOATS(WEIGHT, 1, 1), "vertex"), WEIGHT " has 2 values, but the mesh has 6 points");
     expect(&s, "forceDensity", painted_as(FLOATS(DENSITY, 1), "uniform"), DENSITY " has 1 values, but the mesh has 2 faces");

@@ -113,11 +113,13 @@ static void bad_primvars_are_named(void **state) {
     skinslide_value colours = painted_as(other_of(PRIMVAR, "color3f[]"), "uniform"), wide = colours;
     wide.type = SKINSLIDE_VALUE_FLOAT, wide.width = 3, wide.data = (float[3]){0};
     expect(&s, colours, PRIMVAR " is color3f[]; it must be bool[], int[] or float[]");
-    expect(&s, wide, PRIMVAR " is color3f[]; it must be bool[], int[] or float[]");
+    expect(&s, wide,
+           PRIMVAR
+           " is color3f[]; it must be bool[], int[] or float[], or skinSlide:elbow:paintChannel must name the channel that "
+           "counts");
     expect(&s, painted_as(NUMBER(PRIMVAR, 1), "uniform"), PRIMVAR " is float; it must be bool[], int[] or float[]");
-    expect(&s, painted_as(INTS(PRIMVAR, 1), "faceVarying"),
-           PRIMVAR " has interpolation faceVarying; it must be uniform (by face) or vertex");
-    expect(&s, INTS(PRIMVAR, 1), PRIMVAR " has interpolation constant; it must be uniform (by face) or vertex");
+    expect(&s, painted_as(INTS(PRIMVAR, 1), "faceVarying"), PRIMVAR " has 1 values, but the mesh has 24 face corners");
+    expect(&s, INTS(PRIMVAR, 1), PRIMVAR " has interpolation constant; it must be uniform (by face), vertex or faceVarying");
     expect(&s, painted_as(blocked_of(PRIMVAR), "uniform"), PRIMVAR " has no value");
     expect(&s, painted_as(INTS(PRIMVAR, 1), "uniform"), PRIMVAR " has 1 values, but the mesh has 6 faces");
     expect(&s, painted_as(INTS(PRIMVAR, 1), "vertex"), PRIMVAR " has 1 values, but the mesh has 12 points");

@@ -415,6 +415,18 @@ class PatchMeaning(Taker):
             found.append(_input(each))
         return found
 
+    def property_of(self, source: Input, names: Sequence[str]) -> str | None:
+        """Which of the properties of a prim that have values is an input; None: none, or it is no primvar."""
+        native, given = _Native(), list(names)
+        found = lib.skinslide_stage_patch_property(self.handle.pointer, source.pointer, native.of(given), len(given))
+        return None if found < 0 else names[found]
+
+    def describe(self, source: Input, value: Value) -> str:
+        """What there is to say of paint that is not as the schema has it, or nothing."""
+        native, words = _Native(), ffi.new("char[512]")
+        said = lib.skinslide_stage_patch_describe(self.handle.pointer, source.pointer, native.of(value), words)
+        return text(words) if said else ""
+
     @property
     def needs_subdivision(self) -> bool:
         return bool(lib.skinslide_stage_patch_needs_subdivision(self.handle.pointer))
@@ -633,6 +645,7 @@ class _Native:
             File: self._file,
             PrimFacts: self._facts,
             _Poses: self._poses,
+            list: self._texts,
             Handle: lambda handle: handle.pointer,
             Input: lambda source: source.pointer,
             Output: lambda output: output.pointer,

@@ -18,7 +18,7 @@ class SkinSlideAPI(AppliedPatch):
     overlap.
 
     What is painted on patch NAME lives in primvars, which the schema of a patch cannot declare:
-    - primvars:skinSlide:NAME:patch: the faces. bool[], int[] or float[]; uniform: faces of value above 0; vertex:
+    - primvars:skinSlide:NAME:patch: the faces. bool[], int[] or numbers; uniform: faces of value above 0; vertex:
       faces whose points are all above 0. Where it is absent, the GeomSubset child called NAME (elementType face)
       gives them. Faces that fall into several pieces are several patches with the same settings.
     - primvars:skinSlide:NAME:weight: how far each point slides, 0 to 1. float, vertex or constant; may be animated.
@@ -31,6 +31,11 @@ class SkinSlideAPI(AppliedPatch):
     - primvars:skinSlide:NAME:hold: how much each point keeps to how its neighbours slide, under the rules relaxed
       and even: low where surplus skin is to come from, high where it must not. float above 0, vertex or constant;
       may be animated. Absent: 1.
+
+    Numbers are half, float or double; of pairs and colours the one that paintChannel names counts. What is
+    faceVarying counts as its mean over the face corners at each point. Tools that know no namespaces may leave paint
+    as primvars:skinSlide_NAME_weight, with underscores for all colons of the name but the first. check says what it
+    took.
 
     A bake with --diagnostics writes what it did to each point of the mesh beside the points:
     primvars:skinSlide:stretch, the RMS of log(length / rest length) over the edges of patches at the point, and
@@ -499,6 +504,33 @@ class SkinSlideAPI(AppliedPatch):
         """
         return self._create_attribute("holdMapChannel", defaultValue, writeSparsely)
 
+    def GetPaintChannelAttr(self) -> Usd.Attribute:
+        """Of paint with several numbers for each point, such as a colour.
+
+        The one that counts, r the first, g the second. none: paint must have one.
+
+        Returns:
+            The attribute skinSlide:NAME:paintChannel, token, uniform; not valid where there is none.
+        """
+        return self._attribute("paintChannel")
+
+    def CreatePaintChannelAttr(
+        self, defaultValue: Literal["none", "r", "g", "b", "a"] | None = None, writeSparsely: bool = False
+    ) -> Usd.Attribute:
+        """Authors skinSlide:NAME:paintChannel in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, token, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("paintChannel", defaultValue, writeSparsely)
+
     def GetMapStAttr(self) -> Usd.Attribute:
         """The primvar with the texture coordinates at which all maps are sampled.
 
@@ -528,7 +560,7 @@ class SkinSlideAPI(AppliedPatch):
     def GetPatchPrimvar(self) -> UsdGeom.Primvar:
         """The faces.
 
-        bool[], int[] or float[]; uniform: faces of value above 0; vertex: faces whose points are all above 0. Where
+        bool[], int[] or numbers; uniform: faces of value above 0; vertex: faces whose points are all above 0. Where
         it is absent, the GeomSubset child called NAME (elementType face) gives them. Faces that fall into several
         pieces are several patches with the same settings.
 
@@ -756,6 +788,31 @@ class SkinSlideMeshAPI(AppliedSchema):
             UsageError: The value is of another kind.
         """
         return self._create_attribute("weldTolerance", defaultValue, writeSparsely)
+
+    def GetFoldCaseAttr(self) -> Usd.Attribute:
+        """Whether paint counts under names in any case.
+
+        Some tools write skinslide_elbow_l_weight for skinSlide:elbow_L:weight.
+
+        Returns:
+            The attribute skinSlide:foldCase, bool, uniform; not valid where there is none.
+        """
+        return self._attribute("foldCase")
+
+    def CreateFoldCaseAttr(self, defaultValue: bool | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:foldCase in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, bool, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("foldCase", defaultValue, writeSparsely)
 
     def GetCompareRestAttr(self) -> Usd.Attribute:
         """Whether rest is compared with the first sample of points, by the lengths of edges.

@@ -18,6 +18,7 @@ def advice(mesh: PatchedMesh, pieces: Sequence[PatchInfo], slider: Slider | None
     """Warnings and notes, of the pieces of good patches; without a slider of them all, those that need none."""
     yield from _stuck(mesh.path, pieces)
     yield from _unread(mesh)
+    yield from _described(mesh)
     yield from _overlaps(mesh)
     if slider:
         yield from _neighbours(mesh, slider)
@@ -39,6 +40,12 @@ def _unread(mesh: PatchedMesh) -> Iterator[Problem]:
         for name in animation.unread():
             message = f"{name} counts for nothing under the rule {patch.rule}"
             yield Problem("warning", mesh.path, patch.name, None, message)
+
+
+def _described(mesh: PatchedMesh) -> Iterator[Problem]:
+    for patch, animation in zip(mesh.patches, mesh.animation, strict=True):
+        for said in animation.described():
+            yield Problem("note", mesh.path, patch.name, None, said)
 
 
 def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:

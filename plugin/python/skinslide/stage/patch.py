@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +26,8 @@ from skinslide.stage import schema
 from skinslide.stage.textures import give_files
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
+_CHOOSING = ("paintChannel", "patch")  # what the chosen faces depend on
+
 
 class Animation:
     """What is painted and animated on one patch, over time. Any number of threads may read it.
@@ -38,7 +40,8 @@ class Animation:
     def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Sequence[Input] = inputs("controls")):
         self._meaning, self._lock = meaning, threading.Lock()
         self._base, self._idle = ControlsMeaning(meaning), list[ControlsMeaning]()
-        self._controls = [Source(prim, each, meaning.name) for each in wanted]
+        self._faces = paint_source(prim, input_of("patch", "patch"), meaning)
+        self._controls = [paint_source(prim, each, meaning) for each in wanted]
         self.faults = take(self._base, self._controls)
         self._coordinates = [Source(prim, each) for each in self._base.coordinates()]
         self.faults += take(self._base, self._coordinates)
@@ -58,6 +61,12 @@ class Animation:
     def unread(self) -> list[str]:
         """The properties that say something for which the rule of the patch has no use, at the first time."""
         return [each.property(self._meaning.name) for each in self._meaning.unread(self._base)]
+
+    def described(self) -> Iterator[str]:
+        """What there is to say of paint that is not as the schema has it, at the first time."""
+        for source in (self._faces, *self._controls):
+            if said := self._meaning.describe(source.wanted, source.first()):
+                yield said
 
     @property
     def warning(self) -> str:
@@ -119,7 +128,7 @@ def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation 
 
 def read_faces(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> PatchMeaning:
     """A patch that knows of its faces and edges alone. Raises Fault."""
-    meaning, wanted = PatchMeaning(mesh, name), ("patch", "forceDensityRule", "grow", "edges")
+    meaning, wanted = PatchMeaning(mesh, name), (*_CHOOSING, "forceDensityRule", "grow", "edges")
     faults = take_settings(meaning, prim, [each for each in inputs("patch") if each.name in wanted])
     if faults:
         raise Fault(faults[0])
@@ -129,7 +138,7 @@ def read_faces(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> PatchMeaning:
 def read_chosen(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> np.ndarray:
     """The faces that were chosen for a patch, int32, ascending, without those that join them. Raises Fault."""
     meaning = PatchMeaning(mesh, name)
-    for fault in take_settings(meaning, prim, [input_of("patch", "patch")]):
+    for fault in take_settings(meaning, prim, [each for each in inputs("patch") if each.name in _CHOOSING]):
         raise Fault(fault)
     return meaning.faces
 
@@ -170,9 +179,22 @@ def subset_faces(child: Usd.Prim, mesh: MeshMeaning) -> np.ndarray:
 
 def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Sequence[Input]) -> list[str]:
     """Hands over settings, with the faces of the child of the patch's name. Returns what is wrong."""
-    faults = take(meaning, [Source(prim, each, meaning.name) for each in wanted])
+    faults = take(meaning, [paint_source(prim, each, meaning) for each in wanted])
     child = schema.child(prim, meaning.name)
     return faults + take_subset(meaning, child if child and child.IsActive() else None)
+
+
+def paint_source(prim: Usd.Prim, wanted: Input, meaning: PatchMeaning) -> Source:
+    """The source of an input of a patch, under the name by which the prim, or what it is below, has paint."""
+    above = [prim]
+    while wanted.is_inherited and above[-1].GetParent():
+        above.append(above[-1].GetParent())
+    for each in above if wanted.is_primvar else ():
+        primvars = UsdGeom.PrimvarsAPI(each).GetPrimvarsWithAuthoredValues()
+        found = meaning.property_of(wanted, [primvar.GetName() for primvar in primvars])
+        if found:
+            return Source(prim, wanted, name=found)
+    return Source(prim, wanted, meaning.name)
 
 
 def take_subset(meaning: PatchMeaning, child: Usd.Prim | None) -> list[str]:

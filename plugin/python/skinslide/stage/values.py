@@ -31,9 +31,9 @@ _NUMBERS = {
 class Source:
     """Where the value of an input comes from on a stage."""
 
-    def __init__(self, prim: Usd.Prim, wanted: Input, patch: str | None = None):
+    def __init__(self, prim: Usd.Prim, wanted: Input, patch: str | None = None, *, name: str | None = None):
         self.wanted = wanted
-        self.name = wanted.property(patch)
+        self.name = name or wanted.property(patch)
         attribute = prim.GetAttribute(self.name)
         if wanted.is_inherited:
             primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(self.name)

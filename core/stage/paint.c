@@ -1,0 +1,180 @@
+/* What is painted, as any tool leaves it: under the schema's name or one like it, of halves, floats or doubles, as one channel of
+ * colours, by point, by face, or by face corner. */
+#include "stage.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- Names ---- */
+
+/* How like a name is to the schema's: best last. Colons become underscores where names have none. */
+typedef enum likeness { LIKE_NOTHING, LIKE_FOLDED, LIKE_UNDERSCORED, LIKE_ITSELF } likeness;
+
+static char folded(char letter) {
+    char lower = letter >= 'A' && letter <= 'Z' ? (char)(letter - 'A' + 'a') : letter;
+    return lower == ':' ? '_' : lower;
+}
+
+static likeness like_letter(char wanted, char letter) {
+    return letter == wanted                   ? LIKE_ITSELF
+           : wanted == ':' && letter == '_'   ? LIKE_UNDERSCORED
+           : folded(wanted) == folded(letter) ? LIKE_FOLDED
+                                              : LIKE_NOTHING;
+}
+
+/* Compares the beginning of *name with a part of the schema's, and goes behind it. */
+static likeness like_part(const char *part, const char **name, likeness so_far) {
+    for (; *part && so_far; part++, (*name)++) {
+        likeness own = like_letter(*part, **name);
+        so_far = own < so_far ? own : so_far;
+    }
+    return so_far;
+}
+
+static likeness like_input(const skinslide_stage_patch *patch, const skinslide_stage_input *input, const char *name) {
+    if (!name || strncmp(name, SS_PRIMVARS, strlen(SS_PRIMVARS)) != 0)
+        return LIKE_NOTHING;
+    const char *const parts[] = {input->prefix, patch->name, ":", input->name};
+    likeness found = LIKE_ITSELF;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        found = like_part(parts[i], &name, found);
+    found = *name ? LIKE_NOTHING : found;
+    return found == LIKE_FOLDED && !patch->mesh->fold_case ? LIKE_NOTHING : found;
+}
+
+int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
+                                       const char *const *names, int32_t count) {
+    likeness best = LIKE_NOTHING;
+    int32_t found = -1;
+    for (int32_t i = 0; patch && input && input->is_primvar && i < count; i++) {
+        likeness own = like_input(patch, input, names[i]);
+        if (own > best || (own && own == best && strcmp(names[i], names[found]) < 0))
+            best = own, found = i;
+    }
+    return found;
+}
+
+/* ---- Types ---- */
+
+static int32_t channel_of(const skinslide_stage_patch *patch) {
+    return patch->taken[SS_ROW_CHANNEL].choice - 1; /* -1: none is named */
+}
+
+static const char *name_of_channel(const skinslide_stage_patch *patch) {
+    int32_t count;
+    return ss_inputs(SKINSLIDE_STAGE_PATCH, &count)[SS_ROW_CHANNEL].shown.tokens[patch->taken[SS_ROW_CHANNEL].choice];
+}
+
+static bool is_real(const skinslide_value *value) {
+    return value->type >= SKINSLIDE_VALUE_HALF && value->type <= SKINSLIDE_VALUE_DOUBLE;
+}
+
+static bool is_choice(const skinslide_value *value) {
+    return (value->type == SKINSLIDE_VALUE_BOOL || value->type == SKINSLIDE_VALUE_INT32) && value->width == 1;
+}
+
+/* more: what else it might be. */
+static skinslide_status refuse_type(const skinslide_value *value, bool of_faces, const char *more, skinslide_status status,
+                                    skinslide_error *error) {
+    const char *format = of_faces ? SS_NAMED " is " SS_NAMED "; it must be bool[], int[] or float[]%s"
+                                  : SS_NAMED " is " SS_NAMED "; it must be float[]%s";
+    return ss_fail(error, status, format, SS_NAME(value->name), SS_NAME(value->type_name), more);
+}
+
+static skinslide_status check_channel(const skinslide_stage_patch *patch, const skinslide_value *value, bool of_faces,
+                                      skinslide_status status, skinslide_error *error) {
+    char setting[256], more[320];
+    ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_CHANNEL, patch->name, setting);
+    snprintf(more, sizeof more, ", or %s must name the channel that counts", setting);
+    if (channel_of(patch) < 0)
+        return refuse_type(value, of_faces, more, status, error);
+    if (channel_of(patch) >= value->width)
+        return ss_fail(error, status, SS_NAMED " is " SS_NAMED ", which has no channel %s; %s names it", SS_NAME(value->name),
+                       SS_NAME(value->type_name), name_of_channel(patch), setting);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_check_paint_type(const skinslide_stage_patch *patch, const ss_record *record, bool of_faces,
+                                     skinslide_status status, skinslide_error *error) {
+    const skinslide_value *value = &record->value;
+    if (value->type == SKINSLIDE_VALUE_BLOCKED)
+        return SKINSLIDE_OK;
+    bool is_wide = value->width > 1, is_single = !value->is_array && (of_faces || is_wide);
+    if (is_single || (is_wide && !patch) || (!is_real(value) && !(of_faces && is_choice(value))))
+        return refuse_type(value, of_faces, "", status, error);
+    return is_wide ? check_channel(patch, value, of_faces, status, error) : SKINSLIDE_OK;
+}
+
+/* ---- By point ---- */
+
+static bool is_by_corner(const ss_record *record) {
+    return strcmp(ss_interpolation(record), "faceVarying") == 0;
+}
+
+bool ss_is_painted_by_vertex(const ss_record *record) {
+    return ss_is_by_vertex(ss_interpolation(record)) || is_by_corner(record);
+}
+
+skinslide_status ss_check_painted_vertices(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_status status,
+                                           skinslide_error *error) {
+    return is_by_corner(record) ? ss_check_length(record, ss_faces_of(mesh).index_count, "face corners", status, error)
+                                : ss_check_length(record, mesh->vertex_count, "points", status, error);
+}
+
+bool ss_is_plain_paint(const ss_record *record) {
+    return record->value.width == 1 && !is_by_corner(record);
+}
+
+/* The mean over the corners at each vertex; 0 where there are none. */
+static void average(const skinslide_mesh *mesh, const ss_record *record, int32_t k, double *means, double *counts) {
+    memset(means, 0, (size_t)mesh->vertex_count * sizeof *means);
+    memset(counts, 0, (size_t)mesh->vertex_count * sizeof *counts);
+    for (int32_t corner = 0; corner < mesh->index_count; corner++) {
+        int32_t vertex = mesh->face_indices[corner];
+        means[vertex] += ss_number(record, corner, k);
+        counts[vertex]++;
+    }
+    for (int32_t vertex = 0; vertex < mesh->vertex_count; vertex++)
+        means[vertex] /= counts[vertex] > 0 ? counts[vertex] : 1;
+}
+
+int64_t ss_plain_paint_room(const skinslide_stage_mesh *mesh) {
+    int32_t faces = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
+    return 2 * (int64_t)(mesh->vertex_count > faces ? mesh->vertex_count : faces);
+}
+
+ss_record ss_plain_paint(const skinslide_stage_patch *patch, const ss_record *record, double *room) {
+    skinslide_mesh mesh = ss_faces_of(patch->mesh);
+    int32_t k = record->value.width > 1 ? channel_of(patch) : 0;
+    ss_record plain = *record;
+    if (is_by_corner(record)) {
+        average(&mesh, record, k, room, room + mesh.vertex_count);
+        plain.length = mesh.vertex_count, plain.value.interpolation = "vertex";
+    } else {
+        for (int64_t i = 0; i < record->length; i++)
+            room[i] = ss_number(record, i, k);
+    }
+    plain.value.type = SKINSLIDE_VALUE_DOUBLE, plain.value.width = 1;
+    plain.value.data = room, plain.value.count = plain.length;
+    plain.indices.type = SKINSLIDE_VALUE_NONE;
+    return plain;
+}
+
+/* ---- What was made of it ---- */
+
+skinslide_bool skinslide_stage_patch_describe(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
+                                              const skinslide_value *value, char text[512]) {
+    ss_record record;
+    if (!patch || !input || !input->is_primvar || ss_open(value, &record, NULL) || !ss_has_value(&record))
+        return 0;
+    const skinslide_value *own = &record.value;
+    bool has_channel = own->width > 1 && channel_of(patch) >= 0;
+    bool is_plain_type = own->type <= SKINSLIDE_VALUE_INT32 || own->type == SKINSLIDE_VALUE_FLOAT;
+    bool is_itself = like_input(patch, input, own->name) == LIKE_ITSELF;
+    if (is_itself && is_plain_type && ss_is_plain_paint(&record))
+        return 0;
+    snprintf(text, 512, "%s comes from " SS_NAMED ", " SS_NAMED "%s%s%s", input->name, SS_NAME(own->name),
+             SS_NAME(own->type_name), has_channel ? ", channel " : "", has_channel ? name_of_channel(patch) : "",
+             is_by_corner(&record) ? ", the mean over the face corners at each point" : "");
+    return 1;
+}
