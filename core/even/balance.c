@@ -56,8 +56,11 @@ void ss_measure_stretch(ss_evener *evener) {
         const ss_spring *spring = &evener->sheet->springs[i];
         double way[3];
         ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
-        evener->stretch[i] = spring->square > 0 ? 0.5 * ss_log(ss_most(ss_dot(way, way) / spring->square, LEAST_SQUARE)) : 0;
+        evener->stretch[i] = spring->square > 0 ? ss_most(ss_dot(way, way) / spring->square, LEAST_SQUARE) : 1;
     }
+    ss_logs(evener->sheet->spring_count, evener->stretch);
+    for (int32_t i = 0; i < evener->sheet->spring_count; i++)
+        evener->stretch[i] *= 0.5;
 }
 
 void ss_go_home(ss_evener *evener) {

@@ -140,10 +140,15 @@ static void measure_slide(const ss_patch *patch, const double (*displacement)[4]
 
 /* RMS over edges of log(length / rest length). */
 static double stretch(const ss_patch *patch, const double *lengths) {
-    double sum = 0;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-        double stretched = ss_log(lengths[e] / patch->rest_length[e]);
-        sum += stretched * stretched;
+    enum { AT_ONCE = 256 };
+    double sum = 0, stretched[AT_ONCE];
+    for (int32_t begin = 0; begin < patch->faces.edge_count; begin += AT_ONCE) {
+        int32_t left = patch->faces.edge_count - begin, count = left < AT_ONCE ? left : AT_ONCE;
+        for (int32_t i = 0; i < count; i++)
+            stretched[i] = lengths[begin + i] / patch->rest_length[begin + i];
+        ss_logs(count, stretched);
+        for (int32_t i = 0; i < count; i++)
+            sum += stretched[i] * stretched[i];
     }
     return sqrt(sum / patch->faces.edge_count);
 }

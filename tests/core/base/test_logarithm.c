@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 static void one_has_none(void **state) {
     (void)state;
@@ -22,6 +23,25 @@ static void logarithms_are_those_of_the_library(void **state) {
     assert_near(ss_log(DBL_MAX), log(DBL_MAX), 1e-12);
 }
 
+/* Also where one of them is not a normal number. */
+static void several_are_each_to_the_bit(void **state) {
+    (void)state;
+    enum { COUNT = 1000 };
+    double x[COUNT], several[COUNT];
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < COUNT; i++)
+            x[i] = ldexp(1 + i / 997.0, i % 2040 - 1020);
+        if (k == 1)
+            x[300] = 0x1p-1060;
+        memcpy(several, x, sizeof x);
+        ss_logs(COUNT, several);
+        for (int i = 0; i < COUNT; i++) {
+            double one = ss_log(x[i]);
+            assert_memory_equal(&several[i], &one, sizeof one);
+        }
+    }
+}
+
 static void exponentials_are_those_of_the_library(void **state) {
     (void)state;
     for (double x = -700; x < 700; x += 0.37)
@@ -32,6 +52,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_has_none),
         cmocka_unit_test(logarithms_are_those_of_the_library),
+        cmocka_unit_test(several_are_each_to_the_bit),
         cmocka_unit_test(exponentials_are_those_of_the_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -100,18 +100,19 @@ def _bake(
 
 def _also(pictures: str | None, html: str | None, maps: str | None, options: dict[str, Any]) -> list[Product]:
     """Pictures and maps, with their options, which are taken out. UsageError for options of what is not asked for."""
-    from skinslide.picture.maps import Maps
-    from skinslide.picture.preview import Pictures
-
     drawn = {each.name: options.pop(each.name) for each in fields(PictureOptions) if each.name in options}
     mapped = {name: drawn[name] for name in ("patches", "st") if name in drawn}
     size = {"size": options.pop("map_size")} if "map_size" in options else {}
     products: list[Product] = []
     if pictures is not None or html is not None:
+        from skinslide.picture.preview import Pictures
+
         products.append(Pictures(pictures, html, **drawn))
     elif drawn != mapped or (mapped and maps is None):
         raise UsageError("there are options of pictures, but no folder (--pictures) and no page (--html) for them")
     if maps is not None:
+        from skinslide.picture.maps import Maps
+
         products.append(Maps(maps, **mapped, **size))
     elif size:
         raise UsageError("there is a size of maps, but no folder (--maps) for them")

@@ -7,12 +7,13 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import Any
-
-from tqdm import tqdm
+from typing import TYPE_CHECKING, Any
 
 from skinslide.command.outcome import tell
 from skinslide.shot.workers import Progress
+
+if TYPE_CHECKING:
+    from tqdm import tqdm
 
 _LINES = 20
 _SECONDS = 1.0  # between lines
@@ -24,6 +25,8 @@ def reporter(*, quiet: bool = False) -> Iterator[Progress | None]:
     if quiet:
         yield None
     elif sys.stderr.isatty():
+        from tqdm import tqdm
+
         with tqdm(unit="frame", dynamic_ncols=True, leave=False, file=sys.stderr) as bar:
             yield lambda done, total: _move(bar, done, total)
     else:
