@@ -2,14 +2,11 @@
  *
  *     orient(a, b, c) = sign of (a - c) x (b - c)
  *
- * First in double with a bound on its error; only where that cannot tell, the six products of the expanded determinant are
- * split into sums of two doubles and added up without rounding (Dekker 1971, Knuth, Shewchuk 1997: expansions). The file must
- * be compiled without contraction of products and sums. Exact while no product underflows: coordinates of an embedding are in
+ * ss_orient tries in double, with a bound on its error. Where that cannot tell, the six products of the expanded determinant are
+ * split into sums of two doubles and added up without rounding (Dekker 1971, Knuth, Shewchuk 1997: expansions). Both must be
+ * compiled without contraction of products and sums. Exact while no product underflows: coordinates of an embedding are in
  * [0,1] and, where not 0, far above 1e-140. */
 #include "plane.h"
-
-#include <float.h>
-#include <math.h>
 
 /* x + y = a + b exactly, x the rounded sum. */
 static void two_sum(double a, double b, double *x, double *y) {
@@ -47,7 +44,7 @@ static int grow(double *expansion, int n, double b) {
     return kept;
 }
 
-static int exact_orient(const double a[2], const double b[2], const double c[2]) {
+int ss_orient_exactly(const double a[2], const double b[2], const double c[2]) {
     const double products[6][2] = {{a[0], b[1]}, {-a[0], c[1]}, {-c[0], b[1]}, {-a[1], b[0]}, {a[1], c[0]}, {c[1], b[0]}};
     double expansion[12];
     int n = 0;
@@ -58,17 +55,4 @@ static int exact_orient(const double a[2], const double b[2], const double c[2])
         n = grow(expansion, n, high);
     }
     return n == 0 ? 0 : expansion[n - 1] > 0 ? 1 : -1;
-}
-
-int ss_orient(const double a[2], const double b[2], const double c[2]) {
-    double left = (a[0] - c[0]) * (b[1] - c[1]);
-    double right = (a[1] - c[1]) * (b[0] - c[0]);
-    double determinant = left - right;
-    /* Shewchuk's bound for this order of operations, (3 + 16 e) e with e = DBL_EPSILON / 2, rounded up. */
-    double bound = (3 + 10 * DBL_EPSILON) * (DBL_EPSILON / 2) * (fabs(left) + fabs(right));
-    if (determinant > bound)
-        return 1;
-    if (determinant < -bound)
-        return -1;
-    return exact_orient(a, b, c);
 }

@@ -6,14 +6,25 @@
 #include "linear.h"
 #include "surface.h"
 
+#include <float.h>
+#include <math.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* ---- orient.c ---- */
 
-/* 1 where a, b, c turn left, -1 right, 0 where they are on one line: exact for the doubles given. */
-int ss_orient(const double a[2], const double b[2], const double c[2]);
+int ss_orient_exactly(const double a[2], const double b[2], const double c[2]);
+
+/* 1 where a, b, c turn left, -1 right, 0 where they are on one line: exact for the doubles given. Here, since it is asked
+ * several times a step of every walk. */
+static inline int ss_orient(const double a[2], const double b[2], const double c[2]) {
+    double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]), determinant = left - right;
+    /* Shewchuk's bound for this order of operations, (3 + 16 e) e with e = DBL_EPSILON / 2, rounded up. */
+    double bound = (3 + 10 * DBL_EPSILON) * (DBL_EPSILON / 2) * (fabs(left) + fabs(right));
+    return determinant > bound ? 1 : determinant < -bound ? -1 : ss_orient_exactly(a, b, c);
+}
 
 /* ---- boundary.c ---- */
 
