@@ -1,5 +1,5 @@
 /* Which points of a mesh a slide reads: those of the faces at its patches, which slide, or have a say in normals and limits. Others
- * pass as they are, whatever they hold. */
+ * pass as they are, whatever they hold, and cost a frame nothing. */
 #include "slide.h"
 
 #include <math.h>
@@ -12,16 +12,38 @@ static bool is_at_patch(const skinslide_mesh *mesh, const int32_t *vertices, int
     return false;
 }
 
-bool ss_list_reads(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen) {
-    slider->reads = SS_NEW(&slider->memory, uint8_t, mesh->vertex_count);
-    for (int32_t f = 0, c = 0; slider->reads && f < mesh->face_count; c += mesh->face_counts[f++]) {
+static void mark_reads(const skinslide_mesh *mesh, const uint8_t *chosen, uint8_t *reads) {
+    for (int32_t f = 0, c = 0; f < mesh->face_count; c += mesh->face_counts[f++]) {
         const int32_t *vertices = mesh->face_indices + c;
         if (!is_at_patch(mesh, vertices, mesh->face_counts[f], chosen))
             continue;
         for (int32_t k = 0; k < mesh->face_counts[f]; k++)
-            slider->reads[vertices[k]] = slider->reads[ss_one(mesh, vertices[k])] = 1;
+            reads[vertices[k]] = reads[ss_one(mesh, vertices[k])] = 1;
     }
-    return slider->reads != NULL;
+}
+
+static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t vertex_count, ss_list *list) {
+    for (int32_t v = 0; v < vertex_count; v++)
+        list->count += marked[v];
+    list->vertex = SS_NEW(memory, int32_t, list->count);
+    for (int32_t v = 0, i = 0; list->vertex && v < vertex_count; v++)
+        if (marked[v])
+            list->vertex[i++] = v;
+    return list->vertex != NULL;
+}
+
+bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen) {
+    ss_memory scratch = {0};
+    uint8_t *marked = SS_NEW(&scratch, uint8_t, mesh->vertex_count);
+    for (int32_t v = 0; marked && v < mesh->vertex_count; v++)
+        marked[v] = chosen[ss_one(mesh, v)];
+    bool done = marked && list_marked(&slider->memory, marked, mesh->vertex_count, &slider->own);
+    if (done) {
+        mark_reads(mesh, chosen, marked);
+        done = list_marked(&slider->memory, marked, mesh->vertex_count, &slider->reads);
+    }
+    ss_free(&scratch);
+    return done;
 }
 
 static bool is_finite(const float *point) {
@@ -31,9 +53,11 @@ static bool is_finite(const float *point) {
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error) {
     if (!points)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
-    for (int32_t v = 0; v < slider->vertex_count; v++)
-        if (slider->reads[v] && !is_finite(points + 3 * (int64_t)v))
+    for (int32_t i = 0; i < slider->reads.count; i++) {
+        int32_t v = slider->reads.vertex[i];
+        if (!is_finite(points + 3 * (int64_t)v))
             return ss_refuse_vertex(what, v, points + 3 * (int64_t)v, 3, SKINSLIDE_BAD_POINTS, error);
+    }
     return SKINSLIDE_OK;
 }
 

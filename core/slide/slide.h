@@ -21,6 +21,11 @@ typedef struct ss_part {
     ss_cage *cage;         /* NULL unless its interpolation is LIMIT */
 } ss_part;
 
+typedef struct ss_list {
+    int32_t count;
+    int32_t *vertex; /* [count] of the mesh, ascending */
+} ss_list;
+
 struct skinslide_slider {
     ss_memory memory;
     int32_t vertex_count, face_count, setup_count, part_count;
@@ -30,7 +35,8 @@ struct skinslide_slider {
     int32_t *weld;         /* [vertex_count] the mesh's; NULL: none */
     ss_topology *topology; /* while the slider is built, once a set-up needs it */
     ss_around around;      /* the patches' vertices, for smooth normals */
-    uint8_t *reads;        /* [vertex_count] of a face at a patch */
+    ss_list own;           /* the patches' vertices, and what is one with them */
+    ss_list reads;         /* vertices of a face at a patch */
 };
 
 /* What is painted on an edge by name, maybe on several copies of it. */
@@ -104,8 +110,8 @@ skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const sk
 
 /* ---- reads.c ---- */
 
-/* Fills slider->reads, for patches of the vertices chosen [vertex_count]. False where memory is short. */
-bool ss_list_reads(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen);
+/* Fills slider->own and slider->reads, for patches of the vertices chosen [vertex_count]. False where memory is short. */
+bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen);
 /* Names the first point that a slide reads, and that is not finite. */
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error);
 

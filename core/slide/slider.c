@@ -73,12 +73,15 @@ static void add_displacement(const ss_patch *patch, const ss_patch_work *work, d
 /* sum: from sums over patches to the displacement of each vertex. */
 static void blend(skinslide_workspace *workspace) {
     const skinslide_slider *slider = workspace->slider;
-    memset(workspace->sum, 0, (size_t)slider->vertex_count * sizeof *workspace->sum);
+    for (int32_t i = 0; i < slider->own.count; i++)
+        memset(workspace->sum[slider->own.vertex[i]], 0, sizeof *workspace->sum);
     for (int32_t p = 0; p < slider->part_count; p++)
         add_displacement(slider->parts[p].patch, &workspace->patches[p], workspace->sum);
-    for (int32_t v = 0; v < slider->vertex_count; v++)
-        for (int k = 0; k < 3 && workspace->sum[v][3] > 0; k++)
-            workspace->sum[v][k] /= workspace->sum[v][3];
+    for (int32_t i = 0; i < slider->own.count; i++) {
+        double *sum = workspace->sum[slider->own.vertex[i]];
+        for (int k = 0; k < 3 && sum[3] > 0; k++)
+            sum[k] /= sum[3];
+    }
 }
 
 static bool moves(const double displacement[3]) {
@@ -122,9 +125,14 @@ static skinslide_status write_points(const skinslide_workspace *workspace, const
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)
         status = check_landings(workspace, workspace->slider->parts[p].patch, points, error);
-    for (int32_t v = 0; v < workspace->slider->vertex_count && !status; v++)
-        land(workspace, points, v, slid + 3 * (int64_t)v);
-    return status;
+    if (status)
+        return status;
+    const ss_list *own = &workspace->slider->own;
+    if (slid != points)
+        memcpy(slid, points, (size_t)workspace->slider->vertex_count * sizeof(float[3]));
+    for (int32_t i = 0; i < own->count; i++)
+        land(workspace, points, own->vertex[i], slid + 3 * (int64_t)own->vertex[i]);
+    return SKINSLIDE_OK;
 }
 
 /* ---- Measures of the result ---- */

@@ -66,12 +66,15 @@ skinslide_status skinslide_workspace_turns(skinslide_workspace *workspace, const
     if (status)
         return status;
     ss_smooth_normals(&slider->around, points, slider->vertex_count, workspace->normal);
-    memset(workspace->target, 0, (size_t)slider->vertex_count * sizeof *workspace->target);
+    const ss_list *own = &slider->own;
+    for (int32_t i = 0; i < own->count; i++)
+        memset(workspace->target[own->vertex[i]], 0, sizeof *workspace->target);
     for (int32_t p = 0; p < slider->part_count; p++)
         add_targets(workspace, p);
-    for (int32_t v = 0; v < slider->vertex_count; v++)
-        ss_normalise(workspace->target[v]);
-    for (int32_t v = 0; v < slider->vertex_count; v++)
-        turn_vertex(workspace, v, turns + 3 * (int64_t)v);
+    for (int32_t i = 0; i < own->count; i++)
+        ss_normalise(workspace->target[own->vertex[i]]);
+    memset(turns, 0, (size_t)slider->vertex_count * sizeof(float[3]));
+    for (int32_t i = 0; i < own->count; i++)
+        turn_vertex(workspace, own->vertex[i], turns + 3 * (int64_t)own->vertex[i]);
     return SKINSLIDE_OK;
 }
