@@ -286,7 +286,8 @@ static skinslide_status take_around(skinslide_slider *slider, const skinslide_me
     for (int32_t p = 0; p < slider->part_count && chosen; p++)
         for (int32_t v = 0; v < slider->parts[p].patch->vertex_count; v++)
             chosen[slider->parts[p].patch->mesh_vertex[v]] = 1;
-    bool done = chosen && ss_take_around(mesh, chosen, &slider->memory, &slider->around) && ss_list_vertices(slider, mesh, chosen);
+    bool done =
+        chosen && ss_take_around(mesh, chosen, &slider->memory, &slider->around) && ss_list_vertices(slider, mesh, chosen);
     ss_free(&scratch);
     return done ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
