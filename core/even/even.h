@@ -126,6 +126,9 @@ void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places);
  * frame is not wanted any more. */
 skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, const double *weight, const double *hold,
                                    skinslide_error *error);
+/* Of a matrix that is a sum of squares, makes a block of the diagonal firm: it holds its unknowns by a small share of all that acts
+ * on them, and wholly where nothing does, which makes the matrix positive definite. */
+void ss_firm(double own[4]);
 /* Of an edge, over eta: k / l^2 times what is painted. */
 double ss_hold_of(const ss_evener *evener, const ss_spring *spring);
 

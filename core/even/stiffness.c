@@ -2,14 +2,16 @@
  *
  *     d' B d = sum of k |D_b - D_a|^2 / l^2     over edges of length l at rest, D the slides in space
  *
- * and eta times the mean of what is painted on the ends; and the springs of weights, see weights.c. A vertex of no weight keeps its
- * unknowns, which come to 0. */
+ * and eta times the mean of what is painted on the ends; and the springs of weights, see weights.c. Each unknown is held where it is
+ * by FIRMNESS of all that acts on it: so K is positive definite, rounded as it is, where nothing else holds skin and however far
+ * apart densities, holds and weights are. A vertex of no weight keeps its unknowns, which come to 0. */
 #include "even.h"
 
 #include <string.h>
 
-#define TIE       1e6 /* of the ends of an edge without length: of eta k, over the square of the mean edge */
-#define SHORTNESS 1e6 /* mean edge over the shortest that has a length */
+#define TIE       1e6   /* of the ends of an edge without length: of eta k, over the square of the mean edge */
+#define SHORTNESS 1e6   /* mean edge over the shortest that has a length */
+#define FIRMNESS  1e-10 /* far over rounding, far under what holds skin of a million faces that is closed */
 
 static bool slides(const ss_evener *evener, int32_t vertex) {
     return evener->weight[vertex] > 0;
@@ -46,17 +48,18 @@ static void add_between(ss_evener *evener, const ss_spring *spring, double k, do
                 hold * ss_dot(evener->sheet->tangent[v[0]][i], evener->sheet->tangent[v[1]][j]);
 }
 
-/* Anchors, and something to divide by where an unknown is none: of vertices that do not slide, and across free loops. */
+void ss_firm(double own[4]) {
+    for (int i = 0; i < 4; i += 3)
+        own[i] = own[i] > 0 ? (1 + FIRMNESS) * own[i] : 1;
+}
+
 static void add_diagonal(ss_evener *evener, int32_t v, double anchor) {
     int32_t unknown = ss_blocks_unknown(evener->K, v);
     if (unknown < 0)
         return;
     double *own = ss_blocks_own(evener->K, unknown);
     own[0] += anchor, own[3] += anchor;
-    if (!slides(evener, v))
-        own[0] = own[3] = 1;
-    else if (evener->sheet->patch->vertex_loop[v] >= 0)
-        own[3] = own[0];
+    ss_firm(own);
 }
 
 static void add_stiffness(ss_evener *evener) {

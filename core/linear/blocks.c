@@ -1,5 +1,7 @@
-/* L D L' with blocks of two by two, on the pattern that order.c found: column by column, each taking what the columns before it
- * leave there. Columns whose rows are the same go together, as in factor.c. Sums are in one order on every machine. */
+/* L D L' of a matrix in blocks of two by two, on the pattern that order.c found: column of blocks by column, each taking what the
+ * columns before it leave there. D is of numbers, and L has ones in its blocks' diagonals, too: so it loses no more digits than the
+ * matrix costs, however far apart the two unknowns of a block are. Columns whose rows are the same go together, as in factor.c. Sums
+ * are in one order on every machine. */
 #include "linear.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@ skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skin
     blocks->own = ss_new(memory, n, sizeof *blocks->own);
     blocks->right = ss_new(memory, n, sizeof *blocks->right);
     blocks->pivot = ss_new(memory, n, sizeof *blocks->pivot);
-    blocks->inverse = ss_new(memory, n, sizeof *blocks->inverse);
+    blocks->lean = SS_NEW(memory, double, n);
     blocks->work = ss_new(memory, n, sizeof *blocks->work);
     blocks->first = SS_NEW(memory, int, n);
     blocks->next = SS_NEW(memory, int, n);
@@ -68,26 +70,13 @@ static void subtract_product(const double *restrict a, const double *restrict b,
     c[3] -= a[2] * b[1] + a[3] * b[3];
 }
 
-/* c = a b */
-static void multiply(const double a[4], const double b[4], double c[4]) {
-    c[0] = a[0] * b[0] + a[1] * b[2];
-    c[1] = a[0] * b[1] + a[1] * b[3];
-    c[2] = a[2] * b[0] + a[3] * b[2];
-    c[3] = a[2] * b[1] + a[3] * b[3];
-}
-
-static bool invert(const double a[4], double out[4]) {
-    double determinant = a[0] * a[3] - a[1] * a[2];
-    out[0] = a[3] / determinant, out[1] = -a[1] / determinant, out[2] = -a[2] / determinant, out[3] = a[0] / determinant;
-    return a[0] > 0 && a[3] > 0 && determinant > 0 && isfinite(out[0]) && isfinite(out[3]);
-}
-
 /* ---- The factor ---- */
 
 /* What column j, at its entry in row k, has to leave in column k: D times that entry, transposed. Takes it out of k's own. */
 static void find_force(ss_blocks *blocks, int j, int entry, int k, double force[4]) {
-    const double *at = blocks->Lx[entry], turned[4] = {at[0], at[2], at[1], at[3]};
-    multiply(blocks->pivot[j], turned, force);
+    const double *at = blocks->Lx[entry], *pivot = blocks->pivot[j];
+    force[0] = pivot[0] * at[0], force[1] = pivot[0] * at[2];
+    force[2] = pivot[1] * at[1], force[3] = pivot[1] * at[3];
     subtract_product(at, force, blocks->own[k]);
 }
 
@@ -131,17 +120,21 @@ static void gather_others(ss_blocks *blocks, int k) {
     }
 }
 
+/* The pivots of column k, and its entries over them. */
 static bool finish_column(ss_blocks *blocks, int k) {
     const ss_system *system = blocks->system;
-    memcpy(blocks->pivot[k], blocks->own[k], sizeof *blocks->own);
-    bool good = invert(blocks->pivot[k], blocks->inverse[k]);
+    const double *own = blocks->own[k];
+    double *pivot = blocks->pivot[k], lean = blocks->lean[k] = own[2] / own[0];
+    pivot[0] = own[0], pivot[1] = own[3] - lean * own[1];
+    double first = 1 / pivot[0], second = 1 / pivot[1];
     for (int p = system->Lp[k]; p < system->Lp[k + 1]; p++) {
-        double *work = blocks->work[system->Li[p]], sum[4];
+        double *work = blocks->work[system->Li[p]], *at = blocks->Lx[p];
         for (int i = 0; i < 4; i++)
-            sum[i] = blocks->Lx[p][i] + work[i], work[i] = 0;
-        multiply(sum, blocks->inverse[k], blocks->Lx[p]);
+            at[i] += work[i], work[i] = 0;
+        at[1] = second * (at[1] - lean * at[0]), at[3] = second * (at[3] - lean * at[2]);
+        at[0] *= first, at[2] *= first;
     }
-    return good;
+    return pivot[0] > 0 && pivot[1] > 0 && isfinite(first) && isfinite(second);
 }
 
 bool ss_blocks_factor(ss_blocks *blocks, const int *stop) {
@@ -165,20 +158,21 @@ bool ss_blocks_factor(ss_blocks *blocks, const int *stop) {
 void ss_blocks_solve(ss_blocks *blocks) {
     const int *Lp = blocks->system->Lp, *Li = blocks->system->Li, n = blocks->system->n;
     double(*x)[2] = blocks->right;
-    for (int j = 0; j < n; j++)
+    for (int j = 0; j < n; j++) {
+        x[j][1] -= blocks->lean[j] * x[j][0];
         for (int p = Lp[j]; p < Lp[j + 1]; p++) {
             const double *l = blocks->Lx[p];
             x[Li[p]][0] -= l[0] * x[j][0] + l[1] * x[j][1];
             x[Li[p]][1] -= l[2] * x[j][0] + l[3] * x[j][1];
         }
+    }
     for (int j = n - 1; j >= 0; j--) {
-        const double *inverse = blocks->inverse[j];
-        double a = inverse[0] * x[j][0] + inverse[1] * x[j][1], b = inverse[2] * x[j][0] + inverse[3] * x[j][1];
+        double a = x[j][0] / blocks->pivot[j][0], b = x[j][1] / blocks->pivot[j][1];
         for (int p = Lp[j]; p < Lp[j + 1]; p++) {
             const double *l = blocks->Lx[p];
             a -= l[0] * x[Li[p]][0] + l[2] * x[Li[p]][1];
             b -= l[1] * x[Li[p]][0] + l[3] * x[Li[p]][1];
         }
-        x[j][0] = a, x[j][1] = b;
+        x[j][0] = a - blocks->lean[j] * b, x[j][1] = b;
     }
 }

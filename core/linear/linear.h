@@ -67,8 +67,8 @@ typedef struct ss_blocks {
     double (*Lx)[4];             /* the matrix below its diagonal, then L */
     double (*own)[4];            /* [unknowns] its diagonal */
     double (*right)[2];          /* [unknowns] right side, then the solution */
-    double (*pivot)[4];          /* [unknowns] D */
-    double (*inverse)[4];        /* [unknowns] of D */
+    double (*pivot)[2];          /* [unknowns] D */
+    double *lean;                /* [unknowns] of L, the one entry in a diagonal block that is neither 0 nor 1 */
     double (*work)[4];           /* [unknowns] zero between columns */
     int *first, *next, *reached; /* [unknowns] runs of columns by the row they are to be used in next, and how far each was */
 } ss_blocks;

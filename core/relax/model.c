@@ -45,9 +45,8 @@ static void add_anchor(ss_relaxer *relaxer, int32_t v) {
         right[j] -= a * (evener->slide[v][j] - relaxer->even[v][j]) +
                     share * (evener->slide[v][j] - evener->weight[v] * evener->whole[v][j]);
     if (evener->weight[v] == 0)
-        own[0] = own[3] = 1, own[1] = own[2] = right[0] = right[1] = 0;
-    else if (evener->sheet->patch->vertex_loop[v] >= 0)
-        own[3] = own[0], own[1] = own[2] = right[1] = 0; /* there is no way across the loop */
+        own[0] = own[3] = right[0] = right[1] = 0;
+    ss_firm(own);
 }
 
 /* ---- Edges ---- */

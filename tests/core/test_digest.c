@@ -9,7 +9,7 @@
 
 enum { POSES = 3, LINE = 128 };
 
-static const char *const rules[] = {"unit", "fast", "relaxed"};
+static const char *const rules[] = {"unit", "fast", "relaxed", "even"};
 static const char *const interpolations[] = {"linear", "meanValue", "limit"};
 static const skinslide_interpolation interpolation_values[] = {
     SKINSLIDE_INTERPOLATION_LINEAR, SKINSLIDE_INTERPOLATION_MEAN_VALUE, SKINSLIDE_INTERPOLATION_LIMIT};
@@ -82,7 +82,7 @@ static bool settle(FILE *file, bool record, const char *line) {
 
 static int settle_fixture(FILE *file, bool record, const fixture *f) {
     int differ = 0;
-    for (int rule = 0; rule < 3; rule++)
+    for (int rule = 0; rule < 4; rule++)
         for (int interpolation = 0; interpolation < 3; interpolation++) {
             char line[LINE];
             snprintf(line, LINE, "%s | %s %s | %016" PRIx64 "\n", f->name, rules[rule], interpolations[interpolation],

@@ -89,19 +89,22 @@ static int32_t choose_faces(const test_mesh *mesh, dice *d, int32_t *faces) {
 
 static skinslide_patch_setup random_setup(const test_mesh *mesh, dice *d, int32_t *faces, int32_t corners[4]) {
     skinslide_patch_setup setup = setup_of(faces, choose_faces(mesh, d, faces));
-    setup.boundary = (skinslide_boundary)roll_below(d, 3), setup.holes = (skinslide_holes)roll_below(d, 2);
-    setup.rule = (skinslide_rule)roll_below(d, 2), setup.interpolation = (skinslide_interpolation)roll_below(d, 3);
+    setup.boundary = (skinslide_boundary)roll_below(d, 3), setup.holes = (skinslide_holes)roll_below(d, 3);
+    setup.rule = (skinslide_rule)roll_below(d, 4), setup.interpolation = (skinslide_interpolation)roll_below(d, 3);
     for (int k = 0; k < 4; k++)
         corners[k] = roll_below(d, mesh->vertex_count);
     setup.corners = roll_below(d, 10) ? NULL : corners;
     return setup;
 }
 
-static void paint_wildly(painted *p, const test_mesh *mesh, dice *d) {
+static void paint_wildly(painted *p, float *hold, const test_mesh *mesh, dice *d) {
     double decades = roll_below(d, 3) * roll_between(d, 0, 12);
+    p->controls.hold = hold;
+    p->controls.stretch_response = (float)roll_share(d), p->controls.compression_response = (float)roll_share(d);
     for (int32_t v = 0; v < mesh->vertex_count; v++) {
         p->vertex_density[v] = (float)pow(10, roll_between(d, -decades, decades));
         p->weight[v] = (float)roll_between(d, -0.5, 1.5);
+        hold[v] = (float)pow(10, roll_between(d, -decades, decades));
     }
 }
 
@@ -129,16 +132,19 @@ static void slide_once(const rig *r, const test_mesh *mesh, const float *points,
 }
 
 static void exercise(const rig *r, const test_mesh *mesh, dice *d, painted *paint) {
-    for (int32_t p = 0; p < r->slider->part_count; p++)
-        assert_patch_holds(r->slider->parts[p].patch);
+    for (int32_t p = 0; p < r->slider->part_count; p++) {
+        const ss_patch *patch = r->slider->parts[p].patch;
+        (ss_has_plane(patch->setup->rule) ? assert_patch_holds : assert_surface_holds)(patch);
+    }
     float *points = malloc(POINT_BYTES(mesh)), *posed = random_pose(mesh, roll(d));
+    float *hold = malloc((size_t)mesh->vertex_count * sizeof *hold);
     slide_once(r, mesh, posed, NULL);
     for (int i = 0; i < 3; i++) {
         wild_points(mesh, d, points);
-        paint_wildly(paint, mesh, d);
+        paint_wildly(paint, hold, mesh, d);
         slide_once(r, mesh, points, i ? &paint->controls : NULL);
     }
-    free(points), free(posed);
+    free(points), free(posed), free(hold);
 }
 
 /* Returns whether a slider could be created. */

@@ -1,4 +1,5 @@
-/* A mesh, a patch and frames of any bytes: set up or refused, and slid to finite points or refused. */
+/* A mesh, a patch and frames of any bytes: set up or refused, and slid to finite points or refused; by rules without a plane never
+ * because of the matrix. */
 #include "skinslide/skinslide.h"
 #include "stream.h"
 
@@ -60,7 +61,15 @@ static void take_responses(skinslide_controls *controls, stream *s) {
     }
 }
 
-static void slide(const skinslide_slider *slider, int32_t vertex_count, stream *s) {
+/* A power of two for each vertex, of all that floats have, or NULL. To be freed. */
+static float *take_powers(stream *s, int32_t vertex_count) {
+    float *powers = take_below(s, 2) ? malloc((size_t)vertex_count * sizeof *powers) : NULL;
+    for (int32_t v = 0; v < vertex_count && powers; v++)
+        powers[v] = ldexpf(1, take_below(s, 256) - 128);
+    return powers;
+}
+
+static void slide(const skinslide_slider *slider, int32_t vertex_count, skinslide_rule rule, stream *s) {
     skinslide_workspace_options options = SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT;
     skinslide_workspace *workspace = NULL;
     skinslide_error error;
@@ -73,12 +82,14 @@ static void slide(const skinslide_slider *slider, int32_t vertex_count, stream *
         take(s, &controls.envelope, sizeof controls.envelope);
         take_responses(&controls, s);
         float *hold = take_below(s, 2) ? take_new(s, (size_t)vertex_count * sizeof *hold) : NULL;
-        controls.hold = hold;
+        float *density = take_powers(s, vertex_count), *held = take_powers(s, vertex_count);
+        controls.hold = held ? held : hold, controls.vertex_density = density;
         skinslide_status status = skinslide_slide(workspace, points, &controls, slid, NULL, &error);
         for (int32_t i = 0; !status && i < 3 * vertex_count; i++)
             require(isfinite(slid[i]));
         require(!status || (error.message[0] && !strchr(error.message, '\n')));
-        free(points), free(slid), free(hold);
+        require(status != SKINSLIDE_SINGULAR || rule == SKINSLIDE_RULE_UNIT || rule == SKINSLIDE_RULE_FAST);
+        free(points), free(slid), free(hold), free(held), free(density);
     }
     skinslide_workspace_destroy(workspace);
 }
@@ -95,7 +106,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (status)
         require(!slider && error.message[0] && !strchr(error.message, '\n'));
     else
-        slide(slider, in.mesh.vertex_count, &s);
+        slide(slider, in.mesh.vertex_count, setup.rule, &s);
     skinslide_slider_destroy(slider);
     free(in.rest);
     return 0;
