@@ -193,6 +193,7 @@ typedef struct ss_patch {
     const skinslide_patch_setup *setup;
     int32_t setup_index, piece, piece_count;
     int32_t vertex_count, free_count, loop_count;
+    int32_t held_count;   /* on loops, fixed by the set-up alone */
     ss_faces faces;       /* corners hold patch vertices */
     int32_t *mesh_vertex; /* [vertex_count], ascending; the same for those that one was split into */
     uint8_t *split;       /* [vertex_count] one of several of its mesh vertex */

@@ -246,9 +246,22 @@ static bool holds_loop(const ss_patch *patch, int32_t loop) {
     return loop == 0 ? patch->setup->holes != SKINSLIDE_HOLES_FREE_ALL : patch->setup->holes == SKINSLIDE_HOLES_PINNED;
 }
 
+/* Whether the set-up holds any copy of a vertex. */
+static bool is_held(const ss_patch *patch, int32_t vertex) {
+    bool held = false;
+    for (int32_t i = patch->copy_start[vertex]; i < patch->copy_start[vertex + 1] && patch->setup->held; i++)
+        held = held || patch->setup->held[patch->copy[i]];
+    return held;
+}
+
 static void hold_vertices(ss_patch *patch) {
-    for (int32_t v = 0; v < patch->vertex_count; v++)
-        patch->fixed[v] = patch->split[v] || (patch->vertex_loop[v] >= 0 && holds_loop(patch, patch->vertex_loop[v]));
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        int32_t loop = patch->vertex_loop[v];
+        patch->fixed[v] = patch->split[v] || (loop >= 0 && holds_loop(patch, loop));
+        bool held = !patch->fixed[v] && loop >= 0 && is_held(patch, v);
+        patch->held_count += held;
+        patch->fixed[v] = patch->fixed[v] || held;
+    }
 }
 
 /* ---- Creation ---- */

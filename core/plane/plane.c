@@ -49,13 +49,21 @@ static skinslide_status embed_rest(plane_rest *own, skinslide_error *error) {
     return status;
 }
 
+/* Whether anything of a hole stays. */
+static bool holds_hole(const ss_patch *patch) {
+    bool holds = false;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        holds = holds || (patch->vertex_loop[v] > 0 && patch->fixed[v]);
+    return holds;
+}
+
 static skinslide_status lay_out_rest(plane_rest *own, const float *rest_points, skinslide_error *error) {
     const ss_patch *patch = own->head.patch;
     ss_net net = ss_net_of(patch, patch->fixed);
     skinslide_status status = ss_check_disk(patch, error);
     if (!status)
         status = ss_place_boundary(patch, patch->setup->boundary, rest_points, own->uv, error);
-    if (!status && patch->setup->holes == SKINSLIDE_HOLES_PINNED)
+    if (!status && holds_hole(patch))
         status = ss_place_holes(patch, rest_points, own->uv, error);
     if (!status)
         status = ss_system_create(&net, patch->label, &own->system, error);

@@ -41,6 +41,7 @@ skinslide_status skinslide_slider_patch_info(const skinslide_slider *slider, int
         .zero_length_edges = own->zero_length_edges,
         .collapsed_faces = part->rest_layout.collapsed,
         .folded_faces = part->rest_layout.folded,
+        .held_count = own->held_count,
     };
     ss_give(&answer, sizeof answer, info);
     return SKINSLIDE_OK;

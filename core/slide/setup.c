@@ -309,6 +309,7 @@ static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
         slider->setups[i].faces = slider->setups[i].corners = NULL;
         slider->setups[i].controls = NULL;
+        slider->setups[i].held = NULL;
     }
 }
 

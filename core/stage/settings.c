@@ -366,6 +366,7 @@ skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, s
     setup.rule = (skinslide_rule)taken[SS_ROW_RULE].choice;
     setup.interpolation = (skinslide_interpolation)(patch->live.interpolation < 0 ? taken[SS_ROW_INTERPOLATION].choice
                                                                                   : patch->live.interpolation);
+    setup.held = patch->held;
     ss_give(&setup, sizeof setup, out);
     return SKINSLIDE_OK;
 }

@@ -283,6 +283,7 @@ struct skinslide_stage_patch {
     ss_array indices;       /* of that, as authored */
     uint8_t *face_inside;   /* [face_count] */
     uint8_t *vertex_inside; /* [vertex_count] */
+    uint8_t *held;          /* [vertex_count] those that other meshes have points at; NULL: none */
     double unlike;          /* the factor by which rest differs, where sliding is senseless; 0: it is not */
     const char *warning;    /* NULL: none */
 };

@@ -1,6 +1,7 @@
 #include "meshes.h"
 
 #include "names.h"
+#include "space.h"
 
 #include <algorithm>
 #include <map>
@@ -171,6 +172,52 @@ std::vector<Patch> readPatches(Composition &composition, const Prim &prim, const
     return patches;
 }
 
+// ---- Meshes beside it ----
+
+// Points of a mesh at the first time, as floats; none where it has none.
+VtVec3fArray pointsOf(const Prim &prim) {
+    Record record(prim.attribute(names().points), Attribute::first);
+    VtVec3fArray points(static_cast<size_t>(skinslide_value_length(record)));
+    return skinslide_value_positions(record, floatsOf(&points), nullptr) == SKINSLIDE_OK ? points : VtVec3fArray();
+}
+
+// Meshes in the space of another, as a stage is traversed: without what is inside instances.
+std::vector<Prim> beside(Composition &composition, const Prim &prim) {
+    std::vector<Prim> found;
+    GfMatrix4d own = toWorld(composition, prim.path(), Attribute::first);
+    composition.traverse([&](const Prim &other) {
+        if (!other.active() || other.specifier() != SdfSpecifierDef)
+            return false;
+        if (other.typeName() == names().mesh && other.path() != prim.path() &&
+            toWorld(composition, other.path(), Attribute::first) == own)
+            found.push_back(other);
+        return !other.instanceable();
+    });
+    return found;
+}
+
+void meetNeighbours(Composition &composition, const Found &found, const Prim &prim, PatchedMesh *mesh,
+                    std::vector<std::string> *problems) {
+    if (std::none_of(mesh->patches.begin(), mesh->patches.end(), [](const Patch &patch) { return patch.wantsNeighbours(); }))
+        return;
+    for (const Prim &other : beside(composition, prim)) {
+        VtVec3fArray points = pointsOf(other);
+        if (points.empty())
+            continue;
+        if (find(composition, found, other, "")->skinned_by) {
+            problems->push_back(TfStringPrintf("%s: whether borders meet %s is not known here, since UsdSkel skins it; "
+                                               "sublayer its points, which skinslide cache "
+                                               "writes",
+                                               prim.path().GetText(), other.path().GetText()));
+            continue;
+        }
+        for (Patch &patch : mesh->patches) {
+            if (patch.wantsNeighbours())
+                patch.meet(points);
+        }
+    }
+}
+
 void merge(std::vector<double> *times) {
     int64_t count = static_cast<int64_t>(times->size());
     call(skinslide_stage_merge_times, times->data(), &count);
@@ -252,8 +299,9 @@ void sayWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
 }
 
 // Throws Fault, or adds problems and returns null.
-std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim &prim, const skinslide_stage_finding &finding,
-                                            const Params &params, std::vector<std::string> *problems) {
+std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Found &found, const Prim &prim,
+                                            const skinslide_stage_finding &finding, const Params &params,
+                                            std::vector<std::string> *problems) {
     auto mesh = std::make_shared<PatchedMesh>();
     mesh->path = prim.path();
     mesh->points = Property(composition, prim, skinslide_stage_next_input(SKINSLIDE_STAGE_MESH, nullptr));
@@ -262,6 +310,7 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Prim
     mesh->patches = readPatches(composition, prim, finding, mesh->mesh.get(), params, problems);
     if (mesh->patches.size() != static_cast<size_t>(finding.patch_count))
         return nullptr;
+    meetNeighbours(composition, found, prim, mesh.get(), problems);
     if (std::any_of(mesh->patches.begin(), mesh->patches.end(), [](const Patch &patch) { return patch.needsSubdivision(); }))
         readGroup(composition, prim, SKINSLIDE_STAGE_SUBDIVISION, mesh->mesh.get());
     mesh->times = timesOf(*mesh);
@@ -288,7 +337,7 @@ std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composit
         try {
             if (!finding->slides)
                 continue;
-            if (std::shared_ptr<const PatchedMesh> mesh = readMesh(composition, prim, *finding, params, problems))
+            if (std::shared_ptr<const PatchedMesh> mesh = readMesh(composition, found, prim, *finding, params, problems))
                 meshes.push_back(mesh);
         } catch (const Fault &bad) {
             problems->push_back(prim.path().GetString() + ": " + bad.what());

@@ -16,6 +16,7 @@ struct Names {
     const TfToken jointIndices{"primvars:skel:jointIndices"}, jointWeights{"primvars:skel:jointWeights"};
     const TfToken blendShapes{"skel:blendShapeTargets"}, boundSkeleton{"skel:skeleton"};
     const TfToken skelRoot{"SkelRoot"}, skeleton{"Skeleton"};
+    const TfToken xformOpOrder{"xformOpOrder"};
     const TfToken interpolation{"interpolation"}, constant{"constant"}, elementSize{"elementSize"};
 };
 

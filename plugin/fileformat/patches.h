@@ -27,6 +27,14 @@ class Patch {
     const char *warning() const {
         return skinslide_stage_patch_warning(_patch.get());
     }
+    // Whether it is to meet the other meshes in its space before it is set up.
+    bool wantsNeighbours() const {
+        return skinslide_stage_patch_wants_neighbours(_patch.get());
+    }
+    // Takes the points of one at the first time. Throws Fault.
+    void meet(const VtVec3fArray &others) {
+        call(skinslide_stage_patch_meet, _patch.get(), floatsOf(others), static_cast<int32_t>(others.size()));
+    }
     // Resolved paths of the files of its textures, but for tiles that only later times lie in.
     const std::set<std::string> &files() const {
         return _files;

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from pxr import Sdf, Tf, Usd, UsdGeom, Vt
 
+import rigs
 import skinslide
+import stages
 from layers import HEAD, make, open_mesh, points, refusal, said, solve_count, write
 from stages import FRAMES, MESH, PATCH, fin, grid, patched_stage, save, vectors
 
@@ -442,3 +444,24 @@ def test_mutated_files_neither_crash_nor_hang(tmp_path):
     )
     assert done.returncode == 0, done.stderr[-2000:]
     assert "150 files" in done.stdout
+
+
+def test_a_mesh_beside_it_that_is_skinned_is_named(tmp_path):
+    """Where borders may slide: whether they meet it nobody knows here."""
+
+    def edit(mesh):
+        mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:holes").Set("freeAll")
+        mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:forceDensityRule").Set("even")
+        stage = mesh.GetPrim().GetStage()
+        head = stages.add_mesh(stage, grid(centre=(1, 0, 0)), "/World/char/geo/head_GEO")
+        rigs.skeleton(stage)
+        rigs.bind(head)
+
+    path = make(tmp_path, edit)
+    with said() as messages:
+        open_mesh(path)
+    assert len(messages) == 1
+    assert (
+        f"{MESH}: whether borders meet /World/char/geo/head_GEO is not known here, since UsdSkel skins it; sublayer its "
+        "points, which skinslide cache writes"
+    ) in messages[0]

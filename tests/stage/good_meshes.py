@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
 
 import rigs
 import stages
@@ -416,6 +416,46 @@ POINTS = [
 ]
 
 
+def free_borders(scene: Scene) -> None:
+    setting("forceDensityRule", "even")(scene)
+    setting("holes", "freeAll")(scene)
+
+
+def unwelded(scene: Scene) -> None:
+    retyped("skinSlide:weld", Types.Bool, False)(scene)
+
+
+def beside(parent: str = "/World/char/geo", *more: Edit) -> Edit:
+    """A mesh that goes on from the last column of points; what else is done is done to both."""
+
+    def edit(scene: Scene) -> None:
+        mesh = stages.add_mesh(scene.stage, stages.grid(centre=(1, 0, 0)), f"{parent}/head_GEO")
+        for time in (Usd.TimeCode.Default(), *FRAMES):
+            points = np.array(mesh.GetPointsAttr().Get(time))
+            points[::7] = np.array(scene.points.Get(time))[6::7]
+            mesh.GetPointsAttr().Set(stages.vectors(points), time)
+        for each in more:
+            each(scene)
+            each(Scene(scene.folder, scene.stage, mesh))
+
+    return edit
+
+
+def moves(scene: Scene) -> None:
+    """Every kind of transform on the mesh and above it, of every precision, and the inverse of one."""
+    parent = UsdGeom.Xformable(scene.prim.GetParent())
+    if not parent.GetOrderedXformOps():
+        parent.AddTranslateOp().Set((1, 2, 3))
+        parent.AddRotateXOp(UsdGeom.XformOp.PrecisionFloat).Set(20.0)
+        parent.AddScaleOp(UsdGeom.XformOp.PrecisionHalf).Set(Gf.Vec3h(2))
+    mesh = UsdGeom.Xformable(scene.prim)
+    mesh.AddTranslateOp(UsdGeom.XformOp.PrecisionFloat, "pivot").Set(Gf.Vec3f(0, 1, 0))
+    mesh.AddRotateZYXOp(UsdGeom.XformOp.PrecisionDouble).Set((10, 20, 30))
+    mesh.AddOrientOp(UsdGeom.XformOp.PrecisionHalf).Set(Gf.Quath(0.5, 0.5, 0.5, 0.5))
+    mesh.AddTransformOp().Set(Gf.Matrix4d(2))
+    mesh.AddTranslateOp(UsdGeom.XformOp.PrecisionFloat, "pivot", True)
+
+
 REST = [
     *(Good(f"rest: primvars:{name}", rest=name) for name in ("rest", "pref", "Pref", "__Pref")),
     Good("rest: skinSlide:restPoints", rest_points, rest=""),
@@ -525,4 +565,8 @@ TIMES = [
     Good("weld: a tolerance", all_of(apart, retyped("skinSlide:weldTolerance", Types.Float, 1e-4)), shape=split_grid),
     Good("weld: points that part", parting, shape=split_grid),
     Good("weld: a point for each corner, subdivided", subdivided, shape=split_grid),
+    Good("borders: with another mesh", all_of(free_borders, beside())),
+    Good("borders: with another mesh, not welded", all_of(free_borders, beside(), unwelded)),
+    Good("borders: with another mesh, by the same transforms", all_of(free_borders, beside("/World/char/head", moves))),
+    Good("borders: with another mesh, elsewhere", all_of(free_borders, beside("/World/char/head"), moves)),
 ]

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from pxr import Usd, UsdGeom
+from pxr import Gf, Usd, UsdGeom
 
+import rigs
 import skinslide
 import stages
 from stages import FRAMES, MESH, PATCH
@@ -135,6 +136,66 @@ def test_borders_with_other_meshes_are_counted():
     ]
     UsdGeom.Xformable(stage.GetPrimAtPath(path)).AddTranslateOp().Set((0, 0, 1))
     assert not notes(skinslide.check(stage))
+
+
+COLUMN = slice(6, None, 7)  # the border that the other mesh goes on from
+
+
+def free_stage() -> tuple[Usd.Stage, UsdGeom.Mesh]:
+    """A sheet all of whose border slides along itself."""
+    stage, mesh = stages.patched_stage(stages.grid())
+    stages.set_property(mesh, "forceDensityRule", "even")
+    stages.set_property(mesh, "holes", "freeAll")
+    return stage, mesh
+
+
+def border_moves(stage: Usd.Stage, tmp_path) -> bool:
+    """Whether the border by the other mesh does; all else does, or the test says nothing."""
+    points = slid(stage, tmp_path)[FRAMES[-1]]
+    moved = (points != np.array(UsdGeom.Mesh(stage.GetPrimAtPath(MESH)).GetPointsAttr().Get(FRAMES[-1]))).any(axis=1)
+    assert moved[7:-7:7].any()
+    return bool(moved[COLUMN].any())
+
+
+def test_borders_that_may_slide_stay_with_another_mesh(tmp_path):
+    stage, mesh = free_stage()
+    assert border_moves(stage, tmp_path)
+    path = neighbour(stage)
+    assert not border_moves(stage, tmp_path)
+    (checked,) = skinslide.check(stage).meshes
+    assert checked.patches[0].held == 7
+    (record,) = skinslide.bake_to_file(stage, tmp_path / "out.usdc").as_dict()["meshes"]
+    assert record["patches"][0]["held_count"] == 7
+    assert (None, f"7 border points coincide with points of {path}, and stay with them") in notes(
+        skinslide.check(stage)
+    )
+    skinslide.SkinSlideMeshAPI.Apply(mesh).CreateWeldAttr(False)
+    assert border_moves(stage, tmp_path)
+
+
+def test_a_mesh_in_another_space_holds_nothing(tmp_path):
+    stage, _ = free_stage()
+    UsdGeom.Xformable(stage.GetPrimAtPath(neighbour(stage))).AddTranslateOp().Set((0, 0, 1))
+    assert border_moves(stage, tmp_path)
+
+
+def test_a_copy_of_the_mesh_holds_nothing(tmp_path):
+    stage, _ = free_stage()
+    stages.add_mesh(stage, stages.grid(), "/World/char/geo/proxy_GEO")
+    assert border_moves(stage, tmp_path)
+
+
+def test_a_skinned_mesh_meets_where_it_is_skinned(tmp_path):
+    """Its points are elsewhere until they are bound, but for their rounding."""
+    stage, body = free_stage()
+    skinslide.SkinSlideMeshAPI.Apply(body).CreateWeldToleranceAttr(1e-6)
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath(neighbour(stage)))
+    rigs.skeleton(stage)
+    binding = rigs.bind(mesh)
+    mesh.GetPointsAttr().Set(stages.vectors(np.array(mesh.GetPointsAttr().Get()) + np.float32([0, 0, 4])))
+    assert border_moves(stage, tmp_path)
+    binding.CreateGeomBindTransformAttr(Gf.Matrix4d().SetTranslate(Gf.Vec3d(0, 0, -4)))
+    assert not border_moves(stage, tmp_path)
 
 
 def test_points_of_a_place_are_painted_as_their_mean(split, tmp_path):

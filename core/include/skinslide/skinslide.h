@@ -233,12 +233,14 @@ typedef struct skinslide_patch_setup {
     skinslide_rule rule;
     skinslide_interpolation interpolation;
     const skinslide_controls *controls; /* used by frames that bring none of their own; NULL: the default */
+    const uint8_t *held; /* [mesh vertex_count] 1 for those that stay where they are on a border, whatever holes says, such as
+                            where another mesh meets this one; NULL: none */
 } skinslide_patch_setup;
 
 #define SKINSLIDE_PATCH_SETUP_DEFAULT                                                                                          \
     {                                                                                                                          \
         sizeof(skinslide_patch_setup), 0, 0, 0, 0, SKINSLIDE_BOUNDARY_AUTO, SKINSLIDE_HOLES_PINNED, SKINSLIDE_RULE_UNIT,       \
-            SKINSLIDE_INTERPOLATION_AUTO, 0                                                                                    \
+            SKINSLIDE_INTERPOLATION_AUTO, 0, 0                                                                                 \
     }
 
 /* ---- Points in one place ------------------------------------------------------------------------------------------------- */
@@ -343,10 +345,11 @@ typedef struct skinslide_patch_info {
     int32_t zero_length_edges; /* at rest: taken as 1e-6 of the mean edge */
     int32_t collapsed_faces; /* of no area in the rest embedding, such as a triangle with two edges on one side of the square */
     int32_t folded_faces;    /* turned over in the rest embedding */
+    int32_t held_count;      /* vertices on borders that the set-up holds, and that would slide else */
 } skinslide_patch_info;
 
 #define SKINSLIDE_PATCH_INFO_DEFAULT                                                                                           \
-    { sizeof(skinslide_patch_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_patch_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* How many patches there are: the patches of a slider are 0 to this. */
 SKINSLIDE_API int32_t skinslide_slider_patch_count(const skinslide_slider *slider);

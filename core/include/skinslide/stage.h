@@ -392,6 +392,19 @@ SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_p
  * patch, until faces are taken again. */
 SKINSLIDE_API const char *skinslide_stage_patch_warning(const skinslide_stage_patch *patch);
 
+/* Whether borders of the patch may slide, and are to stay where another mesh meets them: its holes are free, and skinSlide:weld
+ * is on. */
+SKINSLIDE_API skinslide_bool skinslide_stage_patch_wants_neighbours(const skinslide_stage_patch *patch);
+
+/* Takes another mesh in the same space, such as a head above a body: where it has points in the place of the patch's, as near
+ * as skinSlide:weldTolerance says, borders stay. One that has a point at each of the patch's is a copy of it, and counts for
+ * nothing.
+ *   others  in  [count][3] at the time at which the points of the patch's mesh were taken; those that are not finite are passed
+ *               over
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_patch_meet(skinslide_stage_patch *patch, const float *others, int32_t count,
+                                                          skinslide_error *error);
+
 /* Whether its interpolation depends on how the mesh is subdivided. */
 SKINSLIDE_API skinslide_bool skinslide_stage_patch_needs_subdivision(const skinslide_stage_patch *patch);
 

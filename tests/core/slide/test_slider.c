@@ -457,6 +457,53 @@ static void pieces_slide_as_if_alone(void **state) {
     free_mesh(&left), free_mesh(&right), free_mesh(&mesh);
 }
 
+/* ---- What a set-up holds ---- */
+
+/* Slides a pose with every other vertex held, those inside too, which are not meant: they slide as all others. */
+static void check_held(const test_mesh *mesh, skinslide_patch_setup choices) {
+    uint8_t *held = calloc((size_t)mesh->vertex_count, 1);
+    rig plain = rig_of(mesh, choices);
+    choices.held = held;
+    rig none = rig_of(mesh, choices);
+    for (int32_t v = 0; v < mesh->vertex_count; v += 2)
+        held[v] = 1;
+    rig own = rig_of(mesh, choices);
+    float *pose = random_pose(mesh, 5), *as_before = slide_with(&plain, mesh, pose, NULL, NULL);
+    float *unheld = slide_with(&none, mesh, pose, NULL, NULL), *slid = slide_with(&own, mesh, pose, NULL, NULL);
+    assert_same_bytes(unheld, as_before, POINT_BYTES(mesh));
+    const ss_patch *patch = own.slider->parts[0].patch, *free_patch = plain.slider->parts[0].patch;
+    int32_t count = 0;
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        int32_t vertex = patch->mesh_vertex[v];
+        bool is_held = held[vertex] && patch->vertex_loop[v] >= 0 && !free_patch->fixed[v];
+        assert_int_equal(patch->fixed[v], free_patch->fixed[v] || is_held);
+        if (patch->fixed[v])
+            assert_same_bytes(slid + 3 * vertex, pose + 3 * vertex, sizeof(float[3]));
+        count += is_held;
+    }
+    skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
+    skinslide_error error;
+    assert_ok(skinslide_slider_patch_info(own.slider, 0, &info, &error), &error);
+    assert_int_equal(info.held_count, count);
+    assert_true(count > 0 && largest_difference(slid, pose, 3 * (int64_t)mesh->vertex_count) > 0);
+    free(pose), free(as_before), free(unheld), free(slid), free(held);
+    free_rig(&plain), free_rig(&none), free_rig(&own);
+}
+
+static void what_is_held_of_free_borders_stays(void **state) {
+    (void)state;
+    test_mesh holes = grid_with_holes(false), grid = quad_grid(8, 6);
+    for (skinslide_rule rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_EVEN; rule++) {
+        skinslide_patch_setup choices = SKINSLIDE_PATCH_SETUP_DEFAULT;
+        choices.rule = rule, choices.holes = SKINSLIDE_HOLES_FREE;
+        check_held(&holes, choices);
+        choices.holes = SKINSLIDE_HOLES_FREE_ALL;
+        if (!ss_has_plane(rule))
+            check_held(&grid, choices), check_held(&holes, choices);
+    }
+    free_mesh(&holes), free_mesh(&grid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rest_slides_nothing),
@@ -475,6 +522,7 @@ int main(void) {
         cmocka_unit_test(sliding_lowers_stretch),
         cmocka_unit_test(points_may_be_slid_in_place),
         cmocka_unit_test(overlaps_are_weighted_means),
+        cmocka_unit_test(what_is_held_of_free_borders_stays),
         cmocka_unit_test(pieces_slide_as_if_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -436,6 +436,16 @@ class PatchMeaning(Taker):
         """What to warn of, or nothing."""
         return _said(lib.skinslide_stage_patch_warning(self.handle.pointer))
 
+    @property
+    def wants_neighbours(self) -> bool:
+        """Whether its borders are to stay where another mesh meets them, and would slide else."""
+        return bool(lib.skinslide_stage_patch_wants_neighbours(self.handle.pointer))
+
+    def meet(self, others: np.ndarray) -> None:
+        """Takes points (n, 3) of another mesh in the same space, at the first time. Raises Fault."""
+        given = np.ascontiguousarray(others, np.float32)
+        _call(lib.skinslide_stage_patch_meet, self.handle, ffi.from_buffer("float[]", given), len(given))
+
     def setup(self, controls: ControlsMeaning) -> PatchSetup:
         """The set-up with some controls. Raises Fault."""
         out = new("patch_setup")
@@ -449,6 +459,7 @@ class PatchMeaning(Taker):
             rule=token_of("rule", out.rule),
             interpolation=token_of("interpolation", out.interpolation),
             controls=controls.get(),
+            held=_optional(out.held, np.bool_, self.mesh.shape.vertex_count),
         )
 
 

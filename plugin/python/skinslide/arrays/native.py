@@ -65,6 +65,7 @@ class PatchSetup:
         rule: unit, fast, relaxed or even: where skin slides to.
         interpolation: auto, linear, meanValue or limit: how a place within a face becomes a point.
         controls: What is painted.
+        held: Of each vertex of the mesh (V,) whether it stays where it is on a border, whatever holes says; None: none.
     """
 
     name: str
@@ -75,6 +76,7 @@ class PatchSetup:
     rule: str = "unit"
     interpolation: str = "auto"
     controls: Controls = field(default_factory=Controls)
+    held: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,6 +208,9 @@ class Sample(NamedTuple):
     slid: np.ndarray
 
 
+_CTYPES: dict[type, str] = {np.int32: "int32_t[]", np.float32: "float[]", np.bool_: "uint8_t[]"}
+
+
 class Arguments:
     """Fills the core's structs from arrays, and holds the memory they point into for as long as this object lives."""
 
@@ -214,8 +219,7 @@ class Arguments:
 
     def pointer(self, values: Any, dtype: type, shape: tuple[int, ...], what: str) -> Any:
         """A pointer to values as a contiguous array of that type and shape; -1 in the shape is any length."""
-        ctype = "int32_t[]" if dtype == np.int32 else "float[]"
-        buffer = ffi.from_buffer(ctype, as_array(values, dtype, shape, what))
+        buffer = ffi.from_buffer(_CTYPES[dtype], as_array(values, dtype, shape, what))
         self._alive.append(buffer)
         return buffer
 
@@ -269,6 +273,7 @@ class Arguments:
         target.faces = self.pointer(faces, np.int32, (-1,), f"{where}faces")
         target.face_count = len(faces)
         target.corners = self.optional(patch.corners, np.int32, (4,), f"{where}corners")
+        target.held = self.optional(patch.held, np.bool_, (sizes.vertices,), f"{where}held")
         for setting in ("boundary", "holes", "rule", "interpolation"):
             setattr(target, setting, enum_value(setting, getattr(patch, setting), where))
         controls = new("controls")

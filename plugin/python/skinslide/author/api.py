@@ -742,7 +742,8 @@ class SkinSlideMeshAPI(AppliedSchema):
         Those that coincide at rest and at every sample of points, and whose faces meet there edge to edge, such as
         both sides of a UV seam. Patches go on across them, each goes where the others go, and what is painted on
         them counts as its mean. What parts during the shot, or would give an edge more than two faces, is not one,
-        and is named by check.
+        and is named by check. Borders that would slide, since holes is free, stay where another mesh in the same
+        space has points at first, so that nothing cracks.
 
         Returns:
             The attribute skinSlide:weld, bool, uniform; not valid where there is none.

@@ -10,8 +10,9 @@ from pxr import Usd
 
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider
-from skinslide.problems import FrameProblem, Problem
+from skinslide.problems import FrameProblem, Problem, SliderError
 from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.neighbours import find_neighbours
 
 
 def advice(mesh: PatchedMesh, pieces: Sequence[PatchInfo], slider: Slider | None) -> Iterator[Problem]:
@@ -63,10 +64,12 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
     """Points that another mesh has in the same place: what is open there stays closed as long as they stay."""
     try:
         points = mesh.points_at(Usd.TimeCode.EarliestTime())
-    except FrameProblem:
+        slider.check_points(points)
+    except (FrameProblem, SliderError):
         return  # which is said of its frame
-    for path, others in mesh.others():
-        if _apart(points, others):
+    for path, every in find_neighbours(mesh.prim):
+        others = every[np.isfinite(every).all(axis=1)]
+        if not len(others) or _apart(points, others):
             continue
         found = [slider.neighbours(patch, points, others) for patch in range(len(slider.patches))]
         for name in dict.fromkeys(patch.name for patch in mesh.patches):

@@ -47,6 +47,7 @@ class CheckedPatch:
         faces: Of the piece.
         free: Vertices that may slide.
         holes: Boundary loops but the longest.
+        held: Vertices on borders that stay where another mesh meets them, and would slide else.
         zero_length_edges: Of no length at rest.
         collapsed_faces: Of no area in the rest embedding.
         folded_faces: Turned over in the rest embedding.
@@ -60,6 +61,7 @@ class CheckedPatch:
     faces: int
     free: int
     holes: int
+    held: int
     zero_length_edges: int
     collapsed_faces: int
     folded_faces: int
@@ -318,6 +320,7 @@ def _checked(info: PatchInfo) -> CheckedPatch:
         faces=info.face_count,
         free=info.free_count,
         holes=info.hole_count,
+        held=info.held_count,
         zero_length_edges=info.zero_length_edges,
         collapsed_faces=info.collapsed_faces,
         folded_faces=info.folded_faces,

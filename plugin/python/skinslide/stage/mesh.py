@@ -221,17 +221,6 @@ class PatchedMesh:
             with contextlib.suppress(FrameProblem):
                 yield 0 if time.IsDefault() else time.GetValue(), self.points_at(time)
 
-    def others(self) -> Iterator[tuple[str, np.ndarray]]:
-        """Other meshes of the stage in the same space, and their points (n, 3), at the first time."""
-        first, frames = Usd.TimeCode.EarliestTime(), UsdGeom.XformCache()
-        own = frames.GetLocalToWorldTransform(self.prim)
-        for prim in self.stage.Traverse():
-            if prim == self.prim or not prim.IsA(UsdGeom.Mesh) or frames.GetLocalToWorldTransform(prim) != own:
-                continue
-            points = UsdGeom.Mesh(prim).GetPointsAttr().Get(first)
-            if points and np.isfinite(np.asarray(points)).all():
-                yield str(prim.GetPath()), np.asarray(points)
-
     def warnings(self) -> Iterator[Problem]:
         """What rest points and patches are warned of."""
         if self.meaning.warning:

@@ -23,6 +23,7 @@ from skinslide.arrays.meaning import (
 from skinslide.arrays.native import Controls, PatchSetup
 from skinslide.problems import Fault
 from skinslide.stage import schema
+from skinslide.stage.neighbours import find_neighbours
 from skinslide.stage.textures import give_files
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
@@ -118,6 +119,9 @@ def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation 
     """The patch, or everything that is wrong with it."""
     meaning = PatchMeaning(mesh, name)
     faults = take_settings(meaning, prim, inputs("patch"))
+    with noting(faults):
+        for other in find_neighbours(prim) if meaning.wants_neighbours else ():
+            meaning.meet(other.points)
     animation = Animation(prim, meaning)
     faults += animation.faults
     with noting(faults):
