@@ -14,11 +14,13 @@ static int fail(const skinslide_error *error) {
     return 1;
 }
 
-/* A patch begins with its faces, which may not be missing. */
+/* Of a patch, the first primvar is its faces. */
 static int faces_are_asked_for(void) {
     const skinslide_stage_input *input = skinslide_stage_next_input(SKINSLIDE_STAGE_PATCH, NULL);
     skinslide_value none = SKINSLIDE_VALUE_DEFAULT;
-    return input && input->is_primvar && skinslide_value_length(&none) == 0;
+    while (input && !input->is_primvar)
+        input = skinslide_stage_next_input(SKINSLIDE_STAGE_PATCH, input);
+    return input && skinslide_value_length(&none) == 0;
 }
 
 int main(void) {
