@@ -2,7 +2,7 @@
 # Sets up the machine and runs every test: format, lint, the C tests plain and sanitized, the Python tests.
 # Arguments go to pytest: ./tests/run.sh -k bake
 set -euo pipefail
-EXTRA_PACKAGES=(libcmocka-dev pkg-config chromium chromium-driver)
+EXTRA_PACKAGES=(libcmocka-dev pkg-config chromium chromium-driver slurm-wlm munge)
 . "$(dirname "$0")/../examples/setup.sh"
 cd "$root"
 

@@ -47,7 +47,7 @@ def python_snippets():
 def shell_commands():
     """The lines of indented blocks, and inline code, that call the tool."""
     return re.findall(
-        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|preview|bake|cache|maps|stitch) [^`\n]*)",
+        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|preview|bake|cache|maps|stitch|farm) [^`\n]*)",
         README,
         re.MULTILINE,
     )

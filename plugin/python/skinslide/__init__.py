@@ -1,9 +1,9 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `stitch` puts chunks of a bake together, `cache` writes what UsdSkel skins, `check` says what
-would be slid, `preview` draws it before and after, `maps` in texture coordinates, as a bake also does for `Pictures`
-and `Maps`; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on a mesh's other side. `Slider` is the
-same on numpy arrays, and needs no USD.
+`bake` corrects a stage, `farm` writes a job of chunks that `stitch` puts together, `cache` writes what UsdSkel skins,
+`check` says what would be slid, `preview` draws it before and after, `maps` in texture coordinates, as a bake also does
+for `Pictures` and `Maps`; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on a mesh's other side.
+`Slider` is the same on numpy arrays, and needs no USD.
 
 Importing skinslide loads nothing but this: each name brings what it needs when it is first asked for.
 """
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         StageProblems,
         UsageError,
     )
+    from skinslide.queues.farm import FarmReport, farm
     from skinslide.shot.bake import bake, bake_to_file
     from skinslide.shot.cache import CachedMesh, CacheReport, cache
     from skinslide.shot.candidates import Candidate
@@ -63,6 +64,7 @@ __all__ = [
     "Diagnostics",
     "DrawnMaps",
     "DrawnPictures",
+    "FarmReport",
     "Frame",
     "FrameProblem",
     "FrameSpecError",
@@ -98,6 +100,7 @@ __all__ = [
     "check",
     "choose_lookup",
     "cmake_dir",
+    "farm",
     "maps",
     "mirror",
     "mirror_to_file",
@@ -134,6 +137,7 @@ _HOMES = {
         "StageProblems",
         "UsageError",
     ),
+    "queues.farm": ("FarmReport", "farm"),
     "shot.bake": ("bake", "bake_to_file"),
     "shot.cache": ("CachedMesh", "CacheReport", "cache"),
     "shot.candidates": ("Candidate",),

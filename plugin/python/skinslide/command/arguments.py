@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from skinslide.command.outcome import EXIT_CODES, tell
 from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, number_or_name, positive_text
-from skinslide.shot.options import ChunkOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
+from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
 
 _MAP_SIZE = "--map-size"  # of bake, whose --size is that of pictures; maps understands it too
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
@@ -87,6 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_mirror(_add_command(commands, "mirror", "write a layer that copies a patch to a mesh's other side"))
     _add_cache(_add_command(commands, "cache", "write the points that UsdSkel skins into a layer of samples"))
     _add_stitch(_add_command(commands, "stitch", "put chunks of frames, baked apart, into one layer"))
+    _add_farm(_add_command(commands, "farm", "write a job that bakes chunks of frames on a farm and stitches them"))
     return parser
 
 
@@ -366,6 +367,24 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
         help="those that the chunks must have, no more and no less, such as 1001:1024 (default: those of which --chunk "
         "made parts, else all of the shot between the first and the last)",
     )
+    _add_printing(command)
+
+
+def _add_farm(command: argparse.ArgumentParser) -> None:
+    _add_stage(command)
+    command.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="OUT",
+        help="the layer that the job is to make, .usda, .usdc or .usd, beside which the job is written, "
+        "OUT.openjd.json or OUT.slurm.sh; or the job, .json, .yaml or .sh, whose layer then has its name",
+    )
+    _add_options(command, FarmOptions)
+    _add_options(command, SlideOptions, "prims", "frames")
+    _add_options(command, LayerOptions, *(each.name for each in fields(LayerOptions) if each.name != "share"))
+    command.add_argument("--pictures", metavar="DIR", help="a folder for pictures, which a task draws at the end")
+    _add_page(command)
     _add_printing(command)
 
 

@@ -171,6 +171,14 @@ def _stitch(
     return _reported(report, {"chunks": chunks, "output": output}, lines, json, quiet), DONE
 
 
+def _farm(
+    farm: Callable[..., Any], stage: str, output: str, *, json: bool = False, quiet: bool = False, **options: Any
+) -> Result:
+    report = farm(stage, output, **options)
+    lines = [report.text(), *_written(report.job)]
+    return _reported(report, {"stage": stage}, lines, json, quiet), DONE
+
+
 def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bool, quiet: bool) -> str:
     """What is printed of a report: one document, lines, or its warnings alone, which then go to stderr."""
     if json:
@@ -226,4 +234,5 @@ _COMMANDS: dict[str, tuple[Callable[..., Result], str, str]] = {
     "paint": (_author, "author.paint", "paint_to_file"),
     "mirror": (_author, "author.mirror", "mirror_to_file"),
     "stitch": (_stitch, "shot.stitch", "stitch"),
+    "farm": (_farm, "queues.farm", "farm"),
 }

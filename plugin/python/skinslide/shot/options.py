@@ -23,6 +23,7 @@ Prims: TypeAlias = "PrimsLike | None"
 Frames: TypeAlias = "FramesLike | None"
 
 VIEWS = ("chequer", "stretch")
+QUEUES = ("openjd", "slurm")
 FORMATS = ("png", "exr")
 
 
@@ -161,6 +162,29 @@ class ChunkOptions(Options):
         action="store_true",
         help="bake nothing where the output is whole already, of the same frames, set-up, cache and options, by the "
         "same version",
+    )
+
+
+@dataclass(frozen=True)
+class FarmOptions(Options):
+    """How a job for a farm is made."""
+
+    chunk: int = option(
+        1,
+        checks.whole(1),
+        "--chunk",
+        type=checks.positive_text,
+        metavar="N",
+        required=True,
+        help="how many frames a task bakes, at most",
+    )
+    form: str = option(
+        "openjd",
+        checks.one_of("format", QUEUES),
+        "--format",
+        choices=QUEUES,
+        help="openjd: a template of Open Job Description, for openjd run and AWS Deadline Cloud; slurm: a script that "
+        "submits an array and what follows it (default: %(default)s)",
     )
 
 

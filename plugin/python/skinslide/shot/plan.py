@@ -95,15 +95,21 @@ def read_sliders(
     return list(zip(meshes, sliders, strict=True)), problems
 
 
+def outside(mesh: PatchedMesh, named: Sequence[float]) -> list[float]:
+    """Those of the frames that are beyond its samples, where it has some."""
+    samples = mesh.sample_times()
+    return [frame for frame in named if samples and not samples[0] <= frame <= samples[-1]]
+
+
 def _outside(meshes: list[PlannedMesh], named: list[float]) -> Iterator[Problem]:
     """Warns of frames beyond the samples of a mesh, where USD holds the nearest."""
     for mesh, *_ in meshes:
-        samples = mesh.sample_times()
-        outside = [frame for frame in named if samples and not samples[0] <= frame <= samples[-1]]
-        if outside:
+        frames = outside(mesh, named)
+        if frames:
+            samples = mesh.sample_times()
             span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
-            message = f"{len(outside)} frames are beyond the samples, which go {span}; the nearest is held there"
-            yield Problem("warning", mesh.path, None, outside[0], message)
+            message = f"{len(frames)} frames are beyond the samples, which go {span}; the nearest is held there"
+            yield Problem("warning", mesh.path, None, frames[0], message)
 
 
 def _planned(mesh: PatchedMesh, slider: Slider, asked: AskedFrames) -> PlannedMesh:

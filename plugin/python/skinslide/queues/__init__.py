@@ -1,0 +1,1 @@
+"""Jobs for the queues that studios have: chunks baked apart, then put together."""

@@ -1,0 +1,196 @@
+"""Writes a job for a farm: tasks that each bake a chunk of frames, one that stitches them, one that draws.
+
+meshes = read the stage                     any error, or a frame that it does not have: stop here
+frames = what a bake would write            divided into chunks
+steps = the commands of each                in the words of the queue that is asked for
+put the job in place
+"""
+
+from __future__ import annotations
+
+import os
+import sysconfig
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from skinslide.problems import Problem, StageProblems, errors, frame_text, lines_text
+from skinslide.queues.openjd import template
+from skinslide.queues.slurm import script
+from skinslide.queues.steps import Job
+from skinslide.shot.checks import Options
+from skinslide.shot.frames import checked_frames, spec_of
+from skinslide.shot.options import FarmOptions, Frames, LayerOptions, Prims, SlideOptions
+from skinslide.shot.plan import outside, times_of
+from skinslide.stage.given import StrPath
+from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.opening import open_stage
+from skinslide.write.overs import EXTENSIONS
+from skinslide.write.place import check_not_input, check_output, given_output, replacing, writing
+
+# How a queue's job is written, what its name ends in, and what other names do.
+_QUEUES: dict[str, tuple[Callable[[Job], str], str, tuple[str, ...]]] = {
+    "openjd": (template, ".openjd.json", (".json", ".yaml", ".yml")),
+    "slurm": (script, ".slurm.sh", (".sh",)),
+}
+_MADE = ".usdc"  # of a job whose own name was given
+
+
+@dataclass(frozen=True)
+class FarmReport:
+    """What a job will do.
+
+    Attributes:
+        job: The file that was written.
+        layer: What the job will make.
+        chunks: The layers that its tasks will bake, in order.
+        frames: All of them, ascending.
+        problems: What is worth knowing of the stage.
+    """
+
+    job: str
+    layer: str
+    chunks: list[str]
+    frames: list[float]
+    problems: list[Problem]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
+        return asdict(self)
+
+    def text(self) -> str:
+        """What it will do, and every problem, for a terminal."""
+        tasks = f"{len(self.chunks)} task{'s' * (len(self.chunks) != 1)}"
+        span = f"{frame_text(self.frames[0])} to {frame_text(self.frames[-1])}"
+        return lines_text([f"{len(self.frames)} frames, {span}, in {tasks}", *map(str, self.problems)])
+
+
+def farm(
+    stage: StrPath,
+    output: StrPath,
+    *,
+    chunk: int,
+    form: str = "openjd",
+    prims: Prims = None,
+    frames: Frames = None,
+    max_folded: int | None = None,
+    max_clamped: int | None = None,
+    max_stretch: float | None = None,
+    max_added_stretch: float | None = None,
+    max_roughness: float | None = None,
+    diagnostics: bool = False,
+    pictures: StrPath | None = None,
+    html: StrPath | None = None,
+) -> FarmReport:
+    """Writes a job that bakes a shot on a farm, to the samples of one bake of all the frames.
+
+    A task that is run again bakes nothing where its chunk is whole, so a job that failed is run again as it is.
+
+    Args:
+        stage: The path of the stage, which the machines of the farm have too.
+        output: The layer that the job is to make, .usda, .usdc or .usd, beside which the job and its chunks are; or
+            the job, whose layer then has its name.
+        chunk: How many frames a task bakes, at most.
+        form: openjd, a template of Open Job Description; slurm, a script that submits an array and what follows it.
+        prims: As for `bake_to_file`.
+        frames: As for `bake_to_file`; none may be beyond the samples.
+        max_folded: As for `bake_to_file`, of each task.
+        max_clamped: As for `bake_to_file`, of each task.
+        max_stretch: As for `bake_to_file`, of each task.
+        max_added_stretch: As for `bake_to_file`, of each task.
+        max_roughness: As for `bake_to_file`, of each task.
+        diagnostics: As for `bake_to_file`.
+        pictures: A folder for pictures of all frames, which a task draws at the end; None: it draws none.
+        html: A page of them; None: none.
+
+    Returns:
+        What the job will do.
+
+    Raises:
+        UsageError: Arguments that cannot be.
+        StageError: The stage cannot be opened, or the job not be written.
+        StageProblems: The stage cannot be slid, or does not have a frame.
+    """
+    sliding, own = SlideOptions.of(prims, frames, "auto", 1), FarmOptions(chunk, form)
+    limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)
+    baking = LayerOptions(*limits, False, diagnostics)
+    write, suffix, names = _QUEUES[own.form]
+    job_file, layer = _places(given_output("output", output), suffix, names)
+    wanted, problems = _wanted(Path(stage), [job_file, layer], sliding)
+    job = Job(
+        tool=_tool(),
+        stage=Path(os.path.abspath(stage)),
+        layer=Path(os.path.abspath(layer)),
+        count=-(-len(wanted) // own.chunk),
+        sliding=[*_words(sliding, "prims"), *(["--frames", _spec(frames)] if frames is not None else [])],
+        baking=list(_words(baking)),
+        drawing=_drawing(pictures, html),
+    )
+    with replacing(job_file) as partial, writing(job_file):
+        partial.write_text(write(job), encoding="utf-8")
+    chunks = [str(layer.with_name(name)) for name in job.chunks]
+    return FarmReport(str(job_file), str(layer), chunks, wanted, problems)
+
+
+def _places(output: Path, suffix: str, own: tuple[str, ...]) -> tuple[Path, Path]:
+    """Of the job and of the layer. Raises UsageError."""
+    if output.suffix.lower() in own:
+        check_output(output, own)
+        stem = output.name.removesuffix(suffix) if output.name.endswith(suffix) else output.stem
+        return output, output.with_name(stem + _MADE)
+    check_output(output, (*EXTENSIONS, *own))
+    job = output.with_name(output.stem + suffix)
+    check_output(job, own)
+    return job, output
+
+
+def _wanted(stage: Path, written: list[Path], options: SlideOptions) -> tuple[list[float], list[Problem]]:
+    """The frames that a bake would write, and what there is to say. Raises StageProblems."""
+    opened = open_stage(stage)
+    for file in written:
+        check_not_input(file, opened, stage)
+    meshes, problems = read_meshes(opened, options.prims)
+    problems += _beyond(meshes, options.named)
+    if errors(problems):
+        raise StageProblems(problems)
+    times = {time.GetValue() for mesh in meshes for time in times_of(mesh, options.frames) if not time.IsDefault()}
+    if not times:
+        raise StageProblems([Problem("error", "", None, None, "nothing that is slid has samples: one bake will do")])
+    return sorted(times), problems
+
+
+def _beyond(meshes: list[PatchedMesh], named: list[float]) -> Iterator[Problem]:
+    """The frames that no mesh has: a bake would hold others there, and a job of them is a mistake."""
+    moving = [mesh for mesh in meshes if mesh.sample_times()]
+    lost = set(named).intersection(*(outside(mesh, named) for mesh in moving))
+    if lost and moving:
+        message = f"{len(lost)} of the frames are beyond the samples of every mesh"
+        yield Problem("error", "", None, min(lost), message)
+
+
+def _tool() -> str:
+    """The command, where it is here; where it is elsewhere, queues have ways to say so."""
+    script = Path(sysconfig.get_path("scripts")) / "skinslide"
+    return str(script) if script.exists() else script.name
+
+
+def _spec(frames: Any) -> str:
+    """As it was given, or as many words."""
+    return frames if isinstance(frames, str) else spec_of(checked_frames(frames))
+
+
+def _words(options: Options, *names: str) -> Iterator[str]:
+    """Options as they stand on a command line: those named, or all, that are not as by default."""
+    for each in fields(options):
+        value = getattr(options, each.name)
+        if (names and each.name not in names) or value is None or value is False:
+            continue
+        for one in value if isinstance(value, list) else [value]:
+            yield from [each.metadata["flag"]] if one is True else [each.metadata["flag"], str(one)]
+
+
+def _drawing(pictures: StrPath | None, html: StrPath | None) -> dict[str, Path]:
+    """The places of a preview, by their options; none where it is not wanted."""
+    places = {"-o": pictures, "--html": html}
+    return {flag: Path(os.path.abspath(place)) for flag, place in places.items() if place}

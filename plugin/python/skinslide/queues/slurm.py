@@ -1,0 +1,77 @@
+"""A job as a script that hands it to Slurm: an array of tasks, and what runs once they have ended.
+
+Stitching waits until every task has ended, however: what is not there it names, and is run again with
+`scontrol requeue`, as a task is. After `afterok` it would wait for ever for a task that was requeued.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+
+from skinslide.queues.steps import Job
+
+_TASK = "$SLURM_ARRAY_TASK_ID"
+
+_SCRIPT = """\
+#!/usr/bin/env bash
+# {name}: {count} tasks, each a chunk of frames, then one that puts them together.
+#     bash {file} [options of sbatch, such as --partition=long]
+# Prints the ids of the jobs. A task that failed, and then the last, is run again by: scontrol requeue ID
+set -euo pipefail
+
+submit() {{ sbatch --parsable --chdir={folder} --requeue --open-mode=append "$@"; }}
+
+bake=$(submit --job-name={bake} --array=1-{count} --output={log}.%A_%a.log "$@" <<'TASK'
+#!/usr/bin/env bash
+exec {bake_words}
+TASK
+)
+bake=${{bake%%;*}}
+echo "bake $bake"
+{after}"""
+
+_AFTER = """\
+
+{step}=$(submit --job-name={name} --dependency={when}:"${waits}" --output={log}.%j.log "$@" <<'TASK'
+#!/usr/bin/env bash
+exec {words}
+TASK
+)
+{step}=${{{step}%%;*}}
+echo "{step} ${step}"
+"""
+
+
+def script(job: Job) -> str:
+    folder, stem = str(job.folder), job.layer.stem
+    log = shlex.quote(f"{stem}.slurm".replace("%", "%%"))
+    bake = job.bake(str(job.stage), folder, _TASK)
+    after = _after(job, "stitch", "afterany", "bake", job.stitch(folder), log)
+    if job.drawing:
+        after += _after(job, "draw", "afterok", "stitch", job.preview(str(job.stage), folder), log)
+    return _SCRIPT.format(
+        name=job.name,
+        count=job.count,
+        file=shlex.quote(f"{stem}.slurm.sh"),
+        folder=shlex.quote(folder),
+        bake=shlex.quote(f"{job.name} bake"),
+        log=log,
+        bake_words=_line(job.tool, bake),
+        after=after,
+    )
+
+
+def _after(job: Job, step: str, when: str, waits: str, words: Sequence[str], log: str) -> str:
+    """A step that begins once another has ended."""
+    name = shlex.quote(f"{job.name} {step}")
+    return _AFTER.format(step=step, name=name, when=when, waits=waits, log=log, words=_line(job.tool, words))
+
+
+def _line(tool: str, words: Sequence[str]) -> str:
+    """A command for a shell that knows the number of the task."""
+    return " ".join(f'"{_TASK}"'.join(map(_quoted, word.split(_TASK))) for word in [tool, *words])
+
+
+def _quoted(part: str) -> str:
+    return shlex.quote(part) if part else ""

@@ -1,0 +1,87 @@
+"""Jobs of Slurm, submitted to a real one: tasks that are killed and requeued, and the layer of one bake."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import slurm
+from jobs import content, kill_baking, tool, wait_until
+
+pytestmark = pytest.mark.skipif(bool(slurm.why_not()), reason=f"Slurm: {slurm.why_not()}")
+
+
+@pytest.fixture(scope="module")
+def environment():
+    with slurm.running() as environment:
+        yield environment
+
+
+class Submitted:
+    """A job of four tasks, and what comes after them."""
+
+    def __init__(self, shot: Path, environment: dict[str, str]):
+        self.folder, self._environment = shot.parent, environment
+        tool("farm", shot, "-o", self.folder / "slid.usdc", "--chunk", "2", "--format", "slurm")
+        lines = self.run("bash", self.folder / "slid.slurm.sh").splitlines()
+        self.ids = dict(line.split() for line in lines)
+
+    def run(self, *words: str | Path) -> str:
+        done = subprocess.run(words, env=self._environment, capture_output=True, text=True, check=True)
+        return done.stdout
+
+    def states(self) -> dict[str, str]:
+        """Of every task that the queue knows, and of what comes after."""
+        told = self.run("squeue", "--array", "--states=all", "--noheader", "--format=%i %T").splitlines()
+        return dict(line.split() for line in told)
+
+    def wait(self, task: str, *states: str) -> None:
+        wait_until(lambda: self.states().get(task) in states, f"{task} that is {states}", 0.1)
+
+    def task(self, number: int) -> str:
+        return f"{self.ids['bake']}_{number}"
+
+    def chunk(self, number: int) -> Path:
+        return self.folder / f"slid.chunk{number}.usdc"
+
+    def requeue(self, task: str) -> None:
+        """Without the two minutes that Slurm leaves to what may be left of the task."""
+        self.run("scontrol", "requeue", task)
+        self.wait(task, "PENDING")
+        self.run("scontrol", "update", f"JobId={task}", "StartTime=now")
+
+    def said(self, task: str) -> str:
+        return (self.folder / f"slid.slurm.{task}.log").read_text()
+
+
+@pytest.fixture
+def job(shot, environment) -> Submitted:
+    return Submitted(shot, environment)
+
+
+def test_tasks_that_are_killed_and_requeued(job, whole):
+    """One as when a machine goes down, one by its queue; the others are baked once."""
+    kill_baking(job.folder, "slid.chunk1.usdc")
+    job.wait(job.task(1), "FAILED")
+    job.requeue(job.task(1))
+    wait_until(lambda: job.states()[job.task(3)] == "RUNNING", "task 3", 0.02)
+    job.requeue(job.task(3))
+    job.wait(job.ids["stitch"], "COMPLETED")
+    assert content(job.folder / "slid.usdc") == whole
+    assert job.said(job.task(2)).count("frames/s") and not job.said(job.task(2)).count("whole already")
+    assert list(job.folder.glob("slid.chunk*.usdc")) and not job.states().get(job.task(5))
+
+
+def test_a_task_that_fails_is_named_and_tried_again(job, whole):
+    """Submitted once more, the job bakes what is missing."""
+    job.chunk(4).mkdir()
+    job.wait(job.ids["stitch"], "FAILED")
+    assert f"error: output {job.chunk(4)}: is a folder" in job.said(job.task(4))
+    assert f"error: cannot open {job.chunk(4)}: it is a folder" in job.said(job.ids["stitch"])
+    assert not (job.folder / "slid.usdc").exists()
+    job.chunk(4).rmdir()
+    before = [job.chunk(number).stat().st_ino for number in (1, 2, 3)]
+    again = Submitted(job.folder / "shot.usda", job._environment)
+    again.wait(again.ids["stitch"], "COMPLETED")
+    assert [job.chunk(number).stat().st_ino for number in (1, 2, 3)] == before
+    assert content(job.folder / "slid.usdc") == whole
