@@ -9,9 +9,8 @@
 
 #include <string.h>
 
-#define TIE       1e6   /* of the ends of an edge without length: of eta k, over the square of the mean edge */
-#define SHORTNESS 1e6   /* mean edge over the shortest that has a length */
-#define FIRMNESS  1e-10 /* far over rounding, far under what holds skin of a million faces that is closed */
+#define TIE      1e6   /* of the ends of an edge without length: of eta k, over the square of the mean edge */
+#define FIRMNESS 1e-10 /* far over rounding, far under what holds skin of a million faces that is closed */
 
 static bool slides(const ss_evener *evener, int32_t vertex) {
     return evener->weight[vertex] > 0;
@@ -19,8 +18,8 @@ static bool slides(const ss_evener *evener, int32_t vertex) {
 
 double ss_hold_of(const ss_evener *evener, const ss_spring *spring) {
     const double *hold = evener->hold;
-    double mean = 0.5 * (hold[spring->end[0]] + hold[spring->end[1]]), shortest = evener->sheet->patch->shortest;
-    double stiffness = spring->square > 0 ? 1 / spring->square : TIE / (SHORTNESS * SHORTNESS * shortest * shortest);
+    double mean = 0.5 * (hold[spring->end[0]] + hold[spring->end[1]]), edge = evener->sheet->patch->mean_edge;
+    double stiffness = spring->square > 0 ? 1 / spring->square : TIE / (edge * edge);
     return mean * evener->paint[spring->edge] * stiffness;
 }
 

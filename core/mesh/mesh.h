@@ -205,7 +205,8 @@ typedef struct ss_patch {
     int32_t *vertex_corner;    /* [vertex_count] a corner at the vertex; on the boundary the one whose side leaves along it */
     int32_t (*edge_vertex)[2]; /* [edge_count], lower first */
     double *rest_length;       /* [edge_count] clamped to shortest */
-    double shortest;           /* 1e-6 of the mean rest edge */
+    double mean_edge;          /* at rest */
+    double shortest;           /* 1e-6 of that */
     int32_t zero_length_edges;
     int32_t *
         loop_start; /* [loop_count + 1]; loop 0 is the outer boundary, the others holes, as faces go round them; none where it is

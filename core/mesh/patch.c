@@ -209,7 +209,8 @@ static skinslide_status measure_rest(ss_patch *patch, const float *rest_points, 
         sum += patch->rest_length[e];
     if (sum == 0)
         return ss_fail(error, SKINSLIDE_BAD_PATCH, "%s: all its rest points are in one place", patch->label);
-    patch->shortest = 1e-6 * (sum / edges);
+    patch->mean_edge = sum / edges;
+    patch->shortest = 1e-6 * patch->mean_edge;
     patch->zero_length_edges = ss_edge_lengths(patch, rest_points, patch->rest_length);
     return SKINSLIDE_OK;
 }

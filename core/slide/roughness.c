@@ -2,7 +2,9 @@
  * motion between the times around would have them, twice, which at even steps is the second difference in time:
  *
  *     2 |(1 - s) p0 + s p2 - p1|,   s = (t1 - t0) / (t2 - t0)
- */
+ *
+ * A cache that is a blend of two shapes has next to none, under skin that goes a little curve. So there is a least that counts: a
+ * hundredth of the mean edge at rest, or what rounding may come to. */
 #include "slide.h"
 
 #include <float.h>
@@ -10,6 +12,7 @@
 
 /* Of the largest coordinate: what the rounding of three points to float may come to in the second difference. */
 static const double ROUNDING = 2 * 1.7320508075688772 * FLT_EPSILON;
+static const double LEAST = 0.01; /* of the mean edge at rest */
 
 /* The points of three times. */
 typedef struct motion {
@@ -41,8 +44,8 @@ static double largest_coordinate(const motion *m, int32_t v, double largest) {
     return largest;
 }
 
-/* The largest second difference of a patch and the mesh vertex that has it; rounding grows to what it may be. */
-static skinslide_status measure(const ss_patch *patch, const motion *m, double *most, int32_t *vertex, double *rounding,
+/* The largest second difference of a patch and the mesh vertex that has it; least grows to what rounding may be. */
+static skinslide_status measure(const ss_patch *patch, const motion *m, double *most, int32_t *vertex, double *least,
                                 skinslide_error *error) {
     double largest = 0;
     *most = 0, *vertex = patch->mesh_vertex[0];
@@ -55,7 +58,7 @@ static skinslide_status measure(const ss_patch *patch, const motion *m, double *
             *most = own, *vertex = v;
         largest = largest_coordinate(m, v, largest);
     }
-    *rounding = fmax(*rounding, ROUNDING * largest);
+    *least = fmax(*least, ROUNDING * largest);
     return SKINSLIDE_OK;
 }
 
@@ -65,9 +68,10 @@ static skinslide_status measure_all(const skinslide_slider *slider, const skinsl
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t p = 0; p < slider->part_count && !status; p++) {
         const ss_patch *patch = slider->parts[p].patch;
-        status = measure(patch, &before, &own[p].before, &own[p].vertex_before, &own[p].rounding, error);
+        own[p].least = LEAST * patch->mean_edge;
+        status = measure(patch, &before, &own[p].before, &own[p].vertex_before, &own[p].least, error);
         if (!status)
-            status = measure(patch, &after, &own[p].after, &own[p].vertex_after, &own[p].rounding, error);
+            status = measure(patch, &after, &own[p].after, &own[p].vertex_after, &own[p].least, error);
     }
     return status;
 }

@@ -669,14 +669,15 @@ SKINSLIDE_API skinslide_status skinslide_accelerations(int32_t vertex_count, con
 /* ---- How smoothly skin moves -------------------------------------------------------------------------------------------- */
 
 /* How roughly a patch moves at a time between two others: by the largest second difference in time of any of its vertices, in
- * object units. Over a shot, the largest in the result over the largest in the cache says whether skin pops: it is 1 where skin
- * moves as smoothly as what it slides on. Start from SKINSLIDE_ROUGHNESS_DEFAULT. */
+ * object units. Over a shot, the largest in the result over the largest in the cache, neither below what counts, says whether
+ * skin pops: it is 1 where skin moves as smoothly as what it slides on. Start from SKINSLIDE_ROUGHNESS_DEFAULT. */
 typedef struct skinslide_roughness {
-    size_t size;     /* sizeof(skinslide_roughness) */
-    double before;   /* in the cache: |p0 - 2 p1 + p2|, and where steps are uneven, twice the distance of p1 from where even
+    size_t size;   /* sizeof(skinslide_roughness) */
+    double before; /* in the cache: |p0 - 2 p1 + p2|, and where steps are uneven, twice the distance of p1 from where even
                               motion from p0 to p2 would have it */
-    double after;    /* and in the result */
-    double rounding; /* what the rounding of points to float may come to in either; no more is no motion */
+    double after;  /* and in the result */
+    double least;  /* what counts as no rougher than this, in either: a hundredth of the mean edge at rest, which nobody
+                              sees, or what the rounding of points to float may come to where that is more */
     int32_t vertex_before; /* the mesh vertex that has the largest in the cache */
     int32_t vertex_after;  /* and in the result */
 } skinslide_roughness;

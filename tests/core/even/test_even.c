@@ -85,7 +85,7 @@ static bool all_finite(const float *points, int32_t count) {
 static double mean_edge(const test_mesh *mesh) {
     skinslide_patch_setup choices = even();
     ss_patch *patch = patch_of(mesh, choices);
-    double edge = 1e6 * patch->shortest;
+    double edge = patch->mean_edge;
     ss_patch_destroy(patch);
     return edge;
 }

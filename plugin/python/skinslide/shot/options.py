@@ -123,8 +123,8 @@ class LayerOptions(Options):
         type=float,
         metavar="X",
         help="fail, and write nothing, where a patch moves more than X times as roughly as its cache: by the largest "
-        "second difference in time, between the frames that are made. A cache that moves evenly, as linear blends of "
-        "shapes do, has none: any curve of the skin over it is then many times as rough",
+        "second difference in time, between the frames that are made, of which none counts as less than a hundredth of "
+        "the patch's mean edge at rest",
     )
     share: bool = option(
         False,

@@ -87,11 +87,12 @@ class PatchReport:
     def roughness(self) -> float | None:
         """The largest second difference in time of the result over that of the cache; None of fewer than three frames.
 
-        Differences that rounding may explain count as what it may come to, so that skin at rest has a roughness of 1.
+        Neither counts as less than a hundredth of the mean edge at rest, or than rounding may explain: so that skin at
+        rest has a roughness of 1, and a cache that moves evenly, as linear blends of shapes do, makes it no endless one.
         """
         if not self.motion:
             return None
-        least = max(each.rounding for each in self.motion.values()) or 1.0
+        least = max(each.least for each in self.motion.values())
         after = max(each.after for each in self.motion.values())
         return max(least, after) / max(least, max(each.before for each in self.motion.values()))
 
