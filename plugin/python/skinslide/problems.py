@@ -14,6 +14,8 @@ MOST_FRAMES = 10_000_000
 # Said of what several parts look for.
 NO_SUCH_PRIM = "there is no such prim"
 PATH_TOO_LONG = "its path from the root is too long"
+NO_PATCH_NAME = "cannot name a patch; use letters, digits and _, such as elbow_L"
+NO_EDGE = "chooses no edge of the patch"
 
 
 @dataclass(frozen=True)

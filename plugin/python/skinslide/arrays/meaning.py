@@ -80,6 +80,7 @@ class Input(NamedTuple):
     is_inherited: bool
     fallback: str | None
     pointer: Any
+    tokens: tuple[str, ...] = ()  # that it may be; none: it is no choice
 
     def property(self, patch: str | None = None) -> str:
         """Its name on a prim, for an input of a patch or of none."""
@@ -99,7 +100,10 @@ def _input(each: Any) -> Input:
     is_primvar, is_inherited = bool(each.is_primvar), bool(each.is_inherited)
     words = (text(each.name), text(each.prefix), text(each.type_name))
     fallback = text(each.fallback) if each.fallback else None
-    return Input(*words, each.when, is_primvar, is_inherited, fallback, each)
+    tokens = list[str]()
+    while each.tokens and each.tokens[len(tokens)]:
+        tokens.append(text(each.tokens[len(tokens)]))
+    return Input(*words, each.when, is_primvar, is_inherited, fallback, each, tuple(tokens))
 
 
 def input_of(group: str, name: str) -> Input:

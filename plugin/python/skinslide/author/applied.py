@@ -10,7 +10,7 @@ import numpy.typing as npt
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.meaning import Input, Other, Value, can_name_patch, check_value, inputs
-from skinslide.problems import Fault, Problem, StageProblems, UsageError
+from skinslide.problems import NO_PATCH_NAME, Fault, Problem, StageProblems, UsageError
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_faces, given_value
 from skinslide.stage.values import FIRST
@@ -295,7 +295,7 @@ def _why_no_name(patch: str) -> str:
         or not can_name_patch(patch)
         or patch.split(":")[-1] in schema.declared_names()  # USD does not allow those
     ):
-        return f"{patch!r} cannot name a patch; use letters, digits and _, such as elbow_L"
+        return f"{patch!r} {NO_PATCH_NAME}"
     return ""
 
 

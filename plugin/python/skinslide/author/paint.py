@@ -17,7 +17,7 @@ from skinslide.arrays.topology import Topology
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import Fault, SliderError, UsageError, not_one_of, one_line
+from skinslide.problems import NO_EDGE, Fault, SliderError, UsageError, not_one_of, one_line
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path, given_primvar, given_subset
@@ -131,7 +131,7 @@ def paint(
         own = mesh.topology.edges_of(before.faces)
         chosen, left_out = _split(choose(_Surface(mesh.prim, mesh.meaning, mesh.topology, own)), own)
         if not len(chosen):
-            raise Fault(f"{what} chooses no edge of the patch")
+            raise Fault(f"{what} {NO_EDGE}")
         painted, factors = _before(mesh.prim, before, clear)
         kept = ~_rows_in(painted, chosen)
         painted = np.concatenate([painted[kept], chosen])
