@@ -1,0 +1,215 @@
+"""What an object has, fetched under the names and in the kinds that a USD cache would have. Nothing is meant here.
+
+An attribute of a mesh, or a group of its vertices, called NAME is the primvar primvars:NAME. Edges have no primvars:
+a float attribute of edges called skinSlide:PATCH:edgeForceDensities is both settings of painted edges, 0 of others.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+
+from skinslide.arrays.meaning import NOTHING, Input, Other, Value, inputs
+from skinslide.problems import Fault
+
+from . import settings
+
+EDGES = "edgeForceDensities"
+INTERPOLATIONS = {"POINT": "vertex", "FACE": "uniform", "CORNER": "faceVarying", "EDGE": "edge"}
+# Of a type of attribute: the property that holds an element, how many numbers that is, their type, USD's name for it.
+KINDS = {
+    "FLOAT": ("value", 1, np.float32, "float[]"),
+    "INT": ("value", 1, np.int32, "int[]"),
+    "BOOLEAN": ("value", 1, np.bool_, "bool[]"),
+    "FLOAT2": ("vector", 2, np.float32, "texCoord2f[]"),
+    "FLOAT_VECTOR": ("vector", 3, np.float32, "point3f[]"),
+    "FLOAT_COLOR": ("color", 4, np.float32, "color4f[]"),
+    "BYTE_COLOR": ("color", 4, np.float32, "color4f[]"),
+}
+# Modifiers that move points, and neither make nor take any away.
+DEFORMING = {
+    "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
+    "LATTICE",
+    "MESH_CACHE", "MESH_DEFORM", "MESH_SEQUENCE_CACHE", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY", "CLOTH",
+    "SURFACE_DEFORM", "WARP", "WAVE", "NORMAL_EDIT", "WEIGHTED_NORMAL", "UV_PROJECT", "UV_WARP", "DATA_TRANSFER",
+    "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "VERTEX_WEIGHT_PROXIMITY",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FetchedPatch:
+    """A patch: its settings by name, and its painted edges with their factors."""
+
+    name: str
+    values: dict[str, Value]
+
+    def value(self, source: Input) -> Value:
+        """A setting, or its name alone where it is not set."""
+        name = source.property(self.name)
+        return self.values.get(source.name) or Value(name, NOTHING, source.type_name)
+
+
+@dataclass(frozen=True)
+class Fetched:
+    """A mesh, as arrays of its own: threads may read it."""
+
+    name: str
+    folder: str  # that its relative paths start from
+    counts: np.ndarray  # (F,) int32
+    indices: np.ndarray  # (sum of counts,) int32
+    basis: np.ndarray  # (V, 3) float32
+    points: np.ndarray  # (V, 3) float32, as modifiers and shape keys leave them
+    values: dict[str, Value]  # of the mesh, by property
+    primvars: dict[str, Value]
+    patches: tuple[FetchedPatch, ...]
+
+
+def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Fetched:
+    """All that there is to slide an object by. Raises Fault for one that cannot be."""
+    check(thing)
+    own, mesh = settings.of(thing), thing.data
+    primvars = {value.name: value for value in (*_attributes(mesh), *_groups(thing))}
+    indices = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", indices)
+    counts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", counts)
+    basis = basis_points(mesh)
+    values = {
+        each.property(): settings.value_of(own, each, each.property()) for each in settings.set_inputs(own, "mesh")
+    }
+    rest = primvars.pop("primvars:skinSlide:restPoints", None)
+    if rest:
+        values["skinSlide:restPoints"] = rest._replace(name="skinSlide:restPoints")
+    patches = tuple(_patch(mesh, each) for each in own.patches)
+    folder = os.path.dirname(bpy.path.abspath(own.file or "//"))
+    return Fetched(
+        thing.name, folder, counts, indices, basis, evaluated_points(thing, depsgraph), values, primvars, patches
+    )
+
+
+def check(thing: bpy.types.Object | None) -> None:
+    """Raises Fault for what is no mesh, or has a scale of its own, by which lengths would differ from what is meant."""
+    if thing is None or thing.type != "MESH":
+        raise Fault("the active object is no mesh")
+    if any(abs(scale - 1) > 1e-6 for scale in thing.scale):
+        scale = ", ".join(f"{each:g}" for each in thing.scale)
+        raise Fault(f"{thing.name} has the scale {scale}; apply it first (Object, Apply, Scale)")
+
+
+def basis_points(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Points (V, 3) without shape keys: those of the basis, where there is one."""
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    held = mesh.shape_keys.reference_key.data if mesh.shape_keys else mesh.vertices
+    held.foreach_get("co", points)
+    return points.reshape(-1, 3)
+
+
+def evaluated_points(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
+    """Points (V, 3) as modifiers and shape keys leave them. Raises Fault where the faces are not the mesh's own."""
+    mesh, evaluated = thing.data, thing.evaluated_get(depsgraph).data
+    if not _same_faces(mesh, evaluated):
+        names = [each.name for each in thing.modifiers if each.show_viewport and each.type not in DEFORMING]
+        said = f"{len(mesh.polygons)} faces become {len(evaluated.polygons)}"
+        raise Fault(f"modifiers of {thing.name} change its topology ({said}); turn them off: {', '.join(names)}")
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    evaluated.vertices.foreach_get("co", points)
+    return points.reshape(-1, 3)
+
+
+def _same_faces(mesh: bpy.types.Mesh, other: bpy.types.Mesh) -> bool:
+    if any(len(getattr(mesh, each)) != len(getattr(other, each)) for each in ("vertices", "loops", "polygons")):
+        return False
+    for held, name in (("loops", "vertex_index"), ("polygons", "loop_start")):
+        own, theirs = (np.empty(len(getattr(each, held)), np.int32) for each in (mesh, other))
+        getattr(mesh, held).foreach_get(name, own)
+        getattr(other, held).foreach_get(name, theirs)
+        if not np.array_equal(own, theirs):
+            return False
+    return True
+
+
+def numbers(thing: bpy.types.Object) -> tuple[tuple[tuple[Input, Value], ...], ...]:
+    """Of each patch the settings that may be animated, as they are now."""
+    animated = [each for each in inputs("controls") if each.type_name == "float"]
+    return tuple(
+        tuple((each, settings.value_of(patch, each, each.property(patch.name))) for each in animated)
+        for patch in settings.of(thing).patches
+    )
+
+
+# ---- Paint ----
+
+
+def _is_ours(name: str) -> bool:
+    """Whether an attribute may be paint, or rest points; the core knows which."""
+    rest = {each.name for each in inputs("mesh") if each.is_primvar}
+    return name.casefold().startswith("skinslide") or name in rest
+
+
+def _attributes(mesh: bpy.types.Mesh) -> Iterator[Value]:
+    for attribute in mesh.attributes:
+        is_edges = attribute.domain == "EDGE" and attribute.name.endswith(f":{EDGES}")
+        is_map = attribute.domain == "CORNER" and attribute.data_type == "FLOAT2"
+        if (_is_ours(attribute.name) and not is_edges) or is_map:
+            yield attribute_value(attribute)
+
+
+def attribute_value(attribute: bpy.types.Attribute) -> Value:
+    """What an attribute holds, as the primvar of its name."""
+    name, interpolation = f"primvars:{attribute.name}", INTERPOLATIONS.get(attribute.domain, attribute.domain)
+    if attribute.data_type not in KINDS:
+        return Value(name, Other(), attribute.data_type.lower(), interpolation)
+    held, width, dtype, type_name = KINDS[attribute.data_type]
+    array: np.ndarray = np.empty(width * len(attribute.data), dtype)
+    attribute.data.foreach_get(held, array)
+    return Value(name, array.reshape(-1, width) if width > 1 else array, type_name, interpolation)
+
+
+def _groups(thing: bpy.types.Object) -> Iterator[Value]:
+    """Groups of vertices, of which one that is not in a group has the weight 0."""
+    ours = {group.index: group for group in thing.vertex_groups if _is_ours(group.name)}
+    weights = {index: np.zeros(len(thing.data.vertices), np.float32) for index in ours}
+    for vertex in thing.data.vertices if ours else ():
+        for element in vertex.groups:
+            if element.group in weights:
+                weights[element.group][vertex.index] = element.weight
+    for index, array in weights.items():
+        yield Value(f"primvars:{ours[index].name}", array, "float[]", "vertex")
+
+
+def _patch(mesh: bpy.types.Mesh, patch: Any) -> FetchedPatch:
+    found = {
+        each.name: settings.value_of(patch, each, each.property(patch.name))
+        for each in settings.set_inputs(patch, "patch", "controls")
+    }
+    attribute = mesh.attributes.get(f"skinSlide:{patch.name}:{EDGES}")
+    if attribute and attribute.domain == "EDGE" and attribute.data_type == "FLOAT":
+        pairs, factors = painted_edges(mesh, attribute)
+        for name, array in (("edges", pairs.ravel()), (EDGES, factors)):
+            found[name] = Value(f"skinSlide:{patch.name}:{name}", array, "int[]" if name == "edges" else "float[]")
+    return FetchedPatch(patch.name, found)
+
+
+def edges_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The edges of a mesh, int32 (E, 2), as Blender numbers them."""
+    edges = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    return edges.reshape(-1, 2)
+
+
+def edge_keys(edges: np.ndarray, vertex_count: int) -> np.ndarray:
+    """A number for each of some edges (n, 2), the same either way round."""
+    keys: np.ndarray = np.sort(edges, axis=1).astype(np.int64) @ (vertex_count, 1)
+    return keys
+
+
+def painted_edges(mesh: bpy.types.Mesh, attribute: bpy.types.Attribute) -> tuple[np.ndarray, np.ndarray]:
+    """The edges that are painted (k, 2), and their factors (k,)."""
+    factors = np.empty(len(mesh.edges), np.float32)
+    attribute.data.foreach_get("value", factors)
+    return edges_of(mesh)[factors != 0], factors[factors != 0]

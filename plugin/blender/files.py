@@ -1,0 +1,232 @@
+"""Import and export of `.skinslide` set-ups, the export with a USD cache beside it where that is wanted."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from skinslide.arrays.meaning import Value, inputs
+from skinslide.problems import Fault
+
+from . import settings
+from .fetch import EDGES, edge_keys, edges_of, fetch
+from .patches import remove_paint, write_attribute, write_primvar
+from .reading import Sliding
+from .rest import REST
+from .usd import Keys, Read, read_setup, write_setup
+from .work import Waiting
+
+EXTENSION = ".skinslide"
+_PRIM = {"name": "Prim", "description": "The mesh in the stage; empty: the one with these faces"}
+
+
+class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
+    """Takes the patches of a .skinslide file for those of the active mesh, in place of its own."""
+
+    bl_idname, bl_label = "skinslide.import_setup", "Import Set-up"
+    filename_ext = EXTENSION
+    filter_glob: bpy.props.StringProperty(default=f"*{EXTENSION};*.usd*", options={"HIDDEN"})  # type: ignore[valid-type]
+    prim: bpy.props.StringProperty(**_PRIM)  # type: ignore[valid-type]
+
+    def fetch(self, context: bpy.types.Context) -> Callable[[], Read]:
+        """The faces of the mesh, by which its prim is known."""
+        fetched = fetch(context.active_object, context.evaluated_depsgraph_get())
+        path, prim = bpy.path.abspath(self.filepath), self.prim
+        return lambda: read_setup(path, prim, fetched.counts, fetched.indices)
+
+    def write(self, context: bpy.types.Context, found: Read) -> str:
+        """Puts all that was read on the mesh."""
+        thing = context.active_object
+        take(thing, found)
+        own = settings.of(thing)
+        own.file, own.prim, own.problem = self.filepath, found.prim, ""
+        for each in found.left:
+            self.report({"WARNING"}, each)
+        return f"{len(found.patches)} patches of {found.prim}"
+
+
+def take(thing: bpy.types.Object, read: Read) -> None:
+    """Has an object carry the set-up that was read, and no other."""
+    own, mesh = settings.of(thing), thing.data
+    for patch in own.patches:
+        remove_paint(thing, patch.name)
+    own.patches.clear()
+    own.active = 0
+    for source in settings.set_inputs(own, "mesh"):
+        own.property_unset(source.name)
+    for value in read.values:
+        if value.name != REST:
+            setattr(own, value.name.removeprefix("skinSlide:"), value.value)
+    write_attribute(mesh, REST, "POINT", ("FLOAT_VECTOR", "vector"), read.rest)
+    for value in read.primvars:
+        _take_primvar(thing, value)
+    for index, fetched in enumerate(read.patches):
+        patch = own.patches.add()
+        patch.name = fetched.name
+        for name, value in fetched.values.items():
+            if name in patch.bl_rna.properties:
+                setattr(patch, name, _held(value.value))
+        _take_edges(mesh, fetched.name, fetched.values)
+        _take_keys(thing, index, fetched.name, read.keys)
+
+
+def _take_primvar(thing: bpy.types.Object, value: Value) -> None:
+    """A weight of 0 to 1 goes on a group of vertices, for which Blender has brushes; all else on an attribute."""
+    array = np.asarray(value.value)
+    for_brushes = value.name.endswith(":weight") and value.interpolation in ("vertex", "varying") and array.ndim == 1
+    if not (for_brushes and array.dtype == np.float32 and np.all((array >= 0) & (array <= 1))):
+        write_primvar(thing.data, value)
+        return
+    group = thing.vertex_groups.new(name=value.name.removeprefix("primvars:"))
+    weights = np.unique(array)
+    order = np.argsort(array, kind="stable")
+    starts = np.searchsorted(array[order], weights)
+    for weight, vertices in zip(weights.tolist(), np.split(order, starts[1:]), strict=True):
+        group.add(vertices.tolist(), weight, "REPLACE")
+
+
+def _held(value: Any) -> Any:
+    """A value as Blender's properties take it."""
+    return str(value) if isinstance(value, str) else value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def _take_edges(mesh: bpy.types.Mesh, patch: str, values: dict[str, Value]) -> None:
+    if "edges" not in values or EDGES not in values:
+        return
+    pairs, factors = np.asarray(values["edges"].value).reshape(-1, 2), np.asarray(values[EDGES].value)
+    keys, wanted = (edge_keys(each, len(mesh.vertices)) for each in (edges_of(mesh), pairs))
+    order = np.argsort(keys)
+    found = order[np.searchsorted(keys, wanted, sorter=order).clip(max=len(keys) - 1)]
+    for a, b in pairs[keys[found] != wanted][:1]:
+        raise Fault(f"patch {patch}: {a}-{b} is no edge of the mesh")
+    held = np.zeros(len(mesh.edges), np.float32)
+    held[found] = factors
+    write_attribute(mesh, f"skinSlide:{patch}:{EDGES}", "EDGE", ("FLOAT", "value"), held)
+
+
+# ---- Animation ----
+
+
+def _take_keys(thing: bpy.types.Object, index: int, patch: str, keys: Keys) -> None:
+    for (of, name), samples in keys.items():
+        if of != patch:
+            continue
+        path = f"skinslide.patches[{index}].{name}"
+        for time, number in samples:
+            setattr(settings.of(thing).patches[index], name, number)
+            thing.keyframe_insert(path, frame=time)
+        for point in next(curve for curve in _curves(thing) if curve.data_path == path).keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+def _curves(thing: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
+    animated = thing.animation_data
+    for layer in animated.action.layers if animated and animated.action else ():
+        for strip in layer.strips:
+            bag = strip.channelbag(animated.action_slot)
+            yield from bag.fcurves if bag else ()
+
+
+def fetch_keys(thing: bpy.types.Object) -> Keys:
+    """What is animated of patches: keys, where lines join them, else each frame from the first to the last."""
+    found: Keys = {}
+    for curve in _curves(thing):
+        for index, patch in enumerate(settings.of(thing).patches):
+            for source in inputs("controls"):
+                if curve.data_path == f"skinslide.patches[{index}].{source.name}" and source.type_name == "float":
+                    found[patch.name, source.name] = [(time, curve.evaluate(time)) for time in _times(curve)]
+    return found
+
+
+def _times(curve: bpy.types.FCurve) -> list[float]:
+    times = [float(point.co[0]) for point in curve.keyframe_points]
+    straight = all(point.interpolation == "LINEAR" for point in curve.keyframe_points) and not curve.modifiers
+    return times if straight else [float(time) for time in range(int(times[0]), int(np.ceil(times[-1])) + 1)]
+
+
+# ---- Export ----
+
+
+class SKINSLIDE_OT_export_setup(Waiting, ExportHelper):
+    """Writes the patches of the active mesh beside a USD cache; what else is in that file stays."""
+
+    bl_idname, bl_label = "skinslide.export_setup", "Export Set-up"
+    filename_ext = EXTENSION
+    filter_glob: bpy.props.StringProperty(default=f"*{EXTENSION}", options={"HIDDEN"})  # type: ignore[valid-type]
+    cache: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Cache", subtype="FILE_PATH", description="The USD cache; empty: of the same name, beside it"
+    )
+    with_cache: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="Export Cache",
+        default=True,
+        description="Exports the animated mesh there first, by Blender's own exporter",
+    )
+    prim: bpy.props.StringProperty(**_PRIM)  # type: ignore[valid-type]
+
+    def fetch(self, context: bpy.types.Context) -> Callable[[], str]:
+        """The set-up, and the cache where it is to be made."""
+        thing = context.active_object
+        fetched, keys = fetch(thing, context.evaluated_depsgraph_get()), fetch_keys(thing)
+        path = bpy.path.abspath(self.filepath)
+        cache = bpy.path.abspath(self.cache) if self.cache else path.removesuffix(EXTENSION) + ".usdc"
+        prim = self.prim or (settings.of(thing).prim if not self.with_cache else "")
+        if not self.with_cache and not os.path.exists(cache):
+            raise Fault(f"there is no cache {cache}")
+        if self.with_cache:
+            Sliding(fetched)  # before anything is written
+            _export_cache(context, thing, cache)
+        return lambda: write_setup(path, cache, prim, fetched, Sliding(fetched).rest_points, keys)
+
+    def write(self, context: bpy.types.Context, found: str) -> str:
+        """Keeps where it was written."""
+        own = settings.of(context.active_object)
+        own.file, own.prim = self.filepath, found
+        return f"{len(own.patches)} patches of {found}"
+
+
+def _export_cache(context: bpy.types.Context, thing: bpy.types.Object, path: str) -> None:
+    with _selected_alone(context, thing):
+        bpy.ops.wm.usd_export(
+            filepath=path,
+            check_existing=False,
+            selected_objects_only=True,
+            export_animation=True,
+            export_shapekeys=False,
+            export_armatures=False,
+            evaluation_mode="VIEWPORT",
+        )
+
+
+@contextmanager
+def _selected_alone(context: bpy.types.Context, thing: bpy.types.Object) -> Iterator[None]:
+    before = [each for each in context.view_layer.objects if each.select_get()]
+    for each in before:
+        each.select_set(False)
+    thing.select_set(True)
+    try:
+        yield
+    finally:
+        thing.select_set(False)
+        for each in before:
+            each.select_set(True)
+
+
+_CLASSES = (SKINSLIDE_OT_import_setup, SKINSLIDE_OT_export_setup)
+
+
+def register() -> None:
+    """Tells Blender of the operators."""
+    for each in _CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Takes them back."""
+    for each in reversed(_CLASSES):
+        bpy.utils.unregister_class(each)

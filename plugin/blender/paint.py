@@ -1,0 +1,232 @@
+"""Paint of a patch: weight, force density, hold and distance on points and faces, and force density on edges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from skinslide.arrays.geometry import Curves, edges_near
+from skinslide.arrays.meaning import inputs
+from skinslide.problems import NO_EDGE, Fault
+
+from . import settings
+from .fetch import EDGES, Fetched, check, edge_keys, edges_of, fetch
+from .patches import write_attribute
+from .reading import Surface
+from .work import Waiting
+
+CHOOSING = ("paintChannel", "patch", "forceDensityRule", "grow")  # what the faces of a patch depend on
+
+
+# What is painted on points.
+PAINTED = tuple(each.name for each in inputs("controls") if each.is_primvar)
+_PAINTED = [(name, name, "") for name in PAINTED]
+
+
+def active_name(context: bpy.types.Context) -> str:
+    """The name of the patch that is painted. Raises Fault where there is none."""
+    patch = settings.active_patch(context.active_object) if context.active_object else None
+    if patch is None:
+        raise Fault("there is no patch to paint; make one of selected faces first")
+    return str(patch.name)
+
+
+class SKINSLIDE_OT_paint(Waiting):
+    """Paints a value, in edit mode on what is selected, else on all. Blender's own brushes go on from there."""
+
+    bl_idname, bl_label = "skinslide.paint", "Paint"
+    what: bpy.props.EnumProperty(items=_PAINTED)  # type: ignore[valid-type]
+    value: bpy.props.FloatProperty(name="Value", default=1.0)  # type: ignore[valid-type]
+    store: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="On",
+        items=[
+            ("GROUP", "Vertex Group", "For Blender's weight brushes, from 0 to 1"),
+            ("POINT", "Point Attribute", "Of any value"),
+            ("FACE", "Face Attribute", "Of any value, by face"),
+        ],
+    )
+
+    def _fetched(self, context: bpy.types.Context) -> None:
+        self._editing = context.mode == "EDIT_MESH"
+        super()._fetched(context)
+
+    def fetch(self, context: bpy.types.Context) -> None:
+        """Nothing is worked out."""
+        check(context.active_object)
+        active_name(context)
+        if self.store == "GROUP" and not 0 <= self.value <= 1:
+            raise Fault(f"a vertex group holds 0 to 1, not {self.value:g}; paint on an attribute")
+
+    def write(self, context: bpy.types.Context, _found: None) -> str:
+        """Paints."""
+        thing, name = context.active_object, f"skinSlide:{active_name(context)}:{self.what}"
+        (_paint_group if self.store == "GROUP" else _paint_attribute)(
+            thing, name, self.store, self.value, self._editing
+        )
+        return ""
+
+
+def _selected(thing: bpy.types.Object, held: str, editing: bool) -> np.ndarray:
+    elements = getattr(thing.data, held)
+    selected = np.ones(len(elements), np.bool_)
+    if editing:
+        elements.foreach_get("select", selected)
+    return selected
+
+
+def _paint_group(thing: bpy.types.Object, name: str, _store: str, value: float, editing: bool) -> None:
+    if name in thing.data.attributes:
+        thing.data.attributes.remove(thing.data.attributes[name])
+    group = thing.vertex_groups.get(name)
+    if group is None:
+        group = thing.vertex_groups.new(name=name)
+        group.add(range(len(thing.data.vertices)), 1.0, "REPLACE")
+    group.add(np.flatnonzero(_selected(thing, "vertices", editing)).tolist(), value, "REPLACE")
+    thing.vertex_groups.active = group
+
+
+def _paint_attribute(thing: bpy.types.Object, name: str, store: str, value: float, editing: bool) -> None:
+    held = "vertices" if store == "POINT" else "polygons"
+    group = thing.vertex_groups.get(name)
+    if group:
+        thing.vertex_groups.remove(group)
+    values = np.ones(len(getattr(thing.data, held)), np.float32)
+    attribute = thing.data.attributes.get(name)
+    if attribute and (attribute.domain, attribute.data_type) == (store, "FLOAT"):
+        attribute.data.foreach_get("value", values)
+    values[_selected(thing, held, editing)] = value
+    thing.data.attributes.active = write_attribute(thing.data, name, store, ("FLOAT", "value"), values)
+
+
+# ---- Edges ----
+
+
+class _PaintEdges(Waiting):
+    """Gives edges of the patch a force density."""
+
+    value: bpy.props.FloatProperty(  # type: ignore[valid-type]
+        name="Force Density",
+        default=4.0,
+        min=0.0,
+        description="Multiplies what is painted; 0: no longer painted by edge",
+    )
+
+    def choose(self, context: bpy.types.Context) -> Callable[[Surface, np.ndarray], np.ndarray]:
+        """What chooses among the edges (E, 2) of the mesh, on a surface: a bool for each. Raises Fault."""
+        raise NotImplementedError
+
+    def fetch(self, context: bpy.types.Context) -> Callable[[], np.ndarray]:
+        """The edges that are chosen and the patch's own."""
+        thing = context.active_object
+        fetched, name = fetch(thing, context.evaluated_depsgraph_get()), active_name(context)
+        edges, choose = edges_of(thing.data), self.choose(context)
+        return lambda: _chosen(fetched, name, edges, choose)
+
+    def write(self, context: bpy.types.Context, found: np.ndarray) -> str:
+        """Paints."""
+        thing, patch = context.active_object, active_name(context)
+        name, factors = f"skinSlide:{patch}:{EDGES}", np.zeros(len(thing.data.edges), np.float32)
+        attribute = thing.data.attributes.get(name)
+        if attribute and (attribute.domain, attribute.data_type) == ("EDGE", "FLOAT"):
+            attribute.data.foreach_get("value", factors)
+        factors[found] = self.value
+        write_attribute(thing.data, name, "EDGE", ("FLOAT", "value"), factors)
+        return f"{patch}: {np.count_nonzero(found)} edges painted {self.value:g}, {np.count_nonzero(factors)} in all"
+
+
+def _chosen(
+    fetched: Fetched, name: str, edges: np.ndarray, choose: Callable[[Surface, np.ndarray], np.ndarray]
+) -> np.ndarray:
+    surface = Surface(fetched)
+    patch = next(each for each in fetched.patches if each.name == name)
+    own = surface.topology.edges_of(surface.patch(patch, only=CHOOSING).faces)
+    count = surface.topology.vertex_count
+    chosen = choose(surface, edges) & np.isin(edge_keys(edges, count), edge_keys(own, count))
+    if not chosen.any():
+        raise Fault(f"what is selected {NO_EDGE}")
+    return chosen
+
+
+class SKINSLIDE_OT_paint_edges(_PaintEdges):
+    """Gives the selected edges of the patch a force density."""
+
+    bl_idname, bl_label = "skinslide.paint_edges", "Paint Selected Edges"
+
+    def choose(self, context: bpy.types.Context) -> Callable[[Surface, np.ndarray], np.ndarray]:
+        """The selection."""
+        mesh = context.active_object.data
+        selected = np.empty(len(mesh.edges), np.bool_)
+        mesh.edges.foreach_get("select", selected)
+        if not selected.any():
+            raise Fault("no edge is selected")
+        return lambda _surface, _edges: selected
+
+
+class SKINSLIDE_OT_paint_curve(_PaintEdges):
+    """Gives edges of the patch near a curve, drawn on the mesh at rest, a force density."""
+
+    bl_idname, bl_label = "skinslide.paint_curve", "Paint Along Curve"
+    curve: bpy.props.StringProperty(name="Curve", description="The object that is the curve")  # type: ignore[valid-type]
+    distance: bpy.props.FloatProperty(name="Distance", default=0.05, min=0.0, unit="LENGTH")  # type: ignore[valid-type]
+    direction: bpy.props.EnumProperty(  # type: ignore[valid-type]
+        name="Edges",
+        items=[
+            ("any", "Any", "Whichever way they run"),
+            ("along", "Along", "At 45 degrees or less to the curve"),
+            ("across", "Across", "At more"),
+        ],
+    )
+
+    def choose(self, context: bpy.types.Context) -> Callable[[Surface, np.ndarray], np.ndarray]:
+        """What is near the curve."""
+        curves = fetch_curves(context, bpy.data.objects.get(self.curve))
+        distance, direction = self.distance, self.direction
+        return lambda surface, edges: edges_near(surface.meaning.rest_points(), edges, curves, distance, direction)
+
+
+def fetch_curves(context: bpy.types.Context, drawn: bpy.types.Object | None) -> Curves:
+    """The splines of a curve object, as Blender draws them, in the space of the active object. Raises Fault."""
+    if drawn is None or drawn.type != "CURVE":
+        raise Fault("choose an object that is a curve")
+    evaluated = drawn.evaluated_get(context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    try:
+        points, edges = np.empty(3 * len(mesh.vertices), np.float32), edges_of(mesh)
+        mesh.vertices.foreach_get("co", points)
+        if len(mesh.polygons) or not len(edges):
+            raise Fault(f"{drawn.name} is a surface or nothing; take bevel and extrusion away")
+        chains = _chains(edges)
+    finally:
+        evaluated.to_mesh_clear()
+    to_mesh = context.active_object.matrix_world.inverted() @ drawn.matrix_world
+    order = np.concatenate(chains)
+    counts = np.array([len(each) for each in chains], np.int32)
+    return Curves(counts, points.reshape(-1, 3)[order], to_mesh=np.array(to_mesh.transposed()))
+
+
+def _chains(edges: np.ndarray) -> list[np.ndarray]:
+    """The points of each spline in order; of a closed one the first again at the end."""
+    chains = list[list[int]]()
+    for a, b in edges.tolist():
+        if chains and chains[-1][-1] == a:
+            chains[-1].append(b)
+        else:
+            chains.append([a, b])
+    return [np.array(each) for each in chains]
+
+
+_CLASSES = (SKINSLIDE_OT_paint, SKINSLIDE_OT_paint_edges, SKINSLIDE_OT_paint_curve)
+
+
+def register() -> None:
+    """Tells Blender of the operators."""
+    for each in _CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Takes them back."""
+    for each in reversed(_CLASSES):
+        bpy.utils.unregister_class(each)

@@ -1,0 +1,196 @@
+"""Patches of a mesh: made of selected faces or of a group of vertices, and taken away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import bpy
+import numpy as np
+
+from skinslide.arrays.meaning import Value, can_name_patch, input_of
+from skinslide.problems import NO_PATCH_NAME, Fault
+
+from . import settings
+from .fetch import Fetched, FetchedPatch, fetch
+from .reading import check_one_piece
+from .work import Waiting
+
+RULE = "even"  # of patches that are new
+FACES = input_of("patch", "patch")  # what chooses them
+
+
+def check_name(thing: bpy.types.Object, name: str) -> None:
+    """Raises Fault for a name that no patch can have, or another has."""
+    if not all(part.isidentifier() for part in name.split(":")) or not can_name_patch(name):
+        raise Fault(f"{name!r} {NO_PATCH_NAME}")
+    if name in settings.of(thing).patches:
+        raise Fault(f"{thing.name} has a patch {name} already")
+
+
+class _NewPatch(Waiting):
+    """Makes a patch, once it is known that it can slide."""
+
+    name: bpy.props.StringProperty(name="Name", default="patch")  # type: ignore[valid-type]
+
+    def chosen(self, context: bpy.types.Context) -> Value:
+        """What chooses the faces. Raises Fault."""
+        raise NotImplementedError
+
+    def fetch(self, context: bpy.types.Context) -> Callable[[], Any]:
+        """The mesh with the patch, as if it were there."""
+        thing = context.active_object
+        fetched = fetch(thing, context.evaluated_depsgraph_get())
+        check_name(thing, self.name)
+        chosen = self.chosen(context)
+        return partial(_checked, _with_patch(fetched, self.name, chosen), chosen)
+
+    def write(self, context: bpy.types.Context, found: Value) -> str:
+        """Makes it."""
+        thing = context.active_object
+        write_primvar(thing.data, found)
+        own = settings.of(thing)
+        patch = own.patches.add()
+        patch.name, patch.forceDensityRule = self.name, RULE
+        own.active = len(own.patches) - 1
+        return f"{self.name}: a patch of {int(np.count_nonzero(found.value))} {_ELEMENTS[found.interpolation or '']}"
+
+
+def _checked(fetched: Fetched, chosen: Value) -> Value:
+    check_one_piece(fetched)
+    return chosen
+
+
+_ELEMENTS = {"uniform": "faces", "vertex": "points"}
+
+
+def _with_patch(fetched: Fetched, name: str, chosen: Value) -> Fetched:
+    rule = Value(f"skinSlide:{name}:forceDensityRule", RULE, "token")
+    patch = FetchedPatch(name, {"forceDensityRule": rule})
+    fields = vars(fetched) | {"patches": (patch,), "primvars": fetched.primvars | {chosen.name: chosen}}
+    return Fetched(**fields)
+
+
+class SKINSLIDE_OT_patch_from_faces(_NewPatch):
+    """Makes a patch of the selected faces."""
+
+    bl_idname, bl_label = "skinslide.patch_from_faces", "Patch from Selected Faces"
+
+    def chosen(self, context: bpy.types.Context) -> Value:
+        """The selection."""
+        mesh = context.active_object.data
+        selected = np.empty(len(mesh.polygons), np.bool_)
+        mesh.polygons.foreach_get("select", selected)
+        if not selected.any():
+            raise Fault("no face is selected")
+        return Value(FACES.property(self.name), selected, "bool[]", "uniform")
+
+
+class SKINSLIDE_OT_patch_from_group(_NewPatch):
+    """Makes a patch of the faces whose points are all in a group of vertices, with weights above 0."""
+
+    bl_idname, bl_label = "skinslide.patch_from_group", "Patch from Vertex Group"
+    group: bpy.props.StringProperty(name="Vertex Group", description="Empty: the active one")  # type: ignore[valid-type]
+
+    def chosen(self, context: bpy.types.Context) -> Value:
+        """The weights of the group."""
+        thing = context.active_object
+        group = thing.vertex_groups.get(self.group) if self.group else thing.vertex_groups.active
+        if group is None:
+            raise Fault(f"{thing.name} has no vertex group {self.group}" if self.group else "no vertex group is active")
+        weights = np.zeros(len(thing.data.vertices), np.float32)
+        for vertex in thing.data.vertices:
+            for element in vertex.groups:
+                if element.group == group.index:
+                    weights[vertex.index] = element.weight
+        return Value(FACES.property(self.name), weights, "float[]", "vertex")
+
+
+class SKINSLIDE_OT_remove_patch(Waiting):
+    """Takes the active patch away, with all that is painted for it."""
+
+    bl_idname, bl_label = "skinslide.remove_patch", "Remove Patch"
+
+    def fetch(self, context: bpy.types.Context) -> None:
+        """Nothing is worked out."""
+        if not settings.active_patch(context.active_object):
+            raise Fault("there is no patch")
+
+    def write(self, context: bpy.types.Context, _found: None) -> str:
+        """Takes it away."""
+        thing = context.active_object
+        own = settings.of(thing)
+        remove_paint(thing, settings.active_patch(thing).name)
+        own.patches.remove(own.active)
+        own.active = max(0, own.active - 1)
+        return ""
+
+
+def remove_paint(thing: bpy.types.Object, patch: str) -> None:
+    """Takes away all that is painted for a patch under the schema's names."""
+    mine = f"skinSlide:{patch}:"
+    for name in [each.name for each in thing.data.attributes if each.name.startswith(mine)]:
+        if ":" not in name.removeprefix(mine):
+            thing.data.attributes.remove(thing.data.attributes[name])
+    for group in [each for each in thing.vertex_groups if each.name.startswith(mine)]:
+        thing.vertex_groups.remove(group)
+
+
+# ---- Writing paint ----
+
+# Of how a primvar lies on a mesh: Blender's domain; of its elements: Blender's type, and the property that holds one.
+DOMAINS = {"vertex": "POINT", "varying": "POINT", "uniform": "FACE", "faceVarying": "CORNER"}
+_TYPES = {
+    ("b", 1): ("BOOLEAN", "value"),
+    ("i", 1): ("INT", "value"),
+    ("f", 1): ("FLOAT", "value"),
+    ("f", 2): ("FLOAT2", "vector"),
+    ("f", 3): ("FLOAT_VECTOR", "vector"),
+    ("f", 4): ("FLOAT_COLOR", "color"),
+}
+
+
+def write_primvar(mesh: bpy.types.Mesh, value: Value) -> None:
+    """Makes an attribute of a primvar, in place of one of its name. Raises Fault for what no attribute can hold."""
+    array = np.asarray(value.value)
+    kind = _TYPES.get((array.dtype.kind, array.shape[1] if array.ndim == 2 else 1))
+    domain = DOMAINS.get(value.interpolation or "")
+    if kind is None or domain is None:
+        raise Fault(
+            f"{value.name} is {value.interpolation} {value.type_name}, which no attribute of Blender's can hold"
+        )
+    write_attribute(mesh, value.name.removeprefix("primvars:"), domain, kind, array)
+
+
+def write_attribute(
+    mesh: bpy.types.Mesh, name: str, domain: str, kind: tuple[str, str], array: np.ndarray
+) -> bpy.types.Attribute:
+    """Makes an attribute of a domain, and of a type with the property that holds an element."""
+    before = mesh.attributes.get(name)
+    if before:
+        mesh.attributes.remove(before)
+    attribute = mesh.attributes.new(name, kind[0], domain)
+    if attribute is None or attribute.name != name:
+        raise Fault(f"the mesh cannot have an attribute {name}: another thing of that name is in its place")
+    flat: np.ndarray = np.ascontiguousarray(
+        array, {"b": np.bool_, "i": np.int32}.get(array.dtype.kind, np.float32)
+    ).ravel()
+    attribute.data.foreach_set(kind[1], flat)
+    mesh.update_tag()
+    return attribute
+
+
+_CLASSES = (SKINSLIDE_OT_patch_from_faces, SKINSLIDE_OT_patch_from_group, SKINSLIDE_OT_remove_patch)
+
+
+def register() -> None:
+    """Tells Blender of the operators."""
+    for each in _CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Takes them back."""
+    for each in reversed(_CLASSES):
+        bpy.utils.unregister_class(each)

@@ -1,0 +1,194 @@
+"""A mesh that was fetched, meant by the core: what is wrong with it, or a slider. No Blender here; for any thread."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import NamedTuple
+
+import numpy as np
+from skinslide.arrays.records import PatchResult
+
+from skinslide.arrays.meaning import (
+    DEFAULT_TIME,
+    NOTHING,
+    ControlsMeaning,
+    File,
+    Input,
+    MeshMeaning,
+    PatchMeaning,
+    Taker,
+    Value,
+    inputs,
+)
+from skinslide.arrays.native import PatchSetup
+from skinslide.arrays.slider import Slider
+from skinslide.arrays.topology import Topology
+from skinslide.problems import Fault, SliderError
+
+from .fetch import Fetched, FetchedPatch
+
+Numbers = Sequence[Sequence[tuple[Input, Value]]]
+
+
+class Slid(NamedTuple):
+    """A frame: points (V, 3) and stretch (V,), and what happened to each patch."""
+
+    points: np.ndarray
+    stretch: np.ndarray
+    patches: tuple[PatchResult, ...]
+
+
+class Surface:
+    """A mesh as it is meant, without its patches. Raises Fault."""
+
+    def __init__(self, fetched: Fetched):
+        self.fetched, self.meaning = fetched, MeshMeaning()
+        with joined() as faults:
+            _take(self.meaning, ((each, self._value(each)) for each in inputs("mesh")), faults)
+        self.topology = Topology.of(self.meaning)
+
+    def _value(self, source: Input) -> Value:
+        name, fetched = source.property(), self.fetched
+        arrays = {
+            "points": fetched.basis if source is _AT_REST else fetched.points,
+            "faceVertexCounts": fetched.counts,
+            "faceVertexIndices": fetched.indices,
+        }
+        if name in arrays:
+            return Value(name, arrays[name], source.type_name)
+        found = fetched.primvars if source.is_primvar else fetched.values
+        return found.get(name) or Value(name, NOTHING, source.type_name)
+
+    def patch(self, fetched: FetchedPatch, *, only: Iterable[str] | None = None) -> PatchMeaning:
+        """A patch, or as much of it as some of its settings say. Raises Fault."""
+        meaning = PatchMeaning(self.meaning, fetched.name)
+        wanted = [each for each in inputs("patch") if only is None or each.name in only]
+        with joined(fetched.name) as faults:
+            _take(meaning, ((each, self.painted(meaning, each, fetched)) for each in wanted), faults)
+            with _noting(faults):
+                meaning.take_subset(None)
+        return meaning
+
+    def painted(self, meaning: PatchMeaning, source: Input, patch: FetchedPatch) -> Value:
+        """The value of an input of a patch."""
+        if not source.is_primvar:
+            return patch.value(source)
+        found = meaning.property_of(source, list(self.fetched.primvars))
+        return self.fetched.primvars[found] if found else patch.value(source)
+
+    def controls(self, meaning: PatchMeaning, patch: FetchedPatch) -> ControlsMeaning:
+        """What is painted on a patch. Raises Fault."""
+        controls = ControlsMeaning(meaning)
+        with joined(patch.name) as faults:
+            _take(controls, ((each, self.painted(meaning, each, patch)) for each in inputs("controls")), faults)
+            named = ((each, each.property()) for each in controls.coordinates())
+            nothing = ((each, Value(name, NOTHING, each.type_name)) for each, name in named)
+            _take(controls, ((each, self.fetched.primvars.get(value.name, value)) for each, value in nothing), faults)
+            with _noting(faults):
+                give_files(controls, self.fetched.folder)
+        return controls
+
+
+_AT_REST = next(each for each in inputs("mesh") if each.when == DEFAULT_TIME)  # the points that are rest without others
+
+
+class Sliding:
+    """A mesh with all its patches, ready to be slid. Raises Fault with all that is wrong."""
+
+    def __init__(self, fetched: Fetched):
+        self.fetched, surface = fetched, Surface(fetched)
+        self._meanings, self._base = list[PatchMeaning](), list[ControlsMeaning]()
+        with joined() as faults:
+            for patch in fetched.patches:
+                with _noting(faults):
+                    self._meanings.append(surface.patch(patch))
+                    self._base.append(surface.controls(self._meanings[-1], patch))
+        if not self._base:
+            raise Fault("there is no patch to slide")
+        if any(each.needs_subdivision for each in self._meanings):
+            with joined() as faults:
+                _take(surface.meaning, ((each, self._subdivision(each)) for each in inputs("subdivision")), faults)
+        setups = [meaning.setup(base) for meaning, base in zip(self._meanings, self._base, strict=True)]
+        self.rest_points = surface.meaning.rest_points()
+        self.slider = _slider(surface, setups)
+        self.warnings = [each for each in (surface.meaning.warning, *(each.warning for each in self._meanings)) if each]
+
+    def _subdivision(self, source: Input) -> Value:
+        """Of a mesh that Blender draws as its faces, unless a modifier subdivides it, which is off while it slides."""
+        is_scheme = source.name == "subdivisionScheme"
+        return self.fetched.values.get(source.name) or Value(source.name, "none" if is_scheme else NOTHING, "token")
+
+    def slide(self, points: np.ndarray, numbers: Numbers) -> Slid:
+        """Slides points (V, 3), with what is animated as it is then. Raises Fault."""
+        each = []
+        for meaning, base, own in zip(self._meanings, self._base, numbers, strict=True):
+            controls = ControlsMeaning(meaning, base)
+            for source, value in own:
+                controls.take(source, value)
+            each.append(controls.get())
+        try:
+            frame = self.slider.slide(points, each)
+            stretch = self.slider.diagnose(points, frame.points, each).stretch_after
+        except SliderError as error:
+            raise Fault(str(error)) from error
+        return Slid(frame.points, stretch, frame.patches)
+
+
+def _slider(surface: Surface, setups: Sequence[PatchSetup]) -> Slider:
+    fetched, meaning = surface.fetched, surface.meaning
+    try:
+        weld = meaning.weld(setups, [(0, fetched.points)]).vertices
+        rest, subdivision = meaning.rest_points(), meaning.subdivision()
+        return Slider(fetched.counts, fetched.indices, rest, setups, subdivision=subdivision, weld=weld)
+    except SliderError as error:
+        raise Fault(str(error)) from error
+
+
+def check_one_piece(fetched: Fetched) -> None:
+    """Raises Fault where the last patch cannot be slid, or lies in several pieces."""
+    alone = Fetched(**(vars(fetched) | {"patches": fetched.patches[-1:]}))
+    pieces = len(Sliding(alone).slider.patches)
+    if pieces > 1:
+        raise Fault(
+            f"what is chosen lies in {pieces} pieces; choose faces that meet edge to edge, a patch for each piece"
+        )
+
+
+def give_files(controls: ControlsMeaning, folder: str) -> None:
+    """Gives every file of a texture that is asked for; relative paths start from a folder. Raises Fault."""
+    while need := controls.need():
+        path = os.path.join(folder, need.path)
+        if not os.path.isfile(path) or controls.holds(path):
+            controls.give(File(path if os.path.exists(path) else None))
+            continue
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            controls.give(File(path, size=size, descriptor=file.fileno()))
+
+
+# ---- Faults ----
+
+
+def _take(taker: Taker, values: Iterable[tuple[Input, Value]], faults: list[str]) -> None:
+    for source, value in values:
+        with _noting(faults):
+            taker.take(source, value)
+
+
+@contextmanager
+def _noting(faults: list[str]) -> Iterator[None]:
+    try:
+        yield
+    except Fault as fault:
+        faults.append(str(fault))
+
+
+@contextmanager
+def joined(patch: str = "") -> Iterator[list[str]]:
+    """Faults that are raised as one, a line each, with the name of a patch."""
+    faults: list[str] = []
+    yield faults
+    if faults:
+        raise Fault("\n".join(f"patch {patch}: {each}" if patch else each for each in faults))

@@ -1,0 +1,137 @@
+"""Set-ups in files: a round trip, what stays and what cannot be; and what the tests outside bake."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from bl_ext.user_default.skinslide.fetch import fetch
+
+from sheets import SIDE, make_patch, points, select, sheet, values
+
+
+def painted(thing, rule: str = "even") -> None:
+    """A patch with something of everything."""
+    patch = make_patch(thing, "arm:elbow_L", rule)
+    patch.interpolation, patch.grow, patch.stretchResponse = "linear", 0.125, 0.75
+    bpy.ops.skinslide.paint(what="weight", value=1.0, store="GROUP")
+    group = thing.vertex_groups["skinSlide:arm:elbow_L:weight"]
+    rng = np.random.default_rng(1)
+    for vertex, weight in enumerate(rng.random(len(thing.data.vertices)).tolist()):
+        group.add([vertex], weight, "REPLACE")
+    for what, store in (("forceDensity", "FACE"), ("hold", "POINT"), ("maxDistance", "POINT")):
+        bpy.ops.skinslide.paint(what=what, value=1.0, store=store)
+        attribute = thing.data.attributes[f"skinSlide:arm:elbow_L:{what}"]
+        attribute.data.foreach_set("value", rng.uniform(0.5, 3, len(attribute.data)).astype(np.float32))
+    select(thing, "edges", np.arange(len(thing.data.edges)) % 3 == 0)
+    bpy.ops.skinslide.paint_edges(value=3.7)
+    for frame, value in ((1001, 0.2), (1003, 0.9)):
+        patch.envelope = value
+        thing.keyframe_insert("skinslide.patches[0].envelope", frame=frame)
+    from bl_ext.user_default.skinslide.files import _curves
+
+    for curve in _curves(thing):
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+def held(thing) -> dict:
+    """All that there is to slide an object by, to the bit."""
+    fetched = fetch(thing, bpy.context.evaluated_depsgraph_get())
+    found = {
+        name: (value.type_name, value.interpolation, value.value.tobytes()) for name, value in fetched.primvars.items()
+    }
+    for patch in fetched.patches:
+        found |= {(patch.name, name): np.asarray(value.value).tobytes() for name, value in patch.values.items()}
+    rest = fetched.values.get("skinSlide:restPoints")
+    return found | {"rest": (rest.value if rest else fetched.basis).tobytes()}
+
+
+def test_a_round_trip(tmp_path):
+    """From Blender to a file and back to another mesh everything has its bits, and a second file is the first."""
+    thing = sheet()
+    painted(thing)
+    first, second = tmp_path / "a.skinslide", tmp_path / "b.skinslide"
+    assert bpy.ops.skinslide.export_setup(filepath=str(first)) == {"FINISHED"}
+    other = sheet(name="other")
+    other.data.shape_keys.key_blocks["bent"].value = 0
+    assert bpy.ops.skinslide.import_setup(filepath=str(first)) == {"FINISHED"}
+    assert held(other) == held(thing)
+    assert other.skinslide.prim == "/root/sheet/sheet"
+    cache = str(first).replace(".skinslide", ".usdc")
+    assert bpy.ops.skinslide.export_setup(filepath=str(second), cache=cache, with_cache=False) == {"FINISHED"}
+    assert second.read_text() == first.read_text()
+
+
+def test_export_again_changes_what_is_blenders_alone(tmp_path):
+    """What else is in the file stays: a map, another prim; a patch that was removed goes."""
+    thing = sheet()
+    make_patch(thing, "a")
+    make_patch(thing, "b")
+    path = tmp_path / "x.skinslide"
+    bpy.ops.skinslide.export_setup(filepath=str(path))
+    text = path.read_text()
+    assert "SkinSlideAPI:a" in text and "SkinSlideAPI:b" in text
+    path.write_text(text + '\ndef Scope "notes"\n{\n    string note = "kept"\n}\n')
+    bpy.ops.skinslide.remove_patch()
+    bpy.ops.skinslide.export_setup(filepath=str(path), with_cache=False)
+    text = path.read_text()
+    assert "SkinSlideAPI:a" in text and "SkinSlideAPI:b" not in text and ":b:" not in text and "kept" in text
+
+
+def test_what_cannot_be_imported(tmp_path):
+    thing = sheet()
+    make_patch(thing)
+    path = tmp_path / "x.skinslide"
+    bpy.ops.skinslide.export_setup(filepath=str(path))
+    other = sheet(6, "other")
+    with pytest.raises(RuntimeError, match=r"no mesh with a patch and the faces of this one.*/root/sheet/sheet"):
+        bpy.ops.skinslide.import_setup(filepath=str(path))
+    assert not other.skinslide.patches and not other.skinslide.file
+    for text, says in (("#usda 1.0\n(", "cannot open"), ("", "cannot open")):
+        path.write_text(text)
+        with pytest.raises(RuntimeError, match=says):
+            bpy.ops.skinslide.import_setup(filepath=str(path))
+    with pytest.raises(RuntimeError, match="No such file"):
+        bpy.ops.skinslide.import_setup(filepath=str(tmp_path / "none.skinslide"))
+
+
+def test_what_cannot_be_exported(tmp_path):
+    thing = sheet()
+    path = tmp_path / "x.skinslide"
+    with pytest.raises(RuntimeError, match="no patch"):
+        bpy.ops.skinslide.export_setup(filepath=str(path))
+    assert not list(tmp_path.iterdir())
+    make_patch(thing)
+    with pytest.raises(RuntimeError, match="there is no cache"):
+        bpy.ops.skinslide.export_setup(filepath=str(path), with_cache=False)
+    path.write_text("#usda 1.0\n")
+    with pytest.raises(RuntimeError, match="does not sublayer"):
+        bpy.ops.skinslide.export_setup(filepath=str(path))
+    assert path.read_text() == "#usda 1.0\n"
+
+
+@pytest.mark.parametrize("rule", ["unit", "even", "relaxed"])
+def test_for_the_bake(rule, scene, out):
+    """What is shown live, for the test outside to compare with a bake of what is exported."""
+    thing = sheet()
+    painted(thing, rule)
+    bpy.ops.skinslide.live()
+    for frame in (1001, 1002, 1003):
+        scene.frame_set(frame)
+        np.save(out / f"{rule}.{frame}.npy", points(thing.skinslide.slid))
+    bpy.context.view_layer.objects.active = thing
+    assert bpy.ops.skinslide.export_setup(filepath=str(out / f"{rule}.skinslide")) == {"FINISHED"}
+
+
+def test_a_file_of_the_tool(out):
+    """What the tool wrote outside, of kinds that Blender has none of: a GeomSubset, a constant, indices."""
+    thing = sheet()
+    path = out / "given.skinslide"
+    assert bpy.ops.skinslide.import_setup(filepath=str(path)) == {"FINISHED"}
+    chosen = np.empty(SIDE * SIDE, np.bool_)
+    thing.data.attributes["skinSlide:tool:patch"].data.foreach_get("value", chosen)
+    assert np.array_equal(np.flatnonzero(chosen), np.arange(40, 80))
+    assert np.all(values(thing, "skinSlide:tool:hold") == 2.5)
+    assert np.array_equal(values(thing, "skinSlide:tool:forceDensity"), np.where(np.arange(SIDE * SIDE) % 2, 5.0, 1.5))
+    assert thing.skinslide.patches["tool"].forceDensityRule == "relaxed"
