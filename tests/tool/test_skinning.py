@@ -237,6 +237,15 @@ def test_a_cache_says_what_usd_bakes(files):
         np.testing.assert_allclose(normals_of(composed, frame), unit(normals_of(usd, frame)), atol=1e-6)
 
 
+def test_a_cache_has_rest_in_the_pose_in_which_it_was_bound(tmp_path):
+    stage, mesh = rigs.skinned_stage()
+    UsdSkel.BindingAPI(mesh.GetPrim()).CreateGeomBindTransformAttr(Gf.Matrix4d().SetTranslate((0.5, 0, 0)))
+    bound = np.array(mesh.GetPointsAttr().Get()) + np.float32((0.5, 0, 0))
+    skinslide.cache(stages.save(stage, tmp_path / "character.usda"), tmp_path / "cache.usda")
+    layer = Sdf.Layer.FindOrOpen(str(tmp_path / "cache.usda"))
+    np.testing.assert_allclose(np.array(layer.GetAttributeAtPath(POINTS).default), bound, atol=1e-6)
+
+
 def test_a_live_layer_slides_the_cache(files):
     character, folder = files
     live = folder / "x.skinslide"

@@ -10,7 +10,16 @@ from functools import cached_property
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import Input, MeshMeaning, Weld, inputs, merge_times, positions, times_between
+from skinslide.arrays.meaning import (
+    DEFAULT_TIME,
+    Input,
+    MeshMeaning,
+    Weld,
+    inputs,
+    merge_times,
+    positions,
+    times_between,
+)
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
@@ -155,7 +164,8 @@ class PatchedMesh:
 
     def bound_points(self) -> np.ndarray | None:
         """The default value of points, float32 (V, 3), as `SkinnedPoints` has it; None where there is none."""
-        source = _source(self.prim, inputs("mesh")[-1], self.skinning)
+        wanted = next(each for each in inputs("mesh") if each.when == DEFAULT_TIME)
+        source = _source(self.prim, wanted, self.skinning)
         return positions(source.first()) if source.at(Usd.TimeCode.Default()) else None
 
     def derived_source(self, wanted: Input) -> Source:
