@@ -27,6 +27,7 @@ typedef struct diagnosis {
     ss_edge_paint *edge_paint; /* [most edges] scratch */
     double *paint_sum;         /* [most vertices] over the edges of one patch */
     int32_t *degree;           /* [most vertices] those edges */
+    float *brought[2];         /* [vertex_count][3] points where lengths are taken, if that is not the mesh's space */
 } diagnosis;
 
 static bool counts(const diagnosis *d, int32_t part) {
@@ -47,6 +48,8 @@ static skinslide_status allocate(diagnosis *d, skinslide_error *error) {
     d->edge_paint = SS_NEW(&d->memory, ss_edge_paint, most_edges);
     d->paint_sum = SS_NEW(&d->memory, double, most_vertices);
     d->degree = SS_NEW(&d->memory, int32_t, most_vertices);
+    for (int k = 0; k < 2 && d->slider->space; k++)
+        d->brought[k] = SS_NEW(&d->memory, float, 3 * (int64_t)d->slider->vertex_count);
     return d->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
@@ -196,9 +199,12 @@ skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinsl
         status = ss_take_frame_controls(slider, controls, d.controls, error);
     if (!status)
         count_patches(&d);
+    const float *before = cached, *after = slid;
+    if (!status)
+        ss_bring(slider, &before, d.brought[0]), ss_bring(slider, &after, d.brought[1]);
     for (int32_t p = 0; !status && p < slider->part_count; p++)
         if (counts(&d, p)) {
-            add_stretch(&d, p, cached, slid);
+            add_stretch(&d, p, before, after);
             add_density(&d, p);
         }
     if (!status)

@@ -261,6 +261,8 @@ skinslide_status skinslide_workspace_least_stretch(skinslide_workspace *workspac
     double *own = SS_NEW(&memory, double, workspace->slider->part_count);
     if (!status && memory.failed)
         status = ss_out_of_memory(error);
+    if (!status)
+        ss_bring(workspace->slider, &points, workspace->before);
     for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)
         status = ss_go_on(workspace, search_patch(workspace, p, points, &own[p], error), error);
     for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)

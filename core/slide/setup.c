@@ -304,6 +304,17 @@ static skinslide_status copy_weld(skinslide_slider *slider, skinslide_mesh *mesh
     return SKINSLIDE_OK;
 }
 
+/* Rest is where lengths are taken from here on, in memory of its own. */
+static skinslide_status bring_rest(const skinslide_slider *slider, skinslide_mesh *mesh, ss_memory *memory,
+                                   skinslide_error *error) {
+    float *room = slider->space ? SS_NEW(memory, float, 3 * (int64_t)mesh->vertex_count) : NULL;
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    ss_bring(slider, &mesh->rest_points, room);
+    return slider->space ? ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points where lengths are taken", error)
+                         : SKINSLIDE_OK;
+}
+
 /* Drops pointers to what is the caller's. */
 static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
@@ -324,10 +335,15 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
     if (status)
         return status;
     skinslide_slider *slider = calloc(1, sizeof *slider);
+    ss_memory rest = {0};
     if (!slider)
         return ss_out_of_memory(error);
     slider->vertex_count = mesh->vertex_count, slider->face_count = mesh->face_count, slider->setup_count = setup_count;
     status = copy_weld(slider, &taken.mesh, error);
+    if (!status)
+        status = ss_take_space(slider, mesh, error);
+    if (!status)
+        status = bring_rest(slider, &taken.mesh, &rest, error);
     if (!status)
         status = copy_setups(slider, mesh, setups, error);
     for (int32_t i = 0; i < setup_count && !status; i++)
@@ -336,6 +352,7 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
         status = take_around(slider, mesh, error);
     ss_topology_destroy(slider->topology);
     slider->topology = NULL;
+    ss_free(&rest);
     if (status) {
         skinslide_slider_destroy(slider);
         return status;

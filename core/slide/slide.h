@@ -26,6 +26,11 @@ typedef struct ss_list {
     int32_t *vertex; /* [count] of the mesh, ascending */
 } ss_list;
 
+/* Where lengths are taken, and the way back. */
+typedef struct ss_space {
+    double to[9], back[9];
+} ss_space;
+
 struct skinslide_slider {
     ss_memory memory;
     int32_t vertex_count, face_count, setup_count, part_count;
@@ -37,6 +42,7 @@ struct skinslide_slider {
     ss_around around;      /* the patches' vertices, for smooth normals */
     ss_list own;           /* the patches' vertices, and what is one with them */
     ss_list reads;         /* vertices of a face at a patch */
+    ss_space *space;       /* NULL: the mesh's own */
 };
 
 /* What is painted on an edge by name, maybe on several copies of it. */
@@ -66,6 +72,7 @@ struct skinslide_workspace {
     skinslide_patch_result *results; /* [part_count] */
     skinslide_controls *controls;    /* [setup_count] of the frame */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
+    float *before, *after;           /* [vertex_count][3] points where lengths are taken; NULL where that is the mesh's space */
     bool has_frame;
     int stop;              /* a flag that other threads set, see base.h */
     ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
@@ -114,6 +121,16 @@ skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const sk
 bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen);
 /* Names the first point that a slide reads, and that is not finite. */
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error);
+
+/* ---- space.c ---- */
+
+/* Fills slider->space, where the mesh has one. */
+skinslide_status ss_take_space(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error);
+/* Puts points where lengths are taken in the place of a mesh's own: in room [vertex_count][3], which need not be there where that is
+ * its own space. */
+void ss_bring(const skinslide_slider *slider, const float **points, float *room);
+/* A displacement there as one in the mesh's own space. */
+void ss_take_back(const skinslide_slider *slider, const double displacement[3], double out[3]);
 
 /* ---- motion.c ---- */
 

@@ -90,8 +90,10 @@ static bool moves(const double displacement[3]) {
 
 /* Where a vertex goes: as that goes which it is one with. */
 static void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
-    const double *displacement = workspace->sum[ss_welded(workspace->slider, vertex)];
-    bool moved = moves(displacement);
+    const double *slid = workspace->sum[ss_welded(workspace->slider, vertex)];
+    bool moved = moves(slid);
+    double displacement[3];
+    ss_take_back(workspace->slider, slid, displacement);
     for (int k = 0; k < 3; k++) {
         float here = points[3 * (int64_t)vertex + k];
         out[k] = moved ? (float)(here + displacement[k]) : here;
@@ -170,6 +172,12 @@ skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status statu
     return ss_fail(error, SKINSLIDE_INTERRUPTED, "the frame was interrupted");
 }
 
+/* Points where lengths are taken, which must be finite there too. */
+static skinslide_status enter(const skinslide_slider *slider, const float **points, float *room, skinslide_error *error) {
+    ss_bring(slider, points, room);
+    return slider->space ? ss_check_reads(slider, *points, "points where lengths are taken", error) : SKINSLIDE_OK;
+}
+
 skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points, const skinslide_controls *controls,
                                  float *slid, skinslide_patch_result *results, skinslide_error *error) {
     if (!workspace || !points || !slid)
@@ -180,13 +188,16 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         status = ss_take_frame_controls(slider, controls, workspace->controls, error);
     if (!status && results && slider->part_count > 0)
         status = ss_check_size(results, "skinslide_patch_result", error);
+    const float *before = points, *after = slid;
+    if (!status)
+        status = enter(slider, &before, workspace->before, error);
     if ((status = ss_go_on(workspace, status, error)))
         return status;
     workspace->has_frame = false;
     for (int32_t p = 0; p < slider->part_count; p++) {
         const skinslide_controls *own = controls ? &workspace->controls[slider->parts[p].patch->setup_index] : NULL;
         workspace->results[p] = (skinslide_patch_result)SKINSLIDE_PATCH_RESULT_DEFAULT;
-        if ((status = ss_go_on(workspace, start_patch(workspace, p, points, own, error), error)))
+        if ((status = ss_go_on(workspace, start_patch(workspace, p, before, own, error), error)))
             return status;
     }
     for (int32_t p = 0; p < slider->part_count; p++) {
@@ -197,10 +208,11 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     blend(workspace);
     if ((status = write_points(workspace, points, slid, error)))
         return status;
+    ss_bring(slider, &after, workspace->after);
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
         measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
-        ss_edge_lengths(patch, slid, workspace->patches[p].lengths);
+        ss_edge_lengths(patch, after, workspace->patches[p].lengths);
         workspace->results[p].stretch_after = stretch(patch, workspace->patches[p].lengths);
     }
     if (results)

@@ -36,6 +36,10 @@ skinslide_status ss_workspace_create(const skinslide_slider *slider, const skins
     workspace->patches = SS_NEW(&workspace->memory, ss_patch_work, slider->part_count);
     workspace->results = SS_NEW(&workspace->memory, skinslide_patch_result, slider->part_count);
     workspace->controls = SS_NEW(&workspace->memory, skinslide_controls, slider->setup_count);
+    if (slider->space) {
+        workspace->before = SS_NEW(&workspace->memory, float, 3 * (int64_t)slider->vertex_count);
+        workspace->after = SS_NEW(&workspace->memory, float, 3 * (int64_t)slider->vertex_count);
+    }
     workspace->sum = ss_new(&workspace->memory, slider->vertex_count, sizeof *workspace->sum);
     skinslide_status status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)

@@ -39,6 +39,7 @@ static const ss_input mesh_inputs[SS_MESH_ROWS] = {
     [SS_ROW_WELD] = {MESH_SETTING(SS_MESH_WELD), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_WELD_NUMBER},
     [SS_ROW_WELD_TOLERANCE] = {MESH_SETTING(SS_MESH_WELD_TOLERANCE), .kind = SS_KIND_NUMBER, .range = SS_RANGE_NOT_NEGATIVE,
                                .wanted = not_negative, .fallback = SS_MESH_WELD_TOLERANCE_NUMBER},
+    [SS_ROW_WORLD_SPACE] = {MESH_SETTING(SS_MESH_WORLD_SPACE), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_WORLD_SPACE_NUMBER},
     [SS_ROW_FOLD_CASE] = {MESH_SETTING(SS_MESH_FOLD_CASE), .kind = SS_KIND_NUMBER, .fallback = SS_MESH_FOLD_CASE_NUMBER},
     [SS_ROW_COMPARE_REST] = {MESH_SETTING(SS_MESH_COMPARE_REST), .kind = SS_KIND_NUMBER,
                              .fallback = SS_MESH_COMPARE_REST_NUMBER},

@@ -134,6 +134,7 @@ enum {
     SS_ROW_DEFAULT_POINTS,
     SS_ROW_WELD,
     SS_ROW_WELD_TOLERANCE,
+    SS_ROW_WORLD_SPACE,
     SS_ROW_FOLD_CASE,
     SS_ROW_COMPARE_REST, /* after all that it compares */
     SS_MESH_ROWS
@@ -243,10 +244,15 @@ struct skinslide_stage_mesh {
     int32_t rest_row; /* of the candidate that counts, good or bad; -1: none yet */
     bool left_handed;
     double weld, weld_tolerance; /* whether points in one place are one, and how near that is */
+    double world_space;          /* whether lengths are those in the world */
     double fold_case;            /* whether names of paint count in any case */
     double compare_rest;         /* whether rest is to be compared with the cache */
     float *first;                /* [vertex_count][3] points of the first time */
     const char *warning;         /* NULL: none */
+    bool has_space;              /* the way to the world is known at first */
+    double gram[9], space[9];    /* of that, if lengths are taken there, and the map that does it */
+    double unevenness;           /* the most that was warned of; 0: none */
+    const char *space_warning;   /* NULL: none */
 };
 
 /* The mesh as the core's own functions take it, without rest points. */

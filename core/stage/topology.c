@@ -16,6 +16,7 @@ static skinslide_status fill_mesh(skinslide_stage_mesh *mesh, skinslide_error *e
     mesh->vertex_count = -1;
     mesh->rest_row = -1;
     mesh->weld = SS_MESH_WELD_NUMBER, mesh->weld_tolerance = SS_MESH_WELD_TOLERANCE_NUMBER;
+    mesh->world_space = SS_MESH_WORLD_SPACE_NUMBER;
     mesh->fold_case = SS_MESH_FOLD_CASE_NUMBER, mesh->compare_rest = SS_MESH_COMPARE_REST_NUMBER;
     skinslide_status status = ss_take_fallbacks(mesh_inputs(SKINSLIDE_STAGE_SUBDIVISION), SS_SUBDIVISION_ROWS, &mesh->memory,
                                                 mesh->subdivision, error);
@@ -157,7 +158,7 @@ skinslide_mesh ss_faces_of(const skinslide_stage_mesh *mesh) {
 /* ---- The mesh ---- */
 
 static skinslide_status take_number(skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, skinslide_error *error) {
-    double *numbers[] = {&mesh->weld, &mesh->weld_tolerance, &mesh->fold_case, &mesh->compare_rest};
+    double *numbers[] = {&mesh->weld, &mesh->weld_tolerance, &mesh->world_space, &mesh->fold_case, &mesh->compare_rest};
     skinslide_status status =
         ss_take_number(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], record, numbers[row - SS_ROW_WELD], error);
     return status || row != SS_ROW_COMPARE_REST ? status : ss_compare_mesh(mesh, error);
@@ -199,7 +200,7 @@ skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *mesh, const ski
 /* A number that was taken. */
 static skinslide_status check_number(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, double frame,
                                      skinslide_error *error) {
-    const double numbers[] = {mesh->weld, mesh->weld_tolerance, mesh->fold_case, mesh->compare_rest};
+    const double numbers[] = {mesh->weld, mesh->weld_tolerance, mesh->world_space, mesh->fold_case, mesh->compare_rest};
     double number = 0;
     skinslide_status status = ss_take_number(&mesh_inputs(SKINSLIDE_STAGE_MESH)[row], record, &number, error);
     if (!status && number != numbers[row - SS_ROW_WELD])
@@ -269,6 +270,7 @@ skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skin
     skinslide_mesh own = ss_faces_of(mesh);
     own.rest_points = mesh->rest;
     own.subdivision = mesh->subdivided.scheme == SKINSLIDE_SCHEME_NONE ? NULL : &mesh->subdivided;
+    own.space = mesh->world_space != 0 && mesh->has_space ? mesh->space : NULL;
     ss_give(&own, sizeof own, out);
     return SKINSLIDE_OK;
 }

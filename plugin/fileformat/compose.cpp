@@ -67,8 +67,10 @@ VtValue lerp(double alpha, const VtValue &lower, const VtValue &upper) {
         lerpArray<GfVec2d>(alpha, lower, upper, &value) || lerpArray<GfVec2h>(alpha, lower, upper, &value) ||
         lerpArray<float>(alpha, lower, upper, &value) || lerpScalar<float>(alpha, lower, upper, &value) ||
         lerpScalar<double>(alpha, lower, upper, &value) || lerpScalar<GfHalf>(alpha, lower, upper, &value) ||
-        lerpArray<double>(alpha, lower, upper, &value) || lerpArray<GfHalf>(alpha, lower, upper, &value) ||
-        lerpArray<GfVec3d>(alpha, lower, upper, &value) || lerpArray<GfVec3h>(alpha, lower, upper, &value))
+        lerpScalar<GfVec3d>(alpha, lower, upper, &value) || lerpScalar<GfVec3f>(alpha, lower, upper, &value) ||
+        lerpScalar<GfVec3h>(alpha, lower, upper, &value) || lerpArray<double>(alpha, lower, upper, &value) ||
+        lerpArray<GfHalf>(alpha, lower, upper, &value) || lerpArray<GfVec3d>(alpha, lower, upper, &value) ||
+        lerpArray<GfVec3h>(alpha, lower, upper, &value))
         return value;
     return lower;
 }

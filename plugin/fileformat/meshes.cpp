@@ -172,6 +172,13 @@ std::vector<Patch> readPatches(Composition &composition, const Prim &prim, const
     return patches;
 }
 
+// How the transforms above a mesh scale it, at each time at which they were authored.
+void takeSpace(Composition &composition, const SdfPath &path, skinslide_stage_mesh *mesh) {
+    call(skinslide_stage_mesh_space, mesh, toWorld(composition, path, Attribute::first).data(), 0.0);
+    for (double time : toWorldTimes(composition, path))
+        call(skinslide_stage_mesh_space, mesh, toWorld(composition, path, time).data(), time);
+}
+
 // ---- Meshes beside it ----
 
 // Points of a mesh at the first time, as floats; none where it has none.
@@ -290,8 +297,11 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
 }
 
 void sayWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
-    if (const char *said = skinslide_stage_mesh_warning(mesh.mesh.get()))
-        problems->push_back(mesh.path.GetString() + ": " + said);
+    for (const char *said :
+         {skinslide_stage_mesh_warning(mesh.mesh.get()), skinslide_stage_mesh_space_warning(mesh.mesh.get())}) {
+        if (said)
+            problems->push_back(mesh.path.GetString() + ": " + said);
+    }
     for (const Patch &patch : mesh.patches) {
         if (const char *said = patch.warning())
             problems->push_back(mesh.path.GetString() + ": patch " + patch.name() + ": " + said);
@@ -307,6 +317,7 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Foun
     mesh->points = Property(composition, prim, skinslide_stage_next_input(SKINSLIDE_STAGE_MESH, nullptr));
     mesh->mesh = make<MeshHandle>(skinslide_stage_mesh_create);
     readGroup(composition, prim, SKINSLIDE_STAGE_MESH, mesh->mesh.get());
+    takeSpace(composition, prim.path(), mesh->mesh.get());
     mesh->patches = readPatches(composition, prim, finding, mesh->mesh.get(), params, problems);
     if (mesh->patches.size() != static_cast<size_t>(finding.patch_count))
         return nullptr;

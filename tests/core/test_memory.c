@@ -208,7 +208,7 @@ static skinslide_status run_images(void *subject, skinslide_error *error) {
     enum { SIDE = 40 };
     const skinslide_channel channels[2] = {{sizeof(skinslide_channel), "R", pixels}, {sizeof(skinslide_channel), "G", pixels}};
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL, NULL};
     const float st[6] = {0, 0, 1, 0, 1, 1};
     skinslide_bytes *made = NULL;
     skinslide_image *image = NULL;

@@ -462,6 +462,6 @@ def test_a_mesh_beside_it_that_is_skinned_is_named(tmp_path):
         open_mesh(path)
     assert len(messages) == 1
     assert (
-        f"{MESH}: whether borders meet /World/char/geo/head_GEO is not known here, since UsdSkel skins it; sublayer its "
-        "points, which skinslide cache writes"
+        f"{MESH}: whether borders meet /World/char/geo/head_GEO is not known here, since UsdSkel skins it; sublayer "
+        "its points, which skinslide cache writes"
     ) in messages[0]

@@ -32,6 +32,7 @@ from edits import (
     subset,
     topology,
 )
+from good_meshes import above, in_world, squashed
 from rows import Bad
 from stages import FRAMES, MESH, PATCH
 
@@ -493,6 +494,25 @@ GEOMETRY = [
         "rest: compared by a word",
         retyped("skinSlide:compareRest", Types.Token, "no"),
         "skinSlide:compareRest is 'no'; it must be a bool",
+        None,
+    ),
+    Bad(
+        "space: a word",
+        retyped("skinSlide:worldSpace", Types.Token, "no"),
+        "skinSlide:worldSpace is 'no'; it must be a bool",
+        None,
+    ),
+    Bad(
+        "space: squashed over time",
+        all_of(in_world, above(squashed)),
+        "skinSlide:worldSpace: the transforms above scale it otherwise at frame 1002 than at first; only their size "
+        "may change",
+        None,
+    ),
+    Bad(
+        "space: flattened",
+        all_of(in_world, above(lambda xform: xform.AddScaleOp().Set((1, 0, 1)))),
+        "skinSlide:worldSpace: the transforms above flatten it, so that it has no lengths in the world",
         None,
     ),
     Bad("points: blocked at the first frame", blocked_at("points", FRAMES[0]), "points has no value", None),

@@ -416,6 +416,41 @@ POINTS = [
 ]
 
 
+def above(change: Callable[[UsdGeom.Xformable], object]) -> Edit:
+    """Does something with the transforms of the mesh's parent."""
+
+    def edit(scene: Scene) -> None:
+        change(UsdGeom.Xformable(scene.prim.GetParent()))
+
+    return edit
+
+
+def squashed(xform: UsdGeom.Xformable) -> None:
+    scale = xform.AddScaleOp()
+    for frame, height in zip(FRAMES, (1, 2, 0.25), strict=True):
+        scale.Set((1, height, 1), frame)
+
+
+def leaning(xform: UsdGeom.Xformable) -> None:
+    """A scale along a slanted axis, below what turns and grows over time, with samples of their own each."""
+    turn, grow = xform.AddRotateXYZOp(), xform.AddScaleOp(UsdGeom.XformOp.PrecisionFloat, "grow")
+    for frame in (1001, 1002.5, 1003):
+        turn.Set((10 * (frame - 1001), 5, -20 * (frame - 1001)), frame)
+    for frame in (1001, 1003):
+        grow.Set((frame - 1000,) * 3, frame)
+    xform.AddRotateZOp(UsdGeom.XformOp.PrecisionFloat, "lean").Set(30)
+    xform.AddScaleOp(UsdGeom.XformOp.PrecisionFloat, "along").Set((2, 1, 1))
+    xform.AddRotateZOp(UsdGeom.XformOp.PrecisionFloat, "lean", True)
+
+
+def in_world(scene: Scene) -> None:
+    retyped("skinSlide:worldSpace", Types.Bool, True)(scene)
+
+
+def even_rule(scene: Scene) -> None:
+    setting("forceDensityRule", "even")(scene)
+
+
 def free_borders(scene: Scene) -> None:
     setting("forceDensityRule", "even")(scene)
     setting("holes", "freeAll")(scene)
@@ -565,6 +600,22 @@ TIMES = [
     Good("weld: a tolerance", all_of(apart, retyped("skinSlide:weldTolerance", Types.Float, 1e-4)), shape=split_grid),
     Good("weld: points that part", parting, shape=split_grid),
     Good("weld: a point for each corner, subdivided", subdivided, shape=split_grid),
+    Good(
+        "space: an uneven scale",
+        above(lambda xform: xform.AddScaleOp().Set((3, 1, 1))),
+        warns="the transforms above scale it 3 times as much one way as another: lengths are taken in its own space",
+    ),
+    Good(
+        "space: a scale that becomes uneven",
+        above(squashed),
+        warns="the transforms above scale it 4 times as much one way as another, most at frame 1003: lengths",
+    ),
+    Good(
+        "space: lengths in the world",
+        all_of(even_rule, in_world, above(lambda xform: xform.AddScaleOp().Set((3, 1, 1)))),
+    ),
+    Good("space: lengths in the world, subdivided", all_of(subdivided, in_world, above(leaning))),
+    Good("space: lengths in the world, where they are the same", all_of(in_world, even_rule)),
     Good("borders: with another mesh", all_of(free_borders, beside())),
     Good("borders: with another mesh, not welded", all_of(free_borders, beside(), unwelded)),
     Good("borders: with another mesh, by the same transforms", all_of(free_borders, beside("/World/char/head", moves))),

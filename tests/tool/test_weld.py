@@ -220,3 +220,23 @@ def test_a_slider_takes_what_is_one(split):
     expected = skinslide.Slider(*(lambda grid: (grid.counts, grid.indices, grid.points))(stages.grid()), patches)
     points = expected.slide(stages.grid().moved(FRAMES[-1])).points
     assert welded.slide(stages.grid().moved(FRAMES[-1])[whole]).points.tobytes() == points[whole].tobytes()
+
+
+def test_what_is_one_can_be_found_without_usd(split):
+    """As the stage has it; and less where points part in a pose."""
+    shape, whole = split
+    patches = [skinslide.PatchSetup("sheet", np.arange(36))]
+    mesh = (shape.counts, shape.indices, shape.points, patches)
+    poses = [stages.grid().moved(frame)[whole] for frame in FRAMES]
+    weld = skinslide.find_weld(*mesh, poses)
+    assert weld.dtype == np.int32 and np.array_equal(weld, np.searchsorted(whole, np.arange(49))[whole])
+    poses[1][2] += 0.01
+    parted = np.flatnonzero(skinslide.find_weld(*mesh, poses) != weld)
+    assert parted.tolist() == [2]
+    assert np.array_equal(skinslide.find_weld(*mesh, poses[:1] + poses[2:]), weld)
+    near = shape.points.copy()
+    near[2] += np.float32(1e-5)
+    assert not np.array_equal(skinslide.find_weld(shape.counts, shape.indices, near, patches), weld)
+    assert np.array_equal(skinslide.find_weld(shape.counts, shape.indices, near, patches, tolerance=1e-4), weld)
+    with pytest.raises(skinslide.SliderError, match="the tolerance is 1;"):
+        skinslide.find_weld(*mesh, tolerance=1)

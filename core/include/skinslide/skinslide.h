@@ -143,10 +143,12 @@ typedef struct skinslide_mesh {
     const int32_t *weld; /* [vertex_count] the vertex that each is one with, itself for most: see skinslide_weld_get. NULL: each
                             is its own. Edges, corners, boundaries and paint are then those of the welded mesh, and the limit
                             surface that of the faces as they are */
+    const double *space; /* [3][3] takes points, as rows, to where lengths are taken, such as the world; it has an inverse, and
+                            largest distances and slides are there. NULL: the mesh's object space */
 } skinslide_mesh;
 
 #define SKINSLIDE_MESH_DEFAULT                                                                                                 \
-    { sizeof(skinslide_mesh), 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_mesh), 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* Where the outer boundary of a patch goes (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
 typedef enum skinslide_boundary {

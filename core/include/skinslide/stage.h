@@ -267,6 +267,19 @@ SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage
  * is compared with the points of the first time, edge by edge, unless skinSlide:compareRest is off. */
 SKINSLIDE_API const char *skinslide_stage_mesh_warning(const skinslide_stage_mesh *mesh);
 
+/* Takes the way of the mesh to the world at a time, the first time first, then those at which the transforms above it were
+ * authored. Where skinSlide:worldSpace is on, lengths are those in the world.
+ *   to_world  in  [4][4] takes points, as rows, to the world
+ *   frame     in  its time, for the sentence
+ * Fails, where lengths are taken there, with BAD_CONTROL (the mesh is flat in the world, its shape there changes but for its
+ * size, not finite), BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_space(skinslide_stage_mesh *mesh, const double to_world[16], double frame,
+                                                          skinslide_error *error);
+
+/* What to warn of: transforms that scale the mesh more one way than another, where lengths are taken in its own space; NULL:
+ * nothing. Lives as long as the mesh. */
+SKINSLIDE_API const char *skinslide_stage_mesh_space_warning(const skinslide_stage_mesh *mesh);
+
 /* Begins to find which vertices are one, as skinslide_weld_create, as near as skinSlide:weldTolerance says.
  *   setups  in   [setup_count] all patches of the mesh
  *   out     out  the caller's to destroy; NULL where skinSlide:weld is off

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from skinslide.arrays.native import Controls, Lookup, PatchSetup, Sample, Subdivision
     from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
     from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
+    from skinslide.arrays.weld import find_weld
     from skinslide.author.api import SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI
     from skinslide.author.applied import CanApplyResult
     from skinslide.author.mirror import mirror, mirror_to_file
@@ -101,6 +102,7 @@ __all__ = [
     "choose_lookup",
     "cmake_dir",
     "farm",
+    "find_weld",
     "maps",
     "mirror",
     "mirror_to_file",
@@ -119,6 +121,7 @@ _HOMES = {
     "arrays.native": ("Controls", "Lookup", "PatchSetup", "Sample", "Subdivision"),
     "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult", "Roughness"),
     "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
+    "arrays.weld": ("find_weld",),
     "author.applied": ("CanApplyResult",),
     "author.api": ("SkinSlideAPI", "SkinSlideLiveAPI", "SkinSlideMeshAPI"),
     "author.mirror": ("mirror", "mirror_to_file"),

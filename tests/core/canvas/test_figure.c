@@ -369,7 +369,7 @@ static void where_normals_cancel_colours_are_plain(void **state) {
     static const int32_t counts[2] = {3, 3}, indices[6] = {0, 1, 2, 0, 2, 1}, faces[2] = {0, 1};
     static const float values[3] = {0.4f, 0.4f, 0.4f};
     const double sizes[3] = {1, 1e-9, 1e9};
-    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 2, 6, counts, indices, &points[0][0], NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 2, 6, counts, indices, &points[0][0], NULL, NULL, NULL};
     skinslide_tessellation *both;
     skinslide_error error;
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 2, &both, &error), &error);

@@ -136,27 +136,27 @@ static void bad_meshes_are_named(void **state) {
     (void)state;
     const int32_t counts[] = {3, 4}, indices[] = {0, 1, 2, 0, 2, 3, 4}, outside[] = {0, 1, 2, 0, 2, 3, 5};
     const int32_t below[] = {0, 1, 2, 0, -1, 3, 4}, negative[] = {3, -4};
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), -1, 2, 7, counts, indices, NULL, NULL, NULL}, SKINSLIDE_BAD_ARGUMENT,
-                "no mesh, or a negative count in it");
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 0, 0, counts, indices, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), -1, 2, 7, counts, indices, NULL, NULL, NULL, NULL},
+                SKINSLIDE_BAD_ARGUMENT, "no mesh, or a negative count in it");
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 0, 0, counts, indices, NULL, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
                 "the mesh has no faces");
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, NULL, indices, NULL, NULL, NULL}, SKINSLIDE_BAD_ARGUMENT,
-                "the mesh has no array of face counts or indices");
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 8, counts, indices, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, NULL, indices, NULL, NULL, NULL, NULL},
+                SKINSLIDE_BAD_ARGUMENT, "the mesh has no array of face counts or indices");
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 8, counts, indices, NULL, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
                 "face counts add up to 7, but there are 8 face indices");
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, counts, outside, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, counts, outside, NULL, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
                 "face 1 has vertex 5, but the mesh has 5 vertices");
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, counts, below, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, counts, below, NULL, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
                 "face 1 has vertex -1, but the mesh has 5 vertices");
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, negative, indices, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
-                "face 1 has -4 vertices");
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 5, 2, 7, negative, indices, NULL, NULL, NULL, NULL},
+                SKINSLIDE_BAD_MESH, "face 1 has -4 vertices");
 }
 
 /* Counts whose sum does not fit 32 bits must not wrap around to the count of indices. */
 static void counts_that_would_wrap_are_refused(void **state) {
     (void)state;
     const int32_t counts[] = {INT32_MAX, INT32_MAX, 5}, indices[] = {0, 1, 2};
-    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 3, 3, 3, counts, indices, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
+    expect_mesh((skinslide_mesh){sizeof(skinslide_mesh), 3, 3, 3, counts, indices, NULL, NULL, NULL, NULL}, SKINSLIDE_BAD_MESH,
                 "face counts add up to 4294967299, but there are 3 face indices");
 }
 

@@ -26,7 +26,7 @@ static skinslide_image image_of(const float *pixels, int32_t width, int32_t heig
 /* The value at one texture coordinate: that of a triangle with all corners there. */
 static double value_at(const skinslide_image *image, double s, double t) {
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL, NULL};
     const float st[6] = {(float)s, (float)t, (float)s, (float)t, (float)s, (float)t};
     const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), image, 0};
     float values[3];
@@ -213,7 +213,7 @@ static void texels_that_are_no_numbers(void **state) {
     assert_near(value_at(&image, 0.25, 0.5), 2, 0);
     assert_near(value_at(&image, 0.1, 0.9), 1, 0);
     const int32_t counts[1] = {3}, indices[3] = {0, 1, 2}, faces[1] = {0};
-    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL};
+    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 3, 1, 3, counts, indices, NULL, NULL, NULL, NULL};
     const float st[6] = {0.25f, 0.5f, 0.25f, 0.5f, 0.5f, 0.75f};
     const skinslide_texture_tile tile = {sizeof(skinslide_texture_tile), &image, 0};
     float values[3] = {5, 5, 5};

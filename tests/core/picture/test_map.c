@@ -83,7 +83,8 @@ static int32_t *coverage_of(const whole_triangle *triangles, int32_t count) {
                 st[2 * (4 + 3 * i + k) + axis] = (float)triangles[i].corner[k][axis] / (TILE * UNITS);
         }
     }
-    const skinslide_mesh mesh = {sizeof(skinslide_mesh), 7, 1 + count, 4 + 3 * count, face_counts, indices, NULL, NULL, NULL};
+    const skinslide_mesh mesh = {
+        sizeof(skinslide_mesh), 7, 1 + count, 4 + 3 * count, face_counts, indices, NULL, NULL, NULL, NULL};
     int32_t *covered = calloc(TILE * TILE, sizeof *covered);
     float texels[TILE * TILE];
     for (int32_t f = 1; f <= count; f++) {

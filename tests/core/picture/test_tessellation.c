@@ -602,7 +602,7 @@ static void refused_faces_are_flat(void **state) {
                                        .crease_indices = crease,
                                        .crease_sharpnesses = sharpness};
     const double origin[3] = {0, 0, 0};
-    skinslide_mesh mesh = {sizeof(skinslide_mesh), 7, 2, 10, counts, indices, &points[0][0], &own, NULL};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 7, 2, 10, counts, indices, &points[0][0], &own, NULL, NULL};
     skinslide_tessellation *flat;
     ss_tessellation_work work = {0};
     skinslide_error error;
@@ -627,7 +627,7 @@ static void any_faces_can_be_drawn(void **state) {
     static const float points[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}};
     static const int32_t counts[6] = {4, 4, 3, 2, 4, 0}, faces[7] = {0, 1, 2, 1, 3, 4, 5};
     static const int32_t indices[17] = {0, 1, 2, 3, 0, 1, 5, 4, 0, 1, 4, 0, 1, 2, 2, 3, 0};
-    skinslide_mesh mesh = {sizeof(skinslide_mesh), 6, 6, 17, counts, indices, &points[0][0], NULL, NULL};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 6, 6, 17, counts, indices, &points[0][0], NULL, NULL, NULL};
     skinslide_tessellation *drawn;
     skinslide_error error;
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 7, &drawn, &error), &error);
@@ -646,7 +646,7 @@ static void seams_of_one_skin_are_not_outlined(void **state) {
     static const float points[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}};
     static const int32_t counts[2] = {4, 4}, indices[8] = {0, 1, 2, 3, 4, 5, 6, 7}, faces[2] = {0, 1};
     static const int32_t weld[8] = {0, 1, 2, 3, 1, 5, 6, 2};
-    skinslide_mesh mesh = {sizeof(skinslide_mesh), 8, 2, 8, counts, indices, &points[0][0], NULL, NULL};
+    skinslide_mesh mesh = {sizeof(skinslide_mesh), 8, 2, 8, counts, indices, &points[0][0], NULL, NULL, NULL};
     skinslide_error error;
     for (int welded = 0; welded < 2; welded++) {
         skinslide_tessellation *drawn;

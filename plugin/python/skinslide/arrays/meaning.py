@@ -299,6 +299,20 @@ class MeshMeaning(Taker):
         return _said(lib.skinslide_stage_mesh_warning(self.handle.pointer))
 
     @property
+    def space_warning(self) -> str:
+        """What to warn of in the transforms above, or nothing."""
+        return _said(lib.skinslide_stage_mesh_space_warning(self.handle.pointer))
+
+    def take_space(self, to_world: np.ndarray, frame: float) -> None:
+        """Takes the way to the world (4, 4), of rows, at a time; the first first. Raises Fault."""
+        matrix = np.ascontiguousarray(to_world, np.float64)
+        _call(lib.skinslide_stage_mesh_space, self.handle, ffi.from_buffer("double[]", matrix), frame)
+
+    def space(self) -> np.ndarray | None:
+        """What takes points to where lengths are taken (3, 3); None: nothing. Raises Fault where rest was not taken."""
+        return _optional(self._read(lib.skinslide_stage_mesh_get).space, np.float64, 3, 3)
+
+    @property
     def shape(self) -> Any:
         """A `skinslide_mesh` of points and faces, as long as this lives. Raises Fault where they were not taken."""
         return self._read(lib.skinslide_stage_mesh_faces)

@@ -208,7 +208,7 @@ class Sample(NamedTuple):
     slid: np.ndarray
 
 
-_CTYPES: dict[type, str] = {np.int32: "int32_t[]", np.float32: "float[]", np.bool_: "uint8_t[]"}
+_CTYPES: dict[type, str] = {np.int32: "int32_t[]", np.float32: "float[]", np.bool_: "uint8_t[]", np.float64: "double[]"}
 
 
 class Arguments:
@@ -236,6 +236,7 @@ class Arguments:
         points: Any,
         subdivision: Subdivision | None = None,
         weld: Any = None,
+        space: Any = None,
     ) -> Any:
         mesh = new("mesh")
         self._alive.append(mesh)
@@ -246,6 +247,7 @@ class Arguments:
         if subdivision is not None:
             mesh.subdivision = self.subdivision(subdivision)
         mesh.weld = self.optional(weld, np.int32, (len(points),), "weld")
+        mesh.space = self.optional(space, np.float64, (3, 3), "space")
         return mesh[0]
 
     def subdivision(self, given: Subdivision) -> Any:

@@ -118,6 +118,7 @@ class Slider:
         lookup: str | Lookup = "auto",
         subdivision: Subdivision | None = None,
         weld: npt.ArrayLike | None = None,
+        space: npt.ArrayLike | None = None,
     ):
         """Builds every patch at rest.
 
@@ -128,13 +129,16 @@ class Slider:
             patches: The set-ups.
             lookup: How rest vertices are looked up: auto, egl, exact, or a Lookup.
             subdivision: How the mesh is subdivided, on which the interpolation limit depends; None: it is not.
-            weld: Of each point that which it is one with (V,), itself for most; None: each is its own.
+            weld: Of each point that which it is one with (V,), itself for most, as `find_weld` has it; None: each is
+                its own.
+            space: Takes points, as rows, to where lengths are taken (3, 3), such as the world, in which a mesh may be
+                scaled more one way than another; None: nothing does.
 
         Raises:
             SliderError: What cannot be slid; the message names patch and element.
         """
         native = Arguments()
-        mesh = native.mesh(face_counts, face_indices, rest_points, subdivision, weld)
+        mesh = native.mesh(face_counts, face_indices, rest_points, subdivision, weld, space)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
         self._lookup = Lookup.of(lookup).options()
         given = all_of("patches", patches, PatchSetup)

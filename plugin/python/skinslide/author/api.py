@@ -790,6 +790,34 @@ class SkinSlideMeshAPI(AppliedSchema):
         """
         return self._create_attribute("weldTolerance", defaultValue, writeSparsely)
 
+    def GetWorldSpaceAttr(self) -> Usd.Attribute:
+        """Whether lengths are those in the world.
+
+        At rest and at every frame they are measured as the transforms above the mesh scale it, which matters where a
+        scale is not the same in all directions. Distances such as grow of patches stay in the mesh's units, and
+        maxDistance is in the world's. The transforms may turn, move and size the mesh over time, but not scale it
+        ever more one way than another.
+
+        Returns:
+            The attribute skinSlide:worldSpace, bool, uniform; not valid where there is none.
+        """
+        return self._attribute("worldSpace")
+
+    def CreateWorldSpaceAttr(self, defaultValue: bool | None = None, writeSparsely: bool = False) -> Usd.Attribute:
+        """Authors skinSlide:worldSpace in the edit target.
+
+        Args:
+            defaultValue: What it is at no time, bool, uniform; None: nothing.
+            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+
+        Returns:
+            The attribute.
+
+        Raises:
+            UsageError: The value is of another kind.
+        """
+        return self._create_attribute("worldSpace", defaultValue, writeSparsely)
+
     def GetFoldCaseAttr(self) -> Usd.Attribute:
         """Whether paint counts under names in any case.
 

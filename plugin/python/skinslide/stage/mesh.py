@@ -27,7 +27,7 @@ from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageP
 from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.patch import Animation, read_patch
 from skinslide.stage.skinning import SkinnedNormals, SkinnedPoints, Skinning
-from skinslide.stage.values import FIRST, Source, Span, read_value, take
+from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,7 @@ class PatchedMesh:
     patches: list[PatchSetup]  # with the controls of the first time
     animation: list[Animation]  # of each patch
     skinning: Skinning | None = None  # None where UsdSkel leaves it alone
+    space: np.ndarray | None = None  # (3, 3) takes points to where lengths are taken; None: its own space
 
     @classmethod
     def of(
@@ -50,7 +51,8 @@ class PatchedMesh:
     ) -> PatchedMesh:
         topology, rest = Topology.of(meaning), meaning.rest_points()
         patches = [each.setup for each in animation]
-        return cls(prim.GetStage(), prim, meaning, topology, meaning.subdivision(), rest, patches, animation, skinning)
+        kinds = (meaning.subdivision(), rest, patches, animation, skinning, meaning.space())
+        return cls(prim.GetStage(), prim, meaning, topology, *kinds)
 
     @property
     def rest_source(self) -> str:
@@ -215,6 +217,7 @@ class PatchedMesh:
             lookup=lookup,
             subdivision=self.subdivision,
             weld=self.weld.vertices,
+            space=self.space,
         )
 
     @cached_property
@@ -233,8 +236,8 @@ class PatchedMesh:
 
     def warnings(self) -> Iterator[Problem]:
         """What rest points and patches are warned of."""
-        if self.meaning.warning:
-            yield Problem("warning", self.path, None, None, self.meaning.warning)
+        for said in filter(None, (self.meaning.warning, self.meaning.space_warning)):
+            yield Problem("warning", self.path, None, None, said)
         for patch, each in zip(self.patches, self.animation, strict=True):
             if each.warning:
                 yield Problem("warning", self.path, patch.name, None, each.warning)
@@ -313,6 +316,7 @@ def _read_mesh(found: FoundMesh, problems: list[Problem]) -> PatchedMesh | None:
         say([str(fault)])
         return None
     meaning, faults = take_mesh(prim, skinning)
+    faults += take_space(prim, meaning) if meaning.has_faces else []
     say(faults)
     if not meaning.has_faces:
         return None
@@ -337,6 +341,24 @@ def take_mesh(prim: Usd.Prim, skinning: Skinning | None = None) -> tuple[MeshMea
     points, *others = (_source(prim, each, skinning) for each in inputs("mesh"))
     faults += take(meaning, [points])
     return meaning, faults or take(meaning, others)
+
+
+def take_space(prim: Usd.Prim, meaning: MeshMeaning) -> list[str]:
+    """How the transforms above a mesh scale it, at each time at which they were authored. Returns what is wrong."""
+    faults: list[str] = []
+    above = (UsdGeom.Xformable(each) for each in _and_above(prim))
+    times = sorted({time for each in above if each for time in each.GetTimeSamples()})
+    with noting(faults):
+        for time in [FIRST, *map(Usd.TimeCode, times)]:
+            matrix = UsdGeom.XformCache(time).GetLocalToWorldTransform(prim)
+            meaning.take_space(np.array(matrix), 0.0 if time.IsEarliestTime() else time.GetValue())
+    return faults
+
+
+def _and_above(prim: Usd.Prim) -> Iterator[Usd.Prim]:
+    while prim:
+        yield prim
+        prim = prim.GetParent()
 
 
 def _source(prim: Usd.Prim, wanted: Input, skinning: Skinning | None) -> Source:
