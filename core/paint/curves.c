@@ -162,16 +162,6 @@ static bool is_along(const piece *p, const double edge[3]) {
     return both != 0 && 2 * both * both >= ss_dot(edge, edge) * ss_dot(curve, curve);
 }
 
-static bool is_near(const float *a, const float *b, const pieces *all, double distance, skinslide_direction direction) {
-    double middle[3], edge[3];
-    for (int k = 0; k < 3; k++)
-        middle[k] = 0.5 * ((double)a[k] + b[k]), edge[k] = (double)b[k] - a[k];
-    const piece *nearest = nearest_piece(all, middle, distance);
-    if (!nearest || direction == SKINSLIDE_DIRECTION_ANY)
-        return nearest != NULL;
-    return is_along(nearest, edge) == (direction == SKINSLIDE_DIRECTION_ALONG);
-}
-
 /* Pieces of no length have no direction, and leave none out: their neighbours end where they are. */
 static void flatten(const skinslide_curves *curves, pieces *out) {
     for (int32_t c = 0, first = 0; c < curves->curve_count; first += curves->vertex_counts[c++])
@@ -184,13 +174,25 @@ static void flatten(const skinslide_curves *curves, pieces *out) {
     out->count = kept;
 }
 
-skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
-                                      const skinslide_curves *curves, double distance, skinslide_direction direction,
-                                      uint8_t *near, skinslide_error *error) {
+/* The distance of an edge's middle from the curves, as far as a limit, where it runs in that direction; INFINITY else. */
+static double distance_of(const float *a, const float *b, const pieces *all, double limit, skinslide_direction direction) {
+    double middle[3], edge[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * ((double)a[k] + b[k]), edge[k] = (double)b[k] - a[k];
+    const piece *nearest = nearest_piece(all, middle, limit);
+    bool counts = direction == SKINSLIDE_DIRECTION_ANY ||
+                  (nearest && is_along(nearest, edge) == (direction == SKINSLIDE_DIRECTION_ALONG));
+    return nearest && counts ? distance_to_piece(nearest, middle) : INFINITY;
+}
+
+/* Checks all but the distance, and makes the pieces of the curves. */
+static skinslide_status prepare(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
+                                const skinslide_curves *curves, skinslide_direction direction, ss_memory *memory, pieces *out,
+                                skinslide_error *error) {
     int64_t segments = 0;
-    if (!near || !(distance >= 0) || isinf(distance) || (unsigned)direction > SKINSLIDE_DIRECTION_ACROSS)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "distance %g, or no such direction, or no place for the edges", distance);
     skinslide_curves own = SKINSLIDE_CURVES_DEFAULT;
+    if ((unsigned)direction > SKINSLIDE_DIRECTION_ACROSS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no direction %d", (int)direction);
     skinslide_status status = check_edges(points, vertex_count, edges, edge_count, error);
     if (!status)
         status = ss_take(curves, "skinslide_curves", &own, sizeof own, error);
@@ -198,14 +200,42 @@ skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count,
         status = check_curves(&own, &segments, error);
     if (status)
         return status;
-    ss_memory memory = {0};
-    pieces all = {SS_NEW(&memory, piece, segments * STEPS), 0};
-    if (memory.failed)
+    *out = (pieces){SS_NEW(memory, piece, segments * STEPS), 0};
+    if (memory->failed)
         return ss_out_of_memory(error);
-    flatten(&own, &all);
-    for (int32_t e = 0; e < edge_count; e++)
-        near[e] =
-            is_near(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all, distance, direction);
-    ss_free(&memory);
+    flatten(&own, out);
     return SKINSLIDE_OK;
+}
+
+skinslide_status skinslide_nearest_edge(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
+                                        const skinslide_curves *curves, skinslide_direction direction, double *distance,
+                                        skinslide_error *error) {
+    ss_memory memory = {0};
+    pieces all;
+    skinslide_status status = distance
+                                  ? prepare(points, vertex_count, edges, edge_count, curves, direction, &memory, &all, error)
+                                  : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the distance");
+    double least = INFINITY;
+    for (int32_t e = 0; e < edge_count && !status; e++)
+        least = fmin(least, distance_of(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all,
+                                        INFINITY, direction));
+    if (!status)
+        *distance = least;
+    ss_free(&memory);
+    return status;
+}
+
+skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
+                                      const skinslide_curves *curves, double distance, skinslide_direction direction,
+                                      uint8_t *near, skinslide_error *error) {
+    if (!near || !(distance >= 0) || isinf(distance))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "distance %g, or no place for the edges", distance);
+    ss_memory memory = {0};
+    pieces all;
+    skinslide_status status = prepare(points, vertex_count, edges, edge_count, curves, direction, &memory, &all, error);
+    for (int32_t e = 0; e < edge_count && !status; e++)
+        near[e] = distance_of(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all, distance,
+                              direction) <= distance;
+    ss_free(&memory);
+    return status;
 }

@@ -212,8 +212,8 @@ static skinslide_status allocate(mirror *m, ss_memory *memory, uint8_t **lost, s
     return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
-static skinslide_status check(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
-                              int32_t face_count, skinslide_error *error) {
+skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
+                                 int32_t face_count, skinslide_error *error) {
     skinslide_status status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
     if (status)
         return status;
@@ -245,7 +245,7 @@ skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, doub
     ss_taken_mesh taken;
     skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (!status)
-        status = check(mesh, axis, plane, tolerance, faces, face_count, error);
+        status = ss_check_mirror(mesh, axis, plane, tolerance, faces, face_count, error);
     if (status || !mirror_faces || !mirror_vertices)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for what is found");
     ss_memory memory = {0};

@@ -8,6 +8,12 @@
 /* UDIM tiles, numbered by rows of ten: 1001 to 10000. */
 enum { SS_FIRST_TILE = 1001, SS_TILE_COLUMNS = 10, SS_TILE_ROWS = 900 };
 
+/* ---- mirror.c ---- */
+
+/* What both ways to the other side of a mesh are asked. */
+skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
+                                 int32_t face_count, skinslide_error *error);
+
 /* ---- texture.c ---- */
 
 /* A caller's layout as ours. */

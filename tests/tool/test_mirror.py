@@ -318,6 +318,92 @@ def test_names_without_a_side(name):
         other_side(name)
 
 
+# ---- Faces that have no counterparts ----
+
+
+def cut_alike(mesh) -> None:
+    """Each quad cut from its first corner, all along the same diagonal, so that no face mirrors one."""
+    quads = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 4)
+    mesh.GetFaceVertexIndicesAttr().Set(quads[:, [0, 1, 2, 0, 2, 3]].ravel().tolist())
+    mesh.GetFaceVertexCountsAttr().Set([3] * (2 * len(quads)))
+    stages.add_patch(mesh, halves(FACES), LEFT)
+
+
+def halves(faces: np.ndarray) -> np.ndarray:
+    return np.sort(np.concatenate([2 * faces, 2 * faces + 1]))
+
+
+def test_faces_cut_along_other_diagonals(tmp_path):
+    """The region across, and paint where the mirror puts it, by point, by face and by edge."""
+    stage, mesh = new_shot()
+    cut_alike(mesh)
+    weights, density = np.random.default_rng(0).uniform(size=63), np.repeat(np.arange(1, 49), 2)
+    primvar(mesh, "weight", "vertex", weights)
+    primvar(mesh, "forceDensity", "uniform", density)
+    column = [[row * 9 + 1, row * 9 + 10] for row in (1, 2)]
+    prop(mesh, "edges", [*column[0], 9, 19, *column[1]])  # the second is a diagonal
+    prop(mesh, "edgeForceDensities", [2.0, 3.0, 4.0])
+    prop(mesh, "corners", [9, 12, 45, 48])
+    path = stages.save(stage, tmp_path / "shot.usda")
+    report = mirror_to_file(path, tmp_path / "both.skinslide", MESH, LEFT)
+    told = [problem for problem in report.problems if problem.severity == "note"]
+    assert [problem.patch for problem in told] == [RIGHT, RIGHT]
+    assert told[0].message.startswith("mirrored by nearest place, since faces are not symmetric: the farthest is ")
+    assert float(told[0].message.split()[-2]) < 1e-6
+    assert told[1].message == "1 of 3 painted edges are not there"
+    right = read(tmp_path / "both.skinslide")[RIGHT]
+    assert np.array_equal(right.patch.faces, halves(ACROSS_FACES))
+    controls = right.patch.controls
+    np.testing.assert_array_equal(controls.weight[ACROSS[ON_PATCH]], weights.astype(np.float32)[ON_PATCH])
+    quad = (right.patch.faces // 2) // 8 * 8 + 7 - (right.patch.faces // 2) % 8
+    np.testing.assert_array_equal(controls.face_density[right.patch.faces], quad + 1)
+    np.testing.assert_array_equal(controls.edges, ACROSS[column])
+    np.testing.assert_array_equal(controls.edge_density, [2.0, 4.0])
+    np.testing.assert_array_equal(right.patch.corners, ACROSS[[9, 12, 45, 48]])
+
+
+def test_a_map_becomes_paint_there_too(tmp_path):
+    stage, mesh = new_shot()
+    cut_alike(mesh)
+    stages.set_primvar(mesh, "st", Types.TexCoord2fArray, "vertex", [Gf.Vec2f(0.25)] * 63)
+    (tmp_path / "q.exr").write_bytes(encode_exr({"R": np.full((2, 2), 0.5, np.float32)}))
+    prop(mesh, "weightMap", Sdf.AssetPath("./q.exr"))
+    path = stages.save(stage, tmp_path / "shot.usda")
+    mirror_to_file(path, tmp_path / "both.skinslide", MESH, LEFT)
+    right = read(tmp_path / "both.skinslide")[RIGHT]
+    assert (right.patch.controls.weight[ACROSS[ON_PATCH]] == 0.5).all()
+
+
+def test_a_tolerance_takes_what_is_about_there(tmp_path):
+    stage, mesh = new_shot()
+    cut_alike(mesh)
+    move_point(mesh)
+    path = stages.save(stage, tmp_path / "shot.usda")
+    with pytest.raises(StageProblems, match=r"point 20 has no mirror image within 0\.0001"):
+        mirror_to_file(path, tmp_path / "both.skinslide", MESH, LEFT)
+    report = mirror_to_file(path, tmp_path / "both.skinslide", MESH, LEFT, tolerance=0.009)
+    (told,) = [problem.message for problem in report.problems if problem.severity == "note"]
+    assert 1e-4 < float(told.split()[-2]) < 0.009
+
+
+def test_points_of_a_seam_are_mirrored_by_their_faces(tmp_path):
+    """Of a mesh split at every corner, whose points each have several in their place."""
+    whole = symmetric_grid()
+    shape = stages.split(whole)
+    places = np.sort(whole.indices)
+    stage = stages.new_stage()
+    mesh = stages.add_mesh(stage, shape, frames=())
+    for i, frame in enumerate(FRAMES):
+        mesh.GetPointsAttr().Set(stages.vectors(moved(i / 4)[places]), frame)
+    stages.add_patch(mesh, FACES, LEFT)
+    weights = np.random.default_rng(1).uniform(size=63).astype(np.float32)
+    primvar(mesh, "weight", "vertex", weights[places])
+    right = mirrored(stage, tmp_path)
+    assert np.array_equal(np.sort(right.patch.faces), ACROSS_FACES)
+    inside = right.mesh.topology.vertices_of(right.patch.faces)
+    np.testing.assert_array_equal(right.patch.controls.weight[inside], weights[ACROSS[places[inside]]])
+
+
 # ---- Bad input ----
 
 
@@ -325,14 +411,6 @@ def move_point(mesh) -> None:
     points = symmetric_grid().points.copy()
     points[ACROSS[20], 0] += 0.01
     mesh.GetPointsAttr().Set(stages.vectors(points))
-
-
-def other_faces(mesh) -> None:
-    """The other side's quads are cut otherwise: two of them begin at each other's corners."""
-    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 4)
-    first, second = indices[COLUMNS + 7].copy(), indices[COLUMNS + 6].copy()
-    indices[COLUMNS + 7, [0, 3]], indices[COLUMNS + 6, [1, 2]] = second[[0, 3]], first[[1, 2]]
-    mesh.GetFaceVertexIndicesAttr().Set(indices.ravel().tolist())
 
 
 def density_of_both_kinds(mesh) -> None:
@@ -358,7 +436,6 @@ FAULTS = {
         "points 9, 10, 11, 12, 18, 19, 20, 21 and 12 more have no mirror image",
     ),
     "axis": (lambda mesh: None, dict(axis="y"), "have no mirror image within 0.0001 beyond y = 0"),
-    "face": (other_faces, {}, "face 8 has no mirror image beyond x = 0, though its points have"),
     "no such patch": (
         lambda mesh: mesh.GetPrim().RemoveAppliedSchema(f"SkinSlideAPI:{LEFT}"),
         {},

@@ -263,7 +263,16 @@ FAULTS = {
     "above everything": (unchanged, dict(primvar="ramp", threshold=9), "ramp chooses no edge"),
     "no such curve": (unchanged, dict(curve="/World/gone", distance=1), "there is no BasisCurves prim /World/gone"),
     "curve is no curve": (unchanged, dict(curve=MESH, distance=1), f"no BasisCurves prim {MESH}, it is a Mesh"),
-    "curve too far": (unchanged, dict(curve=CURVE, distance=0.001), f"{CURVE} chooses no edge"),
+    "curve too far": (
+        unchanged,
+        dict(curve=CURVE, distance=0.001),
+        f"{CURVE} chooses no edge of the patch: the nearest is ",
+    ),
+    "curve too far across": (
+        unchanged,
+        dict(curve=CURVE, distance=0.001, direction="across"),
+        "the nearest that runs across it is ",
+    ),
     "curve counts": (
         curve_attr("curveVertexCounts", [3]),
         dict(curve=CURVE, distance=1),

@@ -179,6 +179,13 @@ SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t
                                                     int32_t edge_count, const skinslide_curves *curves, double distance,
                                                     skinslide_direction direction, uint8_t *near, skinslide_error *error);
 
+/* How far the nearest of some edges is from a curve, for those who find none within a distance.
+ *   distance  out of its middle; infinite where no edge runs in that direction
+ * Fails as skinslide_edges_near. */
+SKINSLIDE_API skinslide_status skinslide_nearest_edge(const float *points, int32_t vertex_count, const int32_t *edges,
+                                                      int32_t edge_count, const skinslide_curves *curves,
+                                                      skinslide_direction direction, double *distance, skinslide_error *error);
+
 /* Finds the faces on the other side of a mesh that is symmetric at rest about the plane where coordinate `axis` (0 x, 1 y, 2 z)
  * is `plane`, and the vertices that correspond. Vertices correspond where one's mirror image is within tolerance of the other
  * and both are at the same place in faces that do; so vertices in one place are told apart by their faces.
@@ -190,6 +197,20 @@ SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t
 SKINSLIDE_API skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
                                                 const int32_t *faces, int32_t face_count, int32_t *mirror_faces,
                                                 int32_t *mirror_vertices, skinslide_error *error);
+
+/* The same by nearest place, of a mesh whose faces have no counterparts, but whose surface is symmetric: quads cut along other
+ * diagonals. A face is found where the mirror image of its middle is nearest to one of the faces.
+ *   tolerance       in  how far a mirror image may be from the mesh; below 0: 1e-4 of the mesh's largest extent at rest
+ *   faces           in  [face_count] mesh faces
+ *   face_sources    out [mesh face_count] of each face found the one of faces that it is nearest to; -1 for others
+ *   vertex_sources  out [vertex_count] of each vertex of a face found the one nearest to its mirror image; -1 for others
+ *   worst           out how far a mirror image is from the mesh at most
+ * Fails with BAD_MESH (a vertex of either side whose mirror image is too far from the mesh: names it; no face found),
+ * BAD_POINTS, BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_mirror_nearest(const skinslide_mesh *mesh, int32_t axis, double plane,
+                                                        double tolerance, const int32_t *faces, int32_t face_count,
+                                                        int32_t *face_sources, int32_t *vertex_sources, double *worst,
+                                                        skinslide_error *error);
 
 /* ---- A set-up that nobody painted: where skin stretches ----------------------------------------------------------------- */
 

@@ -64,6 +64,26 @@ static void a_line_by_hand(void **state) {
     assert_int_equal(count_near(&line, 100, SKINSLIDE_DIRECTION_ANY), EDGES);
 }
 
+/* That within which just one is found; none, where no edge runs that way. */
+static void the_nearest_tells_its_distance(void **state) {
+    (void)state;
+    const float points[6] = {-1, 1.625F, 0.25F, 9, 1.625F, 0.25F};
+    const int32_t two = 2;
+    skinslide_curves line = curve_of(points, &two, SKINSLIDE_CURVE_BASIS_LINEAR, SKINSLIDE_CURVE_WRAP_NONPERIODIC);
+    double distance;
+    for (skinslide_direction way = SKINSLIDE_DIRECTION_ANY; way <= SKINSLIDE_DIRECTION_ACROSS; way++) {
+        test_mesh mesh = quad_grid(SIDE, SIDE);
+        int32_t edges[4] = {0, 1, 0, SIDE + 1}; /* along, at y = 0; across, about y = 0.5 */
+        assert_ok(skinslide_nearest_edge(mesh.points, mesh.vertex_count, edges, 2, &line, way, &distance, &error), &error);
+        assert_near(distance, hypot(way == SKINSLIDE_DIRECTION_ALONG ? 1.625 : 1.125, 0.25), 1e-12);
+        assert_ok(skinslide_nearest_edge(mesh.points, mesh.vertex_count, edges, 1, &line, way, &distance, &error), &error);
+        assert_true(isinf(distance) == (way == SKINSLIDE_DIRECTION_ACROSS));
+        assert_fails(skinslide_nearest_edge(mesh.points, mesh.vertex_count, edges, 1, &line, way, NULL, &error), &error,
+                     SKINSLIDE_BAD_ARGUMENT, "no place for the distance");
+        free_mesh(&mesh);
+    }
+}
+
 /* Just the distance counts, and a diagonal is along both. */
 static void borders_count(void **state) {
     (void)state;
@@ -227,9 +247,13 @@ static void bad_arguments(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_line_by_hand),          cmocka_unit_test(borders_count),
-        cmocka_unit_test(curves_come_by_a_matrix), cmocka_unit_test(cubic_curves_against_their_matrices),
-        cmocka_unit_test(segments_by_hand),        cmocka_unit_test(counts_that_do_not_fit),
+        cmocka_unit_test(a_line_by_hand),
+        cmocka_unit_test(the_nearest_tells_its_distance),
+        cmocka_unit_test(borders_count),
+        cmocka_unit_test(curves_come_by_a_matrix),
+        cmocka_unit_test(cubic_curves_against_their_matrices),
+        cmocka_unit_test(segments_by_hand),
+        cmocka_unit_test(counts_that_do_not_fit),
         cmocka_unit_test(bad_arguments),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

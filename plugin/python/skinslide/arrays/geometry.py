@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +30,25 @@ def edges_near(
     direction  "along": at 45 degrees or less to the curve; "across": at more; or "any"
     """
     native, near = Arguments(), np.zeros(len(edges), np.uint8)
+    call(
+        lib.skinslide_edges_near,
+        *_edges_and_curves(native, points, edges, curves),
+        distance,
+        enum_value("direction", direction, ""),
+        writable("uint8_t[]", near),
+    )
+    return near.astype(bool)
+
+
+def nearest_edge(points: np.ndarray, edges: np.ndarray, curves: Curves, direction: str = "any") -> float:
+    """How far the middle of the nearest edge is from a curve; infinite where none runs in that direction."""
+    native, distance = Arguments(), ffi.new("double *")
+    given = _edges_and_curves(native, points, edges, curves)
+    call(lib.skinslide_nearest_edge, *given, enum_value("direction", direction, ""), distance)
+    return float(distance[0])
+
+
+def _edges_and_curves(native: Arguments, points: np.ndarray, edges: np.ndarray, curves: Curves) -> tuple[Any, ...]:
     given = new("curves")
     given.curve_count, given.point_count = len(curves.vertex_counts), len(curves.points)
     given.vertex_counts = native.pointer(curves.vertex_counts, np.int32, (-1,), "curve vertex counts")
@@ -37,20 +56,9 @@ def edges_near(
     given.basis = enum_value("curve_basis", curves.basis, "")
     given.wrap = enum_value("curve_wrap", curves.wrap, "")
     if curves.to_mesh is not None:
-        matrix = ffi.new("double[]", np.asarray(curves.to_mesh, np.float64).reshape(16).tolist())
-        given.to_mesh = matrix
-    call(
-        lib.skinslide_edges_near,
-        native.points(points, -1, "points"),
-        len(points),
-        native.pointer(edges, np.int32, (-1, 2), "edges"),
-        len(edges),
-        given,
-        distance,
-        enum_value("direction", direction, ""),
-        writable("uint8_t[]", near),
-    )
-    return near.astype(bool)
+        given.to_mesh = native.pointer(curves.to_mesh, np.float64, (4, 4), "curves' matrix")
+    own, pairs = native.points(points, -1, "points"), native.pointer(edges, np.int32, (-1, 2), "edges")
+    return own, len(points), pairs, len(edges), given
 
 
 class Mirrored(NamedTuple):
@@ -87,6 +95,44 @@ def mirror_faces(
         writable("int32_t[]", found.vertices),
     )
     return found
+
+
+class Nearest(NamedTuple):
+    face_sources: np.ndarray  # (F,) int32, of each face found that which it is nearest to; -1 for others
+    vertex_sources: np.ndarray  # (V,) int32, of each vertex of those that which is nearest to its mirror image
+    worst: float  # how far a mirror image is from the mesh at most
+
+
+def mirror_nearest(
+    face_counts: np.ndarray,
+    face_indices: np.ndarray,
+    rest_points: np.ndarray,
+    faces: np.ndarray,
+    *,
+    axis: str = "x",
+    plane: float = 0.0,
+    tolerance: float | None = None,
+) -> Nearest:
+    """The same by nearest place, where faces are not symmetric.
+
+    Mirror images may be within `tolerance` of the mesh.
+    """
+    native, worst = Arguments(), ffi.new("double *")
+    mesh = native.mesh(face_counts, face_indices, rest_points)
+    face_sources, vertex_sources = np.empty(len(face_counts), np.int32), np.empty(len(rest_points), np.int32)
+    call(
+        lib.skinslide_mirror_nearest,
+        ffi.addressof(mesh),
+        AXES.index(axis),
+        plane,
+        -1.0 if tolerance is None else tolerance,
+        native.pointer(faces, np.int32, (-1,), "faces"),
+        len(faces),
+        writable("int32_t[]", face_sources),
+        writable("int32_t[]", vertex_sources),
+        worst,
+    )
+    return Nearest(face_sources, vertex_sources, worst[0])
 
 
 def note_stretch(

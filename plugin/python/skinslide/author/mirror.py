@@ -1,19 +1,19 @@
-"""Copies the set-up of a patch to the other side of a symmetric mesh."""
+"""Copies the set-up of a patch to the other side of a symmetric mesh: face by face, or by nearest place."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TypedDict, Unpack
+from typing import Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.geometry import AXES, Mirrored, mirror_faces
+from skinslide.arrays.geometry import AXES, mirror_faces, mirror_nearest
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import Fault, SliderError, UsageError, not_one_of
+from skinslide.problems import Fault, Problem, SliderError, UsageError, not_one_of
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath
@@ -60,6 +60,10 @@ def mirror(
     Faces, corners, paint and settings are copied, with their animation. Maps are sampled and become paint, since the
     other side's texture coordinates may be anywhere. What the new patch had before is replaced.
 
+    Where faces have no counterparts, though the surface is symmetric, such as quads that are cut along other
+    diagonals, those nearest take their place, and paint goes to the nearest points: the report says so, and how far
+    off the farthest is.
+
     Args:
         stage: The stage.
         prim: The mesh.
@@ -67,8 +71,8 @@ def mirror(
         to: The new patch's name; None: the other side's, such as elbow_R for elbow_L.
         axis: x, y or z: the mesh is symmetric at rest about the plane where this coordinate is `plane`.
         plane: That coordinate, in the mesh's units.
-        tolerance: How far a point may be from its counterpart's mirror image, in the mesh's units; None: 1e-4 of its
-            largest extent.
+        tolerance: How far a mirror image may be from its counterpart or, by nearest place, from the mesh, in the mesh's
+            units; None: 1e-4 of its largest extent.
 
     Returns:
         What `check` says of the mesh.
@@ -87,8 +91,11 @@ def mirror(
         if animation is None:
             raise Fault(faults[0])
         across = _across(mesh, animation.setup.faces, axis, plane, tolerance)
-        _Copy(mesh, patch, animation, across).run(read_chosen(mesh.prim, patch, mesh.meaning))
-        return mesh.checked()
+        copy = _Copy(mesh, patch, animation, across)
+        copy.run(read_chosen(mesh.prim, patch, mesh.meaning))
+        report = mesh.checked()
+        notes = [Problem("note", str(mesh.prim.GetPath()), to, None, said) for said in copy.told]
+        return replace(report, problems=[*report.problems, *notes])
 
 
 def mirror_to_file(
@@ -142,35 +149,60 @@ def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: fl
         raise UsageError(f"tolerance {tolerance:g} must be 0 or more")
 
 
-def _across(mesh: EditedMesh, faces: np.ndarray, axis: str, plane: float, tolerance: float | None) -> Mirrored:
-    rest, topology = mesh.meaning.rest_points(), mesh.topology
+class _OtherSide(NamedTuple):
+    """The faces of the other side, with the face of this one that each takes the paint of; and the same of vertices."""
+
+    faces: np.ndarray  # (n,)
+    face_sources: np.ndarray  # (n,)
+    vertex_sources: np.ndarray  # (V,) -1 of vertices that are not of these faces
+    vertices: np.ndarray  # (V,) of vertices of this side, where they go: -1 for nowhere
+    told: str  # what to say of it, or nothing
+
+
+def _across(mesh: EditedMesh, faces: np.ndarray, axis: str, plane: float, tolerance: float | None) -> _OtherSide:
+    shape = (mesh.topology.face_counts, mesh.topology.face_indices, mesh.meaning.rest_points(), faces)
     try:
-        return mirror_faces(
-            topology.face_counts, topology.face_indices, rest, faces, axis=axis, plane=plane, tolerance=tolerance
-        )
+        found = mirror_faces(*shape, axis=axis, plane=plane, tolerance=tolerance)
     except SliderError as error:
-        raise Fault(f"the mesh is not symmetric here: {error}") from error
+        try:
+            nearest = mirror_nearest(*shape, axis=axis, plane=plane, tolerance=tolerance)
+        except SliderError:
+            raise Fault(f"the mesh is not symmetric here: {error}") from error
+        told = f"mirrored by nearest place, since faces are not symmetric: the farthest is {nearest.worst:.3g} off"
+        there = np.flatnonzero(nearest.face_sources >= 0).astype(np.int32)
+        vertices = _inverse(nearest.vertex_sources)
+        return _OtherSide(there, nearest.face_sources[there], nearest.vertex_sources, vertices, told)
+    return _OtherSide(found.faces, faces, _inverse(found.vertices), found.vertices, "")
+
+
+def _inverse(places: np.ndarray) -> np.ndarray:
+    """Of each vertex the lowest whose place it is, -1 for none."""
+    inverse, known = np.full(len(places), -1, np.int32), np.flatnonzero(places >= 0)[::-1]
+    inverse[places[known]] = known
+    return inverse
 
 
 class _Copy:
-    """Writes what one patch has as another's."""
+    """Writes what one patch has as another's; `told` is what to say of it."""
 
-    def __init__(self, mesh: EditedMesh, patch: str, animation: Animation, across: Mirrored):
-        self._mesh, self._patch, self._name = mesh.prim, patch, mesh.patch
+    def __init__(self, mesh: EditedMesh, patch: str, animation: Animation, across: _OtherSide):
+        self.told = [across.told] if across.told else []
+        self._mesh, self._patch, self._name, self._topology = mesh.prim, patch, mesh.patch, mesh.topology
         self._animation, self._setup, self._across = animation, animation.setup, across
 
     def run(self, chosen: np.ndarray) -> None:
         """With the counterparts of the faces that were chosen; what grows them is a setting."""
-        faces = self._across.faces[np.isin(self._setup.faces, chosen)]
+        faces = self._across.faces[np.isin(self._across.face_sources, chosen)]
         SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(faces)
         self._paint()
+        kept = self._kept_edges()
         self._points("corners", self._setup.corners)
-        self._points("edges", self._setup.controls.edges)
+        self._points("edges", kept if kept is None else self._setup.controls.edges[kept])
         for name in schema.declared_names():
             if name in _OF_ONE_SIDE - {"corners", "edges"}:
                 self._block(self._new(name))
             elif name not in _OF_ONE_SIDE:
-                self._setting(name)
+                self._setting(name, kept if name == "edgeForceDensities" else None)
 
     # ---- Paint ----
 
@@ -202,14 +234,27 @@ class _Copy:
             primvar.Set(Vt.FloatArray.FromNumpy(move(getattr(controls, field), fallback)), time)
 
     def _by_vertex(self, values: np.ndarray, fallback: float) -> np.ndarray:
-        moved, inside = np.full(len(values), fallback, np.float32), self._across.vertices >= 0
-        moved[self._across.vertices[inside]] = values[inside]
+        moved, inside = np.full(len(values), fallback, np.float32), self._across.vertex_sources >= 0
+        moved[inside] = values[self._across.vertex_sources[inside]]
         return moved
 
     def _by_face(self, values: np.ndarray, fallback: float) -> np.ndarray:
         moved = np.full(len(values), fallback, np.float32)
-        moved[self._across.faces] = values[self._setup.faces]
+        moved[self._across.faces] = values[self._across.face_sources]
         return moved
+
+    # ---- Edges ----
+
+    def _kept_edges(self) -> np.ndarray | None:
+        """Which painted edges the other side has, bool (n,); None where there are none. By faces, it has all."""
+        edges = self._setup.controls.edges
+        if edges is None or not self._across.told:
+            return None if edges is None else np.ones(len(edges), dtype=bool)
+        there = {tuple(edge) for edge in np.sort(self._topology.edges_of(self._across.faces), axis=1).tolist()}
+        kept = np.array([tuple(edge) in there for edge in np.sort(self._across.vertices[edges], axis=1).tolist()], bool)
+        if not kept.all():
+            self.told.append(f"{np.count_nonzero(~kept)} of {len(kept)} painted edges are not there")
+        return kept if kept.any() else None
 
     # ---- Attributes ----
 
@@ -224,8 +269,8 @@ class _Copy:
                 raise Fault(f"{schema.property_name(self._patch, name)} has point {vertex}, which is not of the patch")
         self._anew(name).Set(Vt.IntArray.FromNumpy(self._across.vertices[vertices]))
 
-    def _setting(self, name: str) -> None:
-        """A value that does not depend on the side, with its samples or its spline."""
+    def _setting(self, name: str, kept: np.ndarray | None = None) -> None:
+        """A value that does not depend on the side, with its samples or its spline; of an array, what is kept."""
         source = schema.attribute(self._mesh, self._patch, name)
         if not source or not source.HasAuthoredValue():
             self._block(self._new(name))
@@ -234,9 +279,9 @@ class _Copy:
         if source.HasSpline():
             attribute.SetSpline(source.GetSpline())
         if default is not None:
-            attribute.Set(default)
+            attribute.Set(_kept(default, kept))
         for time in source.GetTimeSamples():
-            attribute.Set(source.Get(time), time)
+            attribute.Set(_kept(source.Get(time), kept), time)
 
     def _new(self, name: str) -> str:
         return schema.property_name(self._name, name)
@@ -253,3 +298,7 @@ class _Copy:
         before = self._mesh.GetAttribute(name)
         if before and before.HasAuthoredValue():
             before.Block()
+
+
+def _kept(value: Any, kept: np.ndarray | None) -> Any:
+    return value if kept is None or kept.all() else Vt.FloatArray.FromNumpy(np.asarray(value, np.float32)[kept])

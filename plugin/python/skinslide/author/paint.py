@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Gf, Usd, UsdGeom
 
-from skinslide.arrays.geometry import Curves, edges_near
+from skinslide.arrays.geometry import Curves, edges_near, nearest_edge
 from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positions
 from skinslide.arrays.topology import Topology
 from skinslide.author.api import SkinSlideAPI
@@ -271,9 +271,20 @@ def _curve_edges(surface: _Surface, near: _Near) -> np.ndarray:
     rest = surface.meaning.rest_points()
     curves = _read_curves(surface.prim, near.curve)
     try:
-        return surface.edges[edges_near(rest, surface.edges, curves, near.distance, near.direction)]
+        found = surface.edges[edges_near(rest, surface.edges, curves, near.distance, near.direction)]
+        nearest = nearest_edge(rest, surface.edges, curves, near.direction)
     except SliderError as error:
         raise Fault(f"{near.curve}: {error}") from error
+    if not len(found):
+        raise Fault(f"{near.curve} {NO_EDGE}: {_how_far(nearest, near)}")
+    return found
+
+
+def _how_far(nearest: float, near: _Near) -> str:
+    if not np.isfinite(nearest):
+        return f"none runs {near.direction} it"
+    runs = "" if near.direction == "any" else f" that runs {near.direction} it"
+    return f"the nearest{runs} is {nearest:.3g} away, and the distance is {near.distance:g}"
 
 
 def _read_curves(mesh: Usd.Prim, path: str) -> Curves:

@@ -334,7 +334,8 @@ def _add_mirror(command: argparse.ArgumentParser) -> None:
         "--tolerance",
         type=float,
         metavar="D",
-        help="how far a point may be from its counterpart's mirror image (default: 1e-4 of the mesh's largest extent)",
+        help="how far a mirror image may be from its counterpart or, where faces have none and the nearest are taken, "
+        "from the mesh (default: 1e-4 of the mesh's largest extent)",
     )
 
 
