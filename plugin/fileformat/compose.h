@@ -45,6 +45,9 @@ class Attribute {
     bool authored() const { // has a value that is not blocked
         return _source != Source::None;
     }
+    bool blocked() const {
+        return _resolved && _source == Source::None;
+    }
     // Whether value clips may give its value, which only a stage can read.
     bool clipped() const {
         return _clipped;

@@ -110,7 +110,7 @@ TfToken paintedName(const Prim &prim, const skinslide_stage_input *input, const 
     int32_t found = -1;
     while ((found = skinslide_stage_patch_property(meaning, input, words.data(), static_cast<int32_t>(words.size()))) >= 0) {
         Attribute attribute = prim.attribute(TfToken(words[static_cast<size_t>(found)]));
-        if (attribute.authored() || attribute.clipped())
+        if (attribute.authored() || attribute.blocked() || attribute.clipped())
             return TfToken(attribute.name());
         words.erase(words.begin() + found);
     }

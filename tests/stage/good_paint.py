@@ -71,11 +71,11 @@ PAINT = [
         all_of(inherited_as(WEIGHT), put(underscored(WEIGHT), Types.FloatArray, "vertex", ramp(49, 0, 1))),
     ),
     Good(
-        "paint: a blocked name is passed over",
+        "paint: a blocked name counts, and says that there is none",
         all_of(
-            put(WEIGHT, Types.FloatArray, "vertex", [0.0] * 49),
+            put(WEIGHT, Types.FloatArray, "vertex", ramp(49, 0, 1)),
             lambda scene: scene.prim.GetAttribute(f"primvars:{WEIGHT}").Block(),
-            put(underscored(WEIGHT), Types.FloatArray, "vertex", ramp(49, 0, 1)),
+            put(underscored(WEIGHT), Types.FloatArray, "vertex", [0.0] * 49),
         ),
     ),
     Good(

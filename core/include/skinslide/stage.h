@@ -383,7 +383,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage
 /* Paint counts under the schema's name, else under that with underscores for colons, as tools leave it that know no namespaces
  * (primvars:skinSlide_elbow_L_weight); else, where skinSlide:foldCase is on, under either in another case.
  *   input  in  of the group PATCH or CONTROLS
- *   names  in  [count] the properties of a prim that have values, in any order
+ *   names  in  [count] the properties of a prim that have values or are blocked, in any order
  * Returns which of them the input is; -1: none, and always where it is no primvar. */
 SKINSLIDE_API int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                                      const char *const *names, int32_t count);

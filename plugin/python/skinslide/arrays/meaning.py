@@ -434,7 +434,7 @@ class PatchMeaning(Taker):
         return found
 
     def property_of(self, source: Input, names: Sequence[str]) -> str | None:
-        """Which of the properties of a prim that have values is an input; None: none, or it is no primvar."""
+        """Which of the properties of a prim that have values or are blocked is an input; None: none of them."""
         native, given = _Native(), list(names)
         found = lib.skinslide_stage_patch_property(self.handle.pointer, source.pointer, native.of(given), len(given))
         return None if found < 0 else names[found]

@@ -194,11 +194,18 @@ def paint_source(prim: Usd.Prim, wanted: Input, meaning: PatchMeaning) -> Source
     while wanted.is_inherited and above[-1].GetParent():
         above.append(above[-1].GetParent())
     for each in above if wanted.is_primvar else ():
-        primvars = UsdGeom.PrimvarsAPI(each).GetPrimvarsWithAuthoredValues()
-        found = meaning.property_of(wanted, [primvar.GetName() for primvar in primvars])
+        found = meaning.property_of(wanted, list(_primvars(each)))
         if found:
             return Source(prim, wanted, name=found)
     return Source(prim, wanted, meaning.name)
+
+
+def _primvars(prim: Usd.Prim) -> Iterator[str]:
+    """The names of primvars that have values, or are blocked, which says that there is none."""
+    for attribute in prim.GetAuthoredPropertiesInNamespace("primvars"):
+        is_attribute = isinstance(attribute, Usd.Attribute)
+        if is_attribute and (attribute.HasAuthoredValue() or attribute.GetResolveInfo().ValueIsBlocked()):
+            yield str(attribute.GetName())
 
 
 def take_subset(meaning: PatchMeaning, child: Usd.Prim | None) -> list[str]:
