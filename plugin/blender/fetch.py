@@ -7,7 +7,7 @@ a float attribute of edges called skinSlide:PATCH:edgeForceDensities is both set
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -171,15 +171,19 @@ def attribute_value(attribute: bpy.types.Attribute) -> Value:
 
 
 def _groups(thing: bpy.types.Object) -> Iterator[Value]:
-    """Groups of vertices, of which one that is not in a group has the weight 0."""
-    ours = {group.index: group for group in thing.vertex_groups if _is_ours(group.name)}
-    weights = {index: np.zeros(len(thing.data.vertices), np.float32) for index in ours}
-    for vertex in thing.data.vertices if ours else ():
+    ours = [group for group in thing.vertex_groups if _is_ours(group.name)]
+    for group, weights in zip(ours, group_weights(thing, ours), strict=True):
+        yield Value(f"primvars:{group.name}", weights, "float[]", "vertex")
+
+
+def group_weights(thing: bpy.types.Object, groups: Sequence[bpy.types.VertexGroup]) -> list[np.ndarray]:
+    """The weights (V,) in some groups of vertices, 0 of what is not in one."""
+    weights = {group.index: np.zeros(len(thing.data.vertices), np.float32) for group in groups}
+    for vertex in thing.data.vertices if groups else ():
         for element in vertex.groups:
             if element.group in weights:
                 weights[element.group][vertex.index] = element.weight
-    for index, array in weights.items():
-        yield Value(f"primvars:{ours[index].name}", array, "float[]", "vertex")
+    return list(weights.values())
 
 
 def _patch(mesh: bpy.types.Mesh, patch: Any) -> FetchedPatch:

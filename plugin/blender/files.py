@@ -16,7 +16,7 @@ from skinslide.problems import Fault
 
 from . import settings
 from .fetch import EDGES, edge_keys, edges_of, fetch
-from .patches import remove_paint, write_attribute, write_primvar
+from .patches import check_fits, remove_paint, write_attribute, write_primvar, write_weights
 from .reading import Sliding
 from .rest import REST
 from .usd import Keys, Read, read_setup, write_setup
@@ -54,6 +54,8 @@ class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
 def take(thing: bpy.types.Object, read: Read) -> None:
     """Has an object carry the set-up that was read, and no other."""
     own, mesh = settings.of(thing), thing.data
+    for fetched in read.patches:
+        check_fits(fetched.name)
     for patch in own.patches:
         remove_paint(thing, patch.name)
     own.patches.clear()
@@ -83,12 +85,7 @@ def _take_primvar(thing: bpy.types.Object, value: Value) -> None:
     if not (for_brushes and array.dtype == np.float32 and np.all((array >= 0) & (array <= 1))):
         write_primvar(thing.data, value)
         return
-    group = thing.vertex_groups.new(name=value.name.removeprefix("primvars:"))
-    weights = np.unique(array)
-    order = np.argsort(array, kind="stable")
-    starts = np.searchsorted(array[order], weights)
-    for weight, vertices in zip(weights.tolist(), np.split(order, starts[1:]), strict=True):
-        group.add(vertices.tolist(), weight, "REPLACE")
+    write_weights(thing, value.name.removeprefix("primvars:"), array)
 
 
 def _held(value: Any) -> Any:

@@ -12,8 +12,8 @@ from skinslide.arrays.meaning import inputs
 from skinslide.problems import NO_EDGE, Fault
 
 from . import settings
-from .fetch import EDGES, Fetched, check, edge_keys, edges_of, fetch
-from .patches import write_attribute
+from .fetch import EDGES, Fetched, check, edge_keys, edges_of, fetch, group_weights
+from .patches import write_attribute, write_weights
 from .reading import Surface
 from .work import Waiting
 
@@ -48,56 +48,76 @@ class SKINSLIDE_OT_paint(Waiting):
         ],
     )
 
+    source: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="From", description="The vertex group or attribute whose values are taken; empty: the value"
+    )
+
     def _fetched(self, context: bpy.types.Context) -> None:
         self._editing = context.mode == "EDIT_MESH"
         super()._fetched(context)
 
     def fetch(self, context: bpy.types.Context) -> None:
-        """Nothing is worked out."""
-        check(context.active_object)
-        active_name(context)
-        if self.store == "GROUP" and not 0 <= self.value <= 1:
-            raise Fault(f"a vertex group holds 0 to 1, not {self.value:g}; paint on an attribute")
+        """What there will be."""
+        thing = context.active_object
+        check(thing)
+        self._name = f"skinSlide:{active_name(context)}:{self.what}"
+        self._values = _merged(thing, self._name, self.store, self._given(thing), self._editing)
+        least, most = self._values.min(initial=0), self._values.max(initial=0)
+        if self.store == "GROUP" and not 0 <= least <= most <= 1:
+            raise Fault(f"a vertex group holds 0 to 1, not {least if least < 0 else most:g}; paint on an attribute")
+
+    def _given(self, thing: bpy.types.Object) -> np.ndarray:
+        """A value for each point or face. Raises Fault."""
+        if self.source:
+            return _values_of(thing, self.source, _DOMAINS[self.store])
+        return np.full(len(getattr(thing.data, _ELEMENTS[_DOMAINS[self.store]])), self.value, np.float32)
 
     def write(self, context: bpy.types.Context, _found: None) -> str:
         """Paints."""
-        thing, name = context.active_object, f"skinSlide:{active_name(context)}:{self.what}"
-        (_paint_group if self.store == "GROUP" else _paint_attribute)(
-            thing, name, self.store, self.value, self._editing
-        )
+        thing, mesh = context.active_object, context.active_object.data
+        group, attribute = thing.vertex_groups.get(self._name), mesh.attributes.get(self._name)
+        if self.store == "GROUP":
+            if attribute:
+                mesh.attributes.remove(attribute)
+            thing.vertex_groups.active = write_weights(thing, self._name, self._values)
+        else:
+            if group:
+                thing.vertex_groups.remove(group)
+            domain = _DOMAINS[self.store]
+            mesh.attributes.active = write_attribute(mesh, self._name, domain, ("FLOAT", "value"), self._values)
         return ""
 
 
-def _selected(thing: bpy.types.Object, held: str, editing: bool) -> np.ndarray:
-    elements = getattr(thing.data, held)
-    selected = np.ones(len(elements), np.bool_)
-    if editing:
-        elements.foreach_get("select", selected)
-    return selected
+_DOMAINS = {"GROUP": "POINT", "POINT": "POINT", "FACE": "FACE"}
+_ELEMENTS = {"POINT": "vertices", "FACE": "polygons"}
 
 
-def _paint_group(thing: bpy.types.Object, name: str, _store: str, value: float, editing: bool) -> None:
-    if name in thing.data.attributes:
-        thing.data.attributes.remove(thing.data.attributes[name])
-    group = thing.vertex_groups.get(name)
-    if group is None:
-        group = thing.vertex_groups.new(name=name)
-        group.add(range(len(thing.data.vertices)), 1.0, "REPLACE")
-    group.add(np.flatnonzero(_selected(thing, "vertices", editing)).tolist(), value, "REPLACE")
-    thing.vertex_groups.active = group
+def _values_of(thing: bpy.types.Object, name: str, domain: str) -> np.ndarray:
+    """What a vertex group, or an attribute of floats of a domain, has. Raises Fault."""
+    group, attribute = thing.vertex_groups.get(name), thing.data.attributes.get(name)
+    if group and domain == "POINT":
+        return group_weights(thing, [group])[0]
+    if not attribute or (attribute.domain, attribute.data_type) != (domain, "FLOAT"):
+        raise Fault(
+            f"{thing.name} has no vertex group, and no attribute of floats by {domain.lower()}, called {name!r}"
+        )
+    values = np.empty(len(attribute.data), np.float32)
+    attribute.data.foreach_get("value", values)
+    return values
 
 
-def _paint_attribute(thing: bpy.types.Object, name: str, store: str, value: float, editing: bool) -> None:
-    held = "vertices" if store == "POINT" else "polygons"
-    group = thing.vertex_groups.get(name)
-    if group:
-        thing.vertex_groups.remove(group)
-    values = np.ones(len(getattr(thing.data, held)), np.float32)
-    attribute = thing.data.attributes.get(name)
-    if attribute and (attribute.domain, attribute.data_type) == (store, "FLOAT"):
-        attribute.data.foreach_get("value", values)
-    values[_selected(thing, held, editing)] = value
-    thing.data.attributes.active = write_attribute(thing.data, name, store, ("FLOAT", "value"), values)
+def _merged(thing: bpy.types.Object, name: str, store: str, given: np.ndarray, editing: bool) -> np.ndarray:
+    """What was given, in edit mode where elements are selected, and elsewhere what is painted, or 1."""
+    domain = _DOMAINS[store]
+    if not editing:
+        return given
+    selected = np.empty(len(given), np.bool_)
+    getattr(thing.data, _ELEMENTS[domain]).foreach_get("select", selected)
+    try:
+        before = _values_of(thing, name, domain)
+    except Fault:  # it is new, or was of another kind
+        before = np.ones(len(given), np.float32)
+    return np.where(selected, given, before)
 
 
 # ---- Edges ----

@@ -13,16 +13,24 @@ from skinslide.arrays.meaning import Value, can_name_patch, input_of
 from skinslide.problems import NO_PATCH_NAME, Fault
 
 from . import settings
-from .fetch import Fetched, FetchedPatch, fetch
+from .fetch import EDGES, Fetched, FetchedPatch, fetch, group_weights
 from .reading import check_one_piece
 from .work import Waiting
 
 RULE = "even"  # of patches that are new
+_LONGEST = 63  # bytes of the name of a vertex group
 FACES = input_of("patch", "patch")  # what chooses them
+
+
+def check_fits(patch: str) -> None:
+    """Raises Fault for the name of a patch of which Blender would cut those of its paint short."""
+    if len(f"skinSlide:{patch}:{EDGES}".encode()) > _LONGEST:
+        raise Fault(f"the name {patch} is too long for what Blender calls attributes and vertex groups")
 
 
 def check_name(thing: bpy.types.Object, name: str) -> None:
     """Raises Fault for a name that no patch can have, or another has."""
+    check_fits(name)
     if not all(part.isidentifier() for part in name.split(":")) or not can_name_patch(name):
         raise Fault(f"{name!r} {NO_PATCH_NAME}")
     if name in settings.of(thing).patches:
@@ -99,11 +107,7 @@ class SKINSLIDE_OT_patch_from_group(_NewPatch):
         group = thing.vertex_groups.get(self.group) if self.group else thing.vertex_groups.active
         if group is None:
             raise Fault(f"{thing.name} has no vertex group {self.group}" if self.group else "no vertex group is active")
-        weights = np.zeros(len(thing.data.vertices), np.float32)
-        for vertex in thing.data.vertices:
-            for element in vertex.groups:
-                if element.group == group.index:
-                    weights[vertex.index] = element.weight
+        (weights,) = group_weights(thing, [group])
         return Value(FACES.property(self.name), weights, "float[]", "vertex")
 
 
@@ -161,6 +165,15 @@ def write_primvar(mesh: bpy.types.Mesh, value: Value) -> None:
             f"{value.name} is {value.interpolation} {value.type_name}, which no attribute of Blender's can hold"
         )
     write_attribute(mesh, value.name.removeprefix("primvars:"), domain, kind, array)
+
+
+def write_weights(thing: bpy.types.Object, name: str, weights: np.ndarray) -> bpy.types.VertexGroup:
+    """Makes a group of vertices of weights (V,), or gives one its weights."""
+    group = thing.vertex_groups.get(name) or thing.vertex_groups.new(name=name)
+    order, each = np.argsort(weights, kind="stable"), np.unique(weights)
+    for weight, vertices in zip(each.tolist(), np.split(order, np.searchsorted(weights[order], each[1:])), strict=True):
+        group.add(vertices.tolist(), weight, "REPLACE")
+    return group
 
 
 def write_attribute(

@@ -123,6 +123,27 @@ def test_paint_in_edit_mode_is_of_the_selection():
     assert np.array_equal(values(thing, "skinSlide:patch:forceDensity"), np.where(some, 5, 1))
 
 
+def test_paint_from_what_is_there():
+    """From another group or attribute, by point and by face; what there is none of is refused."""
+    thing = sheet()
+    make_patch(thing)
+    ramp = np.linspace(0, 1, len(thing.data.vertices), dtype=np.float32)
+    group = thing.vertex_groups.new(name="mask")
+    for vertex, weight in enumerate(ramp.tolist()):
+        group.add([vertex], weight, "REPLACE")
+    faces = thing.data.attributes.new("tendon", "FLOAT", "FACE")
+    faces.data.foreach_set("value", np.linspace(1, 4, SIDE * SIDE, dtype=np.float32))
+    assert bpy.ops.skinslide.paint(what="weight", store="GROUP", source="mask") == {"FINISHED"}
+    assert bpy.ops.skinslide.paint(what="hold", store="POINT", source="mask") == {"FINISHED"}
+    assert bpy.ops.skinslide.paint(what="forceDensity", store="FACE", source="tendon") == {"FINISHED"}
+    found = fetched(thing).primvars
+    assert np.array_equal(found["primvars:skinSlide:patch:weight"].value, ramp)
+    assert np.array_equal(values(thing, "skinSlide:patch:hold"), ramp)
+    assert np.array_equal(values(thing, "skinSlide:patch:forceDensity"), values(thing, "tendon"))
+    refused(bpy.ops.skinslide.paint, thing, "no vertex group, and no attribute", what="weight", source="nothing")
+    refused(bpy.ops.skinslide.paint, thing, "by point, called 'tendon'", what="weight", source="tendon")
+
+
 def test_edges():
     """Those of the patch, by Blender's own domain; the others that are selected are left out."""
     thing = sheet()
@@ -225,6 +246,7 @@ def test_nothing_selected_and_names_that_are_none():
     select(thing, "faces", inner(thing))
     for name in ("", "1a", "a b", "live"):
         refused(bpy.ops.skinslide.patch_from_faces, thing, "cannot name a patch", name=name)
+    refused(bpy.ops.skinslide.patch_from_faces, thing, "is too long for what Blender calls", name="a" * 40)
     make_patch(thing, "a")
     refused(bpy.ops.skinslide.patch_from_faces, thing, "has a patch a already", name="a")
     refused(bpy.ops.skinslide.patch_from_group, thing, "no vertex group is active", name="b")
