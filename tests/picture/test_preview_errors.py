@@ -38,8 +38,8 @@ def test_the_command_reports(shot, tmp_path, capfd):
         (["--size", "ten"], "not a size such as 1920x1080"),
         (["--squares", "-1"], "squares is -1"),
         (["--squares", "1e39"], "squares is 1e+39"),
-        (["--most-stretch", "nan"], "most_stretch is nan"),
-        (["--most-stretch", "1e-38"], "most_stretch is 1e-38"),
+        (["--most-stretch", "nan"], "--most-stretch is nan"),
+        (["--most-stretch", "1e-38"], "--most-stretch is 1e-38"),
         (["--view", "wire"], "invalid choice"),
         (["--st", ""], "st: the name of the primvar with texture coordinates is empty"),
     ],
@@ -110,7 +110,7 @@ def test_a_folder_without_a_name(shot, tmp_path, capfd, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for words in (["preview", "--size", "64x32"], ["maps", "--size", "8"]):
         assert main([*words, str(shot), "-o", ""]) == 2
-        assert capfd.readouterr().err == "error: output: the name of the folder is empty\n"
+        assert capfd.readouterr().err == "error: folder is an empty name\n"
     assert os.listdir(tmp_path) == [shot.name]
 
 

@@ -242,7 +242,7 @@ def test_faces_take_the_place_of_all_before(stage, prim):
         ([36], StageProblems, "there is no face 36: the mesh has 36 faces"),
         ([-1], StageProblems, "there is no face -1"),
         (np.ones(35, bool), StageProblems, "faces: 35 values for 36 faces"),
-        ([0.5], UsageError, "faces: float64 values do not fit int32"),
+        ([0.5], UsageError, "faces are floats; they must be indices, or a bool for each face, such as mask > 0"),
         ([[1, 2]], UsageError, "faces: the shape is 1 x 2; it must be n"),
         ([[1], [2, 3]], UsageError, "faces: "),
         (3, UsageError, "faces: the shape is a single value; it must be n"),

@@ -54,7 +54,7 @@ def test_collapsed_faces_are_a_warning():
     shape = stages.from_faces(points, [(0, 4, 1), (0, 1, 5), (1, 2, 5), (2, 3, 5), (3, 0, 5)])
     stage, mesh = stages.patched_stage(shape)
     stages.set_property(mesh, "corners", [0, 1, 2, 3])
-    assert any("1 faces have no area in the rest embedding" in line for line in said(skinslide.check(stage), "warning"))
+    assert any("1 face has no area in the rest embedding" in line for line in said(skinslide.check(stage), "warning"))
 
 
 def test_overlap_is_a_note():

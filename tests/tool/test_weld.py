@@ -88,7 +88,7 @@ def test_points_that_part_are_told_with_the_frame(split, tmp_path):
     ((frame, message),) = notes(report)
     assert frame == FRAMES[1]
     assert message == (
-        f"1 points part from others in their place at rest, points {first} and {first + 1} first: they are not welded"
+        f"1 point parts from others in its place at rest, points {first} and {first + 1} first: they are not welded"
     )
     assert report.meshes[0].welded == 139
 

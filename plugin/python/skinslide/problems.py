@@ -80,6 +80,27 @@ class StageError(RuntimeError):
 class UsageError(ValueError):
     """What the caller asked for cannot be done, whatever the stage holds."""
 
+    _option: tuple[str, str] | None = None
+
+    def name_option(self, name: str, flag: str) -> None:
+        """Says that it is of an option, by its keyword and its flag on a command line.
+
+        Args:
+            name: The keyword.
+            flag: The flag, such as --max-roughness.
+        """
+        self._option = name, flag
+
+    def on_command_line(self) -> str:
+        """The message as a command says it.
+
+        Returns:
+            The same, with the flag where it begins with the keyword.
+        """
+        message = str(self)
+        name, flag = self._option or ("", "")
+        return flag + message.removeprefix(name) if name and message.startswith((f"{name} ", f"{name}:")) else message
+
 
 class FrameSpecError(UsageError):
     """A frame spec that is none; the message names the part."""
@@ -113,6 +134,11 @@ def not_one_of(what: str, word: object, words: Sequence[str]) -> str:
 def lines_text(lines: Iterable[str]) -> str:
     """Lines for a terminal; each stays one."""
     return "\n".join(map(one_line, lines))
+
+
+def counted(count: int, one: str, many: str | None = None) -> str:
+    """A number of things: 1 point, 3 points."""
+    return f"{count} {one if count == 1 else many or f'{one}s'}"
 
 
 def errors(problems: Sequence[Problem]) -> list[Problem]:

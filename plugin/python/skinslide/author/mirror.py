@@ -16,7 +16,7 @@ from skinslide.author.layer import author_layer
 from skinslide.problems import Fault, Problem, SliderError, UsageError, not_one_of
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
-from skinslide.stage.given import PrimLike, StageLike, StrPath
+from skinslide.stage.given import PrimLike, StageLike, StrPath, given_number, given_text
 from skinslide.stage.patch import Animation, read_chosen, read_patch
 
 _SIDES = {"L": "R", "l": "r", "left": "right", "Left": "Right", "LEFT": "RIGHT"}
@@ -83,7 +83,8 @@ def mirror(
         StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is authored
             then.
     """
-    to = other_side(patch) if to is None else to
+    to = other_side(given_text("patch", patch)) if to is None else given_text("to", to)
+    plane, tolerance = given_number("plane", plane), None if tolerance is None else given_number("tolerance", tolerance)
     _check_arguments(patch, to, axis, plane, tolerance)
     with edited(stage, prim, to, source=patch) as mesh:
         mesh.check_patch(patch)
@@ -195,9 +196,9 @@ class _Copy:
         faces = self._across.faces[np.isin(self._across.face_sources, chosen)]
         SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(faces)
         self._paint()
-        kept = self._kept_edges()
+        kept, edges = self._kept_edges(), self._setup.controls.edges
         self._points("corners", self._setup.corners)
-        self._points("edges", kept if kept is None else self._setup.controls.edges[kept])
+        self._points("edges", None if kept is None or edges is None else edges[kept])
         for name in schema.declared_names():
             if name in _OF_ONE_SIDE - {"corners", "edges"}:
                 self._block(self._new(name))

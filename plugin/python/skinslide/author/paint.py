@@ -20,7 +20,17 @@ from skinslide.author.layer import author_layer
 from skinslide.problems import NO_EDGE, Fault, SliderError, UsageError, not_one_of, one_line
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
-from skinslide.stage.given import PrimLike, StageLike, StrPath, given_array, given_path, given_primvar, given_subset
+from skinslide.stage.given import (
+    PrimLike,
+    StageLike,
+    StrPath,
+    given_array,
+    given_number,
+    given_path,
+    given_primvar,
+    given_subset,
+    given_text,
+)
 from skinslide.stage.patch import read_edges, read_faces, read_pairs
 from skinslide.stage.values import FIRST, read_value
 
@@ -184,7 +194,7 @@ def _choice(
     direction: str,
 ) -> tuple[str, Callable[[_Surface], np.ndarray]]:
     """What chooses edges of a mesh, (n, 2), and how it is called. Raises UsageError."""
-    if not np.isfinite(threshold):
+    if not np.isfinite(given_number("threshold", threshold)):
         raise UsageError(f"threshold {threshold:g} must be finite")
     near = _near(curve, distance, direction)
     choices: list[tuple[str, Callable[[_Surface], np.ndarray]]] = []
@@ -192,8 +202,10 @@ def _choice(
         pairs = given_array("edges", edges, np.int32, (-1, 2))
         choices.append(("edges", lambda surface: _edges_of_mesh(surface, pairs, "edges")))
     if subset is not None:
+        given_text("subset", subset)
         choices.append((subset, partial(_subset_edges, name=subset)))
     if primvar is not None:
+        given_text("primvar", primvar)
         choices.append((primvar, partial(_primvar_edges, name=primvar, threshold=threshold)))
     if near is not None:
         choices.append((near.curve, partial(_curve_edges, near=near)))
@@ -220,7 +232,8 @@ def _near(curve: PrimLike | None, distance: float | None, direction: str) -> _Ne
     return _Near(str(given_path("curve", curve)), distance, direction)
 
 
-def _check_value(value: float) -> None:
+def _check_value(given: float) -> None:
+    value = given_number("value", given)
     with np.errstate(over="ignore"):
         if not (np.isfinite(np.float32(value)) and np.float32(value) > 0):
             raise UsageError(f"value {value:g} must be finite and above 0")

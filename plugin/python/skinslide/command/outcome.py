@@ -122,8 +122,10 @@ def _verdict(error: BaseException, done: str) -> tuple[int, Sequence[Problem]]:
             return FAILED, [_plain(_out_of_memory())]
         case UnicodeDecodeError():  # of USD's: its strings are decoded as they are read
             return FAILED, [_plain(f"the stage holds text that is not UTF-8: {error.object[:200]!r}")]
+        case UsageError():
+            return USAGE, [_plain(error.on_command_line())]
         case _:
-            return USAGE if isinstance(error, UsageError) else FAILED, [_plain(str(error))]
+            return FAILED, [_plain(str(error))]
 
 
 def _out_of_memory() -> str:

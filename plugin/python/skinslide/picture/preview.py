@@ -36,7 +36,7 @@ from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.write.folder import OutputFolder, check_frames, frame_label
-from skinslide.write.place import check_not_input, check_output, given_output, replacing, writing
+from skinslide.write.place import check_not_input, check_output, check_writable, given_output, replacing, writing
 
 _MOST_PIXELS = 1 << 27  # on canvases at once: each takes some forty bytes
 
@@ -194,6 +194,8 @@ class _Previewing(Making):
         if self._folder:
             pictures = [mesh.files(self._folder) for mesh in self._meshes]
             self._folder.check_all(itertools.chain([self._sheet_path(self._folder, 0)], *pictures))
+        if self._page:
+            check_writable(self._page)
         with self._easel.canvases.taken() as canvas:
             self._drawn.device = canvas.device.renderer
         report.made.append(self._drawn)

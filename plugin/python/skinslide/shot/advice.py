@@ -10,7 +10,7 @@ from pxr import Usd
 
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider
-from skinslide.problems import FrameProblem, Problem, SliderError
+from skinslide.problems import FrameProblem, Problem, SliderError, counted
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.neighbours import find_neighbours
 
@@ -56,7 +56,8 @@ def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:
     for a, b in combinations(mesh.patches, 2):
         if np.intersect1d(a.faces, b.faces).size:
             shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
-            message = f"overlaps patch {b.name} in {np.count_nonzero(shared)} vertices, which take the mean of both"
+            vertices = counted(int(np.count_nonzero(shared)), "vertex, which takes", "vertices, which take")
+            message = f"overlaps patch {b.name} in {vertices} the mean of both"
             yield Problem("note", mesh.path, a.name, None, message)
 
 
@@ -78,10 +79,13 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
             if held + loose == sum(info.vertex_count for _, info in of_name):
                 continue  # a copy of the mesh, such as a proxy
             if held:
-                message = f"{held} border points coincide with points of {path}, and stay with them"
+                points_meet = counted(held, "border point coincides", "border points coincide")
+                stay = "stays" if held == 1 else "stay"
+                message = f"{points_meet} with points of {path}, and {stay} with them"
                 yield Problem("note", mesh.path, name, None, message)
             if loose:
-                message = f"{loose} points that slide coincide with points of {path}, which do not follow"
+                points_meet = counted(loose, "point that slides coincides", "points that slide coincide")
+                message = f"{points_meet} with points of {path}, which do not follow"
                 yield Problem("warning", mesh.path, name, None, message)
 
 

@@ -18,6 +18,7 @@ from skinslide.problems import (
     SliderError,
     StageProblems,
     UsageError,
+    counted,
     errors,
     frame_text,
     lines_text,
@@ -329,11 +330,11 @@ def _checked(info: PatchInfo) -> CheckedPatch:
 
 def _patch_problems(mesh: PatchedMesh, pieces: list[CheckedPatch]) -> Iterator[Problem]:
     """What is worth knowing of the pieces of one patch, a line for each kind."""
-    told = {
-        "{} edges have no length at rest": sum(piece.zero_length_edges for piece in pieces),
-        "{} faces have no area in the rest embedding": sum(piece.collapsed_faces for piece in pieces),
-        "{} faces are turned over in the rest embedding": sum(piece.folded_faces for piece in pieces),
-    }
-    for message, count in told.items():
+    told = (
+        ("edge has", "edges have", "no length at rest", sum(piece.zero_length_edges for piece in pieces)),
+        ("face has", "faces have", "no area in the rest embedding", sum(piece.collapsed_faces for piece in pieces)),
+        ("face turns", "faces turn", "over in the rest embedding", sum(piece.folded_faces for piece in pieces)),
+    )
+    for one, many, what, count in told:
         if count:
-            yield Problem("warning", mesh.path, pieces[0].name, None, message.format(count))
+            yield Problem("warning", mesh.path, pieces[0].name, None, f"{counted(count, one, many)} {what}")

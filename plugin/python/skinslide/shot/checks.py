@@ -6,7 +6,7 @@ import inspect
 import operator
 import re
 from argparse import ArgumentTypeError
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import Field, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -37,7 +37,11 @@ class Options:
     def __post_init__(self) -> None:
         for each in fields(self):
             if "check" in each.metadata:
-                object.__setattr__(self, each.name, each.metadata["check"](each.name, getattr(self, each.name)))
+                try:
+                    object.__setattr__(self, each.name, each.metadata["check"](each.name, getattr(self, each.name)))
+                except UsageError as error:
+                    error.name_option(each.name, each.metadata["flag"])
+                    raise
 
 
 def described(each: Field[Any], default: Any) -> str:
@@ -73,7 +77,9 @@ def prims(name: str, given: PrimsLike) -> list[str]:
     return given_paths(name, given)
 
 
-def texts(_name: str, words: Sequence[str] | str) -> list[str]:
+def texts(name: str, words: Sequence[str] | str) -> list[str]:
+    if not isinstance(words, str | Iterable):
+        raise UsageError(f"{name} is {words!r}; it must be a text, or several")
     return [words] if isinstance(words, str) else [str(word) for word in words]
 
 

@@ -19,6 +19,7 @@ FramesLike: TypeAlias = "Iterable[FrameLike] | str"
 AskedFrames: TypeAlias = list[float] | Literal["authored"] | None  # None: samples, and the frames between
 AUTHORED: Final = "authored"  # samples alone
 
+_WANTED = "must be a spec such as 101:109x2"
 _CHUNK = re.compile(r"(\d{1,9})/(\d{1,9})", re.ASCII)
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 _PART = re.compile(rf"(?P<first>{_NUMBER})(?:[:-](?P<last>{_NUMBER})(?:x(?P<step>{_NUMBER}))?)?", re.ASCII)
@@ -37,6 +38,8 @@ def parse_frames(spec: str) -> list[float]:
     Raises:
         FrameSpecError: The spec is none; the message names the part.
     """
+    if not isinstance(spec, str):
+        raise FrameSpecError(f"frames {spec!r}: {_WANTED}")
     frames: set[float] = set()
     left = MOST_FRAMES
     for part in spec.split(","):
@@ -85,7 +88,7 @@ def checked_frames(frames: FramesLike) -> list[float]:
     try:
         times = sorted(set(map(_number, frames)))
     except (AttributeError, TypeError, ValueError, OverflowError) as error:
-        raise FrameSpecError(f"frames {frames!r}: must be a spec such as 101:109x2, or a list of numbers") from error
+        raise FrameSpecError(f"frames {frames!r}: {_WANTED}, or a list of numbers") from error
     if not times or not all(map(math.isfinite, times)):
         raise FrameSpecError(f"frames {times}: there must be some, each a finite number")
     return times

@@ -10,23 +10,27 @@ import numpy as np
 
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
 from skinslide.arrays.slider import version
-from skinslide.problems import Problem, frame_text, lines_text
+from skinslide.problems import Problem, counted, frame_text, lines_text
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
 # Counts that say a result is less than it should be.
+_EDGES, _FACES, _VERTICES = ("edge", "edges"), ("face", "faces"), ("vertex", "vertices")
 _AT_REST = {
-    "zero_length_edges": "edges of no length at rest, taken as 1e-6 of the mean edge",
-    "collapsed_faces": "faces of no area in the rest embedding",
-    "folded_faces": "faces turned over in the rest embedding",
+    "zero_length_edges": (_EDGES, "of no length at rest, taken as 1e-6 of the mean edge"),
+    "collapsed_faces": (_FACES, "of no area in the rest embedding"),
+    "folded_faces": (_FACES, "turned over in the rest embedding"),
 }
 _AT_FRAMES = {
-    "clamped_vertices": "vertices looked up outside every face, put on the nearest",
-    "clamped_weights": "weights or envelopes outside 0..1, clamped",
-    "damped_vertices": "vertices brought back towards their place on the faces, where the limit surface rings",
-    "folded_faces": "faces turned over in the embedding",
-    "zero_length_edges": "edges of no length, taken as 1e-6 of the mean rest edge",
-    "lost_textures": "textures lost by a failing device, each vertex walked for instead",
+    "clamped_vertices": (_VERTICES, "looked up outside every face, put on the nearest"),
+    "clamped_weights": (("weight or envelope", "weights or envelopes"), "outside 0..1, clamped"),
+    "damped_vertices": (
+        _VERTICES,
+        "brought back towards their place on the faces, where the limit surface rings",
+    ),
+    "folded_faces": (_FACES, "turned over in the embedding"),
+    "zero_length_edges": (_EDGES, "of no length, taken as 1e-6 of the mean rest edge"),
+    "lost_textures": (("texture", "textures"), "lost by a failing device, each vertex walked for instead"),
 }
 
 
@@ -185,13 +189,14 @@ class PatchReport:
         Returns:
             The warnings.
         """
-        at_rest = [(None, getattr(self.info, name), text) for name, text in _AT_REST.items()]
-        at_frames = [self._most(name, text) for name, text in _AT_FRAMES.items()]
-        warnings = [*at_rest, *at_frames]
-        counted = [
-            Problem("warning", prim, self.label, frame, f"{count} {text}") for frame, count, text in warnings if count
+        at_rest = [(None, getattr(self.info, name), words, text) for name, (words, text) in _AT_REST.items()]
+        at_frames = [self._most(name, words, text) for name, (words, text) in _AT_FRAMES.items()]
+        told = [
+            Problem("warning", prim, self.label, frame, f"{counted(count, *words)} {text}")
+            for frame, count, words, text in [*at_rest, *at_frames]
+            if count
         ]
-        return counted + self._stretched(prim)
+        return told + self._stretched(prim)
 
     def _stretched(self, prim: str) -> list[Problem]:
         """A warning where sliding adds stretch, as on a smile, or a closed tube embedded from its open end."""
@@ -204,9 +209,9 @@ class PatchReport:
         message = f"sliding adds stretch: {before} in the cache, {after} slid{_share(added > _NO_STRETCH)}"
         return [Problem("warning", prim, self.label, self.frames[worst], message)]
 
-    def _most(self, name: str, text: str) -> tuple[float | None, int, str]:
+    def _most(self, name: str, words: tuple[str, str], text: str) -> tuple[float | None, int, tuple[str, str], str]:
         counts = self.column(name)
-        return self.frames[counts.argmax()], counts.max().item(), text + _share(counts)
+        return self.frames[counts.argmax()], counts.max().item(), words, text + _share(counts)
 
 
 def _share(found: np.ndarray) -> str:

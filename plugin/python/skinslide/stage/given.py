@@ -91,6 +91,8 @@ def given_faces(name: str, faces: npt.ArrayLike, face_count: int) -> np.ndarray:
         if chosen.size != face_count:
             raise Fault(f"{name}: {chosen.size} values for {face_count} faces")
         return np.flatnonzero(chosen).astype(np.int32)
+    if chosen.dtype.kind == "f" and chosen.size:
+        raise UsageError(f"{name} are floats; they must be indices, or a bool for each face, such as mask > 0")
     found = np.unique(given_array(name, chosen, np.int32, (-1,)))
     for face in found[(found < 0) | (found >= face_count)][-1:]:
         check_face(int(face), face_count)
@@ -138,6 +140,12 @@ def given_number(name: str, value: Any) -> float:
         return float(value)
     except (TypeError, ValueError) as error:
         raise UsageError(f"{name} is {value!r}; it must be a number") from error
+
+
+def given_text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise UsageError(f"{name} is {value!r}; it must be a text")
+    return value
 
 
 def _path_text(name: str, prim: PrimLike) -> str:

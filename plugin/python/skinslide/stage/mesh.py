@@ -23,7 +23,7 @@ from skinslide.arrays.meaning import (
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem, counted
 from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.patch import Animation, read_patch
 from skinslide.stage.skinning import SkinnedNormals, SkinnedPoints, Skinning
@@ -247,13 +247,13 @@ class PatchedMesh:
         info = self.weld.info
         if info.parted_points:
             frame = info.parted_frame if self.points_times() else None
+            part = counted(info.parted_points, "point parts from others in its", "points part from others in their")
             first = f"points {info.parted_from} and {info.parted_vertex} first"
-            message = (
-                f"{info.parted_points} points part from others in their place at rest, {first}: they are not welded"
-            )
+            message = f"{part} place at rest, {first}: they are not welded"
             yield Problem("note", self.path, None, frame, message)
         if info.refused_points:
-            message = f"{info.refused_points} points are in one place with others and cannot be welded: {info.refused}"
+            are = counted(info.refused_points, "point is", "points are")
+            message = f"{are} in one place with others and cannot be welded: {info.refused}"
             yield Problem("note", self.path, None, None, message)
 
     def _patch_problems(self, lookup: str | Lookup) -> list[Problem]:

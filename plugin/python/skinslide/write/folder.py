@@ -35,8 +35,6 @@ class OutputFolder:
     def __init__(self, folder: StrPath, stage: Usd.Stage, stage_path: StrPath | None):
         """Raises UsageError for a folder that cannot be."""
         self.folder, prims = given_output("folder", folder), patched_prims(stage)
-        if not os.fspath(folder):  # Path would take it for the working folder
-            raise UsageError("output: the name of the folder is empty")
         # A resolver may find maps where their names alone do not lead.
         maps = [file for prim in prims for patch in schema.patch_names(prim) for file in texture_files(prim, patch)]
         self._inputs = Inputs(stage, *maps, *([] if stage_path is None else [stage_path]))

@@ -42,6 +42,8 @@ def given_output(name: str, given: StrPath) -> Path:
     """The path of what is to be written. Raises UsageError for what is none."""
     if not isinstance(given, str | os.PathLike):
         raise UsageError(f"{name} is {given!r}; it must be a path")
+    if not os.fspath(given):  # Path would take it for the working folder
+        raise UsageError(f"{name} is an empty name")
     return Path(given)
 
 
@@ -204,6 +206,15 @@ def replacing(output: Path, if_still: Callable[[], bool] = lambda: True) -> Iter
         finally:
             for left in partial.parent.glob(f"{glob.escape(partial.stem)}.*"):  # also what USD writes beside it
                 left.unlink(missing_ok=True)
+
+
+def check_writable(output: Path) -> None:
+    """Raises StageError where no file can be made beside an output, whose folder may be missing still."""
+    probe = output.resolve().with_name(partial_name(output, secrets.token_hex(4)))
+    if probe.parent.is_dir():
+        with writing(output):
+            probe.touch(exist_ok=False)
+            probe.unlink()
 
 
 @contextmanager

@@ -1,0 +1,84 @@
+"""Small mistakes end in one line that names the option, or the argument, and says what it must be."""
+
+import numpy as np
+import pytest
+
+import skinslide
+import stages
+from skinslide.command.cli import main
+from stages import MESH, PATCH
+
+
+@pytest.fixture
+def shot(tmp_path):
+    return stages.save(stages.patched_stage()[0], tmp_path / "shot.usda")
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--max-roughness", "-1"], "--max-roughness is -1; it must be above 0, from "),
+        (["--max-stretch", "-1"], "--max-stretch is -1; "),
+        (["--squares", "0", "--html", "p.html"], "--squares is 0; it must be above 0, from "),
+        (["--html", ""], "html is an empty name"),
+        (["--html", "/proc/p.html", "--size", "64x32"], "output /proc/p.html: "),
+    ],
+)
+def test_a_command_names_the_flag(words, says, shot, tmp_path, capfd):
+    assert main(["bake", str(shot), "-o", str(tmp_path / "out.usdc"), *words]) in (1, 2)
+    said = capfd.readouterr().err
+    assert said.startswith(f"error: {says}"), said
+    assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]
+
+
+def test_an_empty_output_is_none(shot, tmp_path, capfd):
+    assert main(["bake", str(shot), "-o", ""]) == 2
+    assert capfd.readouterr().err == "error: output is an empty name\n"
+
+
+CALLS = {
+    "frames": (lambda stage, mesh: skinslide.parse_frames(3), "frames 3: must be a spec such as 101:109x2"),
+    "to": (lambda stage, mesh: skinslide.mirror(stage, mesh, PATCH, to=3), "to is 3; it must be a text"),
+    "patch": (lambda stage, mesh: skinslide.mirror(stage, mesh, 3), "patch is 3; it must be a text"),
+    "plane": (lambda stage, mesh: skinslide.mirror(stage, mesh, PATCH, plane="x"), "plane is 'x'; it must be a number"),
+    "tolerance": (
+        lambda stage, mesh: skinslide.mirror(stage, mesh, PATCH, tolerance="x"),
+        "tolerance is 'x'; it must be a number",
+    ),
+    "value": (
+        lambda stage, mesh: skinslide.paint(stage, mesh, PATCH, "x", edges=[[0, 1]]),
+        "value is 'x'; it must be a number",
+    ),
+    "primvar": (
+        lambda stage, mesh: skinslide.paint(stage, mesh, PATCH, 2, primvar=3),
+        "primvar is 3; it must be a text",
+    ),
+    "subset": (lambda stage, mesh: skinslide.paint(stage, mesh, PATCH, 2, subset=3), "subset is 3; it must be a text"),
+    "views": (lambda stage, mesh: skinslide.preview(stage, "p", views=3), "views is 3; it must be a text, or several"),
+    "patches": (
+        lambda stage, mesh: skinslide.preview(stage, "p", patches=3),
+        "patches is 3; it must be a text, or several",
+    ),
+    "faces": (
+        lambda stage, mesh: skinslide.SkinSlideAPI(mesh, PATCH).SetFaces(np.ones(36)),
+        "faces are floats; they must be indices, or a bool for each face, such as mask > 0",
+    ),
+}
+
+
+@pytest.mark.parametrize(("call", "says"), CALLS.values(), ids=CALLS.keys())
+def test_a_function_names_the_argument(call, says):
+    stage, mesh = stages.patched_stage()
+    with pytest.raises(skinslide.UsageError) as raised:
+        call(stage, mesh.GetPrim())
+    assert str(raised.value) == says
+
+
+def test_one_is_no_several():
+    """One edge of no length at rest, and a patch that shares one point with another."""
+    stage, mesh = stages.patched_stage(faces=stages.block(6, range(3), range(3)))
+    rest = np.array(mesh.GetPointsAttr().Get())
+    rest[8] = rest[9]
+    mesh.GetPointsAttr().Set(stages.vectors(rest))
+    said = [problem.message for problem in skinslide.check(stage, MESH).problems]
+    assert "1 edge has no length at rest" in said
