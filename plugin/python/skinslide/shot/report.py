@@ -92,7 +92,8 @@ class PatchReport:
         """The largest second difference in time of the result over that of the cache; None of fewer than three frames.
 
         Neither counts as less than a hundredth of the mean edge at rest, or than rounding may explain: so that skin at
-        rest has a roughness of 1, and a cache that moves evenly, as linear blends of shapes do, makes it no endless one.
+        rest has a roughness of 1, and a cache that moves evenly, as linear blends of shapes do, makes it no endless
+        one.
         """
         if not self.motion:
             return None
