@@ -65,7 +65,7 @@ install_skinslide() {
     [ -x "$venv/bin/skinslide" ] && [ "$(cat "$stamp" 2>/dev/null)" = "$wanted" ] && return
     say "Building and installing skinslide"
     "$python" -m pip install -q --disable-pip-version-check --no-build-isolation \
-        --config-settings build-dir="$root/build/wheel" "$root"
+        --config-settings build-dir="$root/build/wheel" "$root[live]"
     echo "$wanted" >"$stamp"
 }
 

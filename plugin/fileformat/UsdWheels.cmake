@@ -27,6 +27,7 @@ set(wheels "${found}")
 
 set(forwarding "${CMAKE_CURRENT_BINARY_DIR}/forwarding")
 file(WRITE "${forwarding}/pxr/pxr.h.new" "#include \"pxr/arch/pxr.h\"
+#define PXR_VERSION ARCH_VERSION
 #define PXR_NAMESPACE_OPEN_SCOPE ARCH_NAMESPACE_OPEN_SCOPE
 #define PXR_NAMESPACE_CLOSE_SCOPE ARCH_NAMESPACE_CLOSE_SCOPE
 #define PXR_NAMESPACE_USING_DIRECTIVE ARCH_NAMESPACE_USING_DIRECTIVE

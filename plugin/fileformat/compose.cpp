@@ -121,7 +121,7 @@ void Attribute::takeOpinion(const SdfLayerRefPtr &layer, const SdfPath &path, co
     if (_resolved)
         return;
     Source source = isSampled(layer, path)                            ? Source::Samples
-                    : layer->HasField(path, SdfFieldKeys->Spline)     ? Source::Spline
+                    : layer->HasField(path, names().spline)           ? Source::Spline
                     : hasDefault && !value.IsHolding<SdfValueBlock>() ? Source::Default
                                                                       : Source::None;
     if (source == Source::None && !hasDefault)

@@ -41,7 +41,7 @@ SdfPath declare(SdfData *data, const SdfPath &prim, const TfToken &name, const T
         data->Set(path, SdfFieldKeys->Variability, VtValue(SdfVariabilityVarying));
         data->Set(path, SdfFieldKeys->TypeName, VtValue(type));
     }
-    for (const TfToken &field : {SdfFieldKeys->TimeSamples, SdfFieldKeys->Spline})
+    for (const TfToken &field : {SdfFieldKeys->TimeSamples, names().spline})
         data->Erase(path, field);
     return path;
 }
@@ -224,6 +224,7 @@ bool Data::GetBracketingTimeSamplesForPath(const SdfPath &path, double time, dou
                      : SdfData::GetBracketingTimeSamplesForPath(path, time, lower, upper);
 }
 
+#if PXR_VERSION >= 2505
 bool Data::GetPreviousTimeSampleForPath(const SdfPath &path, double time, double *previous) const {
     const Computed *attribute = computed(path);
     if (!attribute)
@@ -234,6 +235,7 @@ bool Data::GetPreviousTimeSampleForPath(const SdfPath &path, double time, double
     *previous = *(at - 1);
     return true;
 }
+#endif
 
 bool Data::QueryTimeSample(const SdfPath &path, double time, SdfAbstractDataValue *value) const {
     const Computed *attribute = computed(path);
@@ -253,11 +255,13 @@ bool Data::QueryTimeSample(const SdfPath &path, double time, VtValue *value) con
     return true;
 }
 
+#if PXR_VERSION >= 2505
 const std::type_info &Data::QueryTimeSampleTypeid(const SdfPath &path, double time) const {
     const Computed *attribute = computed(path);
     if (!attribute)
         return SdfData::QueryTimeSampleTypeid(path, time);
     return hasSample(*attribute, time) ? attribute->standard.GetTypeid() : typeid(void);
 }
+#endif
 
 } // namespace skinslide

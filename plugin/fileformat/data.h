@@ -41,10 +41,12 @@ class Data : public SdfData {
     bool GetBracketingTimeSamples(double time, double *lower, double *upper) const override;
     size_t GetNumTimeSamplesForPath(const SdfPath &path) const override;
     bool GetBracketingTimeSamplesForPath(const SdfPath &path, double time, double *lower, double *upper) const override;
-    bool GetPreviousTimeSampleForPath(const SdfPath &path, double time, double *previous) const override;
     bool QueryTimeSample(const SdfPath &path, double time, SdfAbstractDataValue *value) const override;
     bool QueryTimeSample(const SdfPath &path, double time, VtValue *value) const override;
+#if PXR_VERSION >= 2505 // USD before asks for the samples and the value instead
+    bool GetPreviousTimeSampleForPath(const SdfPath &path, double time, double *previous) const override;
     const std::type_info &QueryTimeSampleTypeid(const SdfPath &path, double time) const override;
+#endif
 
   private:
     using Compute = std::function<VtValue(double time)>;

@@ -13,6 +13,7 @@ struct Names {
     const TfToken mesh{"Mesh"}, geomSubset{"GeomSubset"}, pointInstancer{"PointInstancer"};
     const TfToken points{"points"}, extent{"extent"}, indices{"indices"}, elementType{"elementType"};
     const TfToken prototypes{"prototypes"}, apiSchemas{"apiSchemas"}, clips{"clips"};
+    const TfToken spline{"spline"}; // a field that USD has since 25.05: before, there is none of that name
     const TfToken jointIndices{"primvars:skel:jointIndices"}, jointWeights{"primvars:skel:jointWeights"};
     const TfToken blendShapes{"skel:blendShapeTargets"}, boundSkeleton{"skel:skeleton"};
     const TfToken skelRoot{"SkelRoot"}, skeleton{"Skeleton"};

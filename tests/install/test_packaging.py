@@ -209,8 +209,34 @@ def test_the_core_is_found_by_a_name_with_its_minor():
 def test_one_version_of_usd():
     built_for = re.search(r"set\(usd_wheels ([0-9.]+)\)", (ROOT / "plugin/fileformat/UsdWheels.cmake").read_text())[1]
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
-    named = [*settings["build-system"]["requires"], *settings["project"]["dependencies"]]
-    assert {f"pxr-pcp-dev=={built_for}", f"usd-core=={built_for}"} <= set(named)
+    assert f"pxr-pcp-dev=={built_for}" in settings["build-system"]["requires"]
+    assert settings["project"]["optional-dependencies"]["live"] == [f"usd-core=={built_for}"]
+
+
+def test_a_usd_that_is_there_stays():
+    """None is asked for, of whatever version: who has none says so."""
+    asked = importlib.metadata.requires("skinslide")
+    assert [each for each in asked if "usd" in each.lower()] == ['usd-core==26.8; extra == "live"']
+
+
+def test_without_any_usd(tmp_path):
+    said = run_python(f"""
+        import sys
+        from skinslide.command.start import main
+
+        class Hiding:
+            def find_spec(name, *_others):
+                if name.partition(".")[0] == "pxr":
+                    raise ModuleNotFoundError("No module named 'pxr'", name="pxr")
+
+        sys.meta_path.insert(0, Hiding)
+        sys.stderr = sys.stdout
+        for words in (["check", "shot.usda"], ["bake", "shot.usda", "-o", "{tmp_path}/out.usda"]):
+            sys.argv = ["skinslide", *words]
+            print(main())
+    """)
+    line = "error: there is no USD in this Python: set the show's up, or install skinslide[live], which brings its own"
+    assert said.splitlines() == [line, "1"] * 2
 
 
 def test_a_project_in_c_builds_against_the_package(tmp_path):

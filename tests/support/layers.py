@@ -17,9 +17,12 @@ CLOCK = "startTimeCode = 1001; endTimeCode = 1003"
 
 
 def counter(name: str) -> Callable[[], int]:
-    function = getattr(ctypes.CDLL(str(LIBRARY)), name)
-    function.restype = ctypes.c_uint64
-    return function
+    def count() -> int:
+        function = getattr(ctypes.CDLL(str(LIBRARY)), name)  # which the USD that runs may not be able to load
+        function.restype = ctypes.c_uint64
+        return function()
+
+    return count
 
 
 solve_count = counter("skinslideFormatSolveCount")

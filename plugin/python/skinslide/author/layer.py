@@ -67,10 +67,10 @@ def _starting_layer(stage: Usd.Stage, path: Path, output: Path, force: bool) -> 
         layer.TransferContent(_existing_layer(output))
         sublayers = [Path(output.absolute().parent, each) for each in layer.subLayerPaths]
         if not any(each.exists() and each.samefile(path) for each in sublayers):
-            raise _in_the_way(output, f"does not sublayer {path}")
+            raise in_the_way(output, f"does not sublayer {path}")
     else:
-        _describe(layer, stage)
-        layer.subLayerPaths.append(_asset_path(path, output))
+        describe(layer, stage)
+        layer.subLayerPaths.append(asset_path(path, output))
     return layer
 
 
@@ -78,14 +78,14 @@ def _existing_layer(output: Path) -> Sdf.Layer:
     try:
         return read_text_layer(output) if output.suffix == EXTENSION else Sdf.Layer.OpenAsAnonymous(str(output))
     except (Tf.ErrorException, OSError, UnicodeDecodeError, StageError) as error:
-        raise _in_the_way(output, "is not a layer") from error
+        raise in_the_way(output, "is not a layer") from error
 
 
-def _in_the_way(output: Path, fault: str) -> UsageError:
+def in_the_way(output: Path, fault: str) -> UsageError:
     return UsageError(f"output {output}: exists and {fault}; --force replaces it")
 
 
-def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
+def describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
     """Has a layer on a stage read with the same units, time and default prim."""
     root = stage.GetRootLayer().pseudoRoot
     for field in set(root.ListInfoKeys()) - OWN_FIELDS:
@@ -94,7 +94,7 @@ def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
     layer.timeCodesPerSecond, layer.framesPerSecond = stage.GetTimeCodesPerSecond(), stage.GetFramesPerSecond()
 
 
-def _asset_path(path: Path, output: Path) -> str:
+def asset_path(path: Path, output: Path) -> str:
     relative = os.path.relpath(path.resolve(), output.resolve().parent)
     return relative if relative.startswith("..") else f"./{relative}"
 

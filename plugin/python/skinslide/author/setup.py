@@ -19,6 +19,7 @@ from skinslide.author.edit import EditedMesh, checked, edited
 from skinslide.author.joints import REACH, faces_at, read_rig
 from skinslide.author.layer import author_layer
 from skinslide.author.mirror import other_side
+from skinslide.author.payload import PayloadLayer
 from skinslide.author.settings import Settings, has_pin
 from skinslide.author.whole import moving_meshes, stretched_faces
 from skinslide.problems import Problem, StageProblems, UsageError
@@ -211,6 +212,7 @@ def setup_to_file(
     patch: str | None = None,
     *,
     force: bool = False,
+    payload: StrPath | None = None,
     **choice: Unpack[PatchChoice],
 ) -> CheckReport:
     """Makes a patch as `setup` does, in a layer that sublayers the stage.
@@ -222,6 +224,8 @@ def setup_to_file(
         prim: The mesh, as for `setup`.
         patch: The patch's name, as for `setup`.
         force: Replaces any layer at `output`, where without it one that does not sit on the stage is an error.
+        payload: A layer to write too, .usda, .usdc or .usd, which payloads the set-up and, where that cannot be opened
+            for want of skinslide, the stage; None: none.
         **choice: As for `setup`.
 
     Returns:
@@ -234,7 +238,10 @@ def setup_to_file(
         FrameProblem: Points that cannot be looked at, with `whole`. Nothing is written then.
         StageProblems: The patch could not be slid, or nothing stretches. Nothing is written then.
     """
+    also = None if payload is None else PayloadLayer(stage, output, payload, force)
     report = author_layer(stage, output, force, lambda layered: setup(layered, prim, patch, **choice))
+    if also:
+        also.write()
     return replace(report, stage=str(output))
 
 

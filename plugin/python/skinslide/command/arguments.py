@@ -245,6 +245,12 @@ def _add_patch(command: argparse.ArgumentParser) -> None:
 
 def _add_setup(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
+    command.add_argument(
+        "--payload",
+        metavar="FILE",
+        help="write FILE too, .usda, .usdc or .usd, which payloads the .skinslide and below it STAGE: where "
+        "skinslide is not, and the first cannot be opened, the character stays as its cache has it",
+    )
     command.add_argument("--prim", metavar="PATH", help="the mesh; with --whole any prim (default: the whole stage)")
     command.add_argument("--patch", metavar="NAME", help="the patch's name, such as elbow_L; with --whole: skin")
     faces = command.add_mutually_exclusive_group(required=True)

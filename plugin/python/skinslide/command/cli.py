@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinslide.command.arguments import device_of_environment, parse
 from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say, tell
-from skinslide.problems import UsageError, one_line
+from skinslide.problems import StageError, UsageError, one_line
 from skinslide.shot.options import PictureOptions
 
 if TYPE_CHECKING:
@@ -34,11 +34,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     run, home, name = _COMMANDS[given.pop("command")]
     before = _state(given)
     try:
-        function = getattr(import_module(f"skinslide.{home}"), name)  # uninterrupted, as USD must be while it loads
+        function = _loaded(home, name)  # uninterrupted, as USD must be while it loads
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # blocked by start.py
         return say(*run(function, **given))
     except expected() as error:
         return failed(error, given.get("json", False), _outcome(given, before))
+
+
+def _loaded(home: str, name: str) -> Callable[..., Any]:
+    """Raises StageError where there is no USD, which comes from elsewhere."""
+    try:
+        return getattr(import_module(f"skinslide.{home}"), name)
+    except ModuleNotFoundError as missing:
+        if missing.name != "pxr":
+            raise
+        hint = "set the show's up, or install skinslide[live], which brings its own"
+        raise StageError(f"there is no USD in this Python: {hint}") from missing
 
 
 def _is_json(word: str) -> bool:

@@ -137,7 +137,7 @@ def sample_times(attribute: Usd.Attribute, span: Span | None = None) -> list[flo
     """When a value was authored, in stage time; for a spline its knots and each whole frame between them in a span."""
     if not attribute.HasSpline():
         return list(attribute.GetTimeSamples())
-    knots = sorted(attribute.GetSpline().GetKnotsWithInnerLoopsBaked().keys())
+    knots = _knots(attribute)
     if not knots:
         return []
     first, last = (
@@ -147,6 +147,15 @@ def sample_times(attribute: Usd.Attribute, span: Span | None = None) -> list[flo
     if last - first >= MOST_FRAMES:
         raise UsageError(f"{attribute.GetPath()} is a spline over {last - first} frames; say which are wanted")
     return [*knots, *map(float, range(first, last + 1))]
+
+
+def _knots(attribute: Usd.Attribute) -> list[float]:
+    spline = attribute.GetSpline()
+    if hasattr(spline, "GetKnotsWithInnerLoopsBaked"):
+        return sorted(spline.GetKnotsWithInnerLoopsBaked().keys())
+    if spline.HasInnerLoops():
+        raise UsageError(f"{attribute.GetPath()} is a spline with inner loops, which USD 25.5 cannot list")
+    return sorted(spline.GetKnots().keys())
 
 
 def _has_default(attribute: Usd.Attribute) -> bool:

@@ -1,0 +1,55 @@
+"""A layer that payloads a character: its set-up, live, and below that its cache, all there is without skinslide.
+
+Of a list of payloads USD passes over those that it cannot open, with a warning.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+
+from pxr import Sdf, Tf, Usd
+
+from skinslide.author.layer import EXTENSIONS, asset_path, describe, in_the_way
+from skinslide.problems import UsageError
+from skinslide.stage.given import StageLike, StrPath, given_file, given_stage
+from skinslide.stage.sources import EXTENSION
+from skinslide.write.place import check_not_input, check_output, given_output, replacing, saved, writing
+
+
+class PayloadLayer:
+    """What is to be written, once the set-up is there. Raises UsageError for what cannot be."""
+
+    def __init__(self, stage: StageLike, setup: StrPath, output: StrPath, force: bool):
+        self._output, live = given_output("payload", output), given_output("output", setup)
+        below, opened = given_file(stage), given_stage(stage)
+        if live.suffix != EXTENSION:
+            raise UsageError(f"output {live}: a payload of it is live where it ends in {EXTENSION} alone")
+        check_output(self._output, [each for each in EXTENSIONS if each != EXTENSION])
+        check_not_input(self._output, opened, below)
+        self._text = _layer(opened, live, below, self._output).ExportToString()
+        if self._output.exists() and not force and not self._is_there():
+            raise in_the_way(self._output, "says something else")
+
+    def _is_there(self) -> bool:
+        with suppress(Tf.ErrorException):  # no layer
+            return bool(Sdf.Layer.OpenAsAnonymous(str(self._output)).ExportToString() == self._text)
+        return False
+
+    def write(self) -> None:
+        layer = Sdf.Layer.CreateAnonymous(".usda")
+        layer.ImportFromString(self._text)
+        with replacing(self._output) as partial, writing(self._output):
+            saved(layer.Export(str(partial)))
+
+
+def _layer(stage: Usd.Stage, live: Path, below: Path, output: Path) -> Sdf.Layer:
+    prim = stage.GetDefaultPrim()
+    if not prim:
+        raise UsageError(f"{below} names no default prim, which a payload needs")
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    describe(layer, stage)
+    spec = Sdf.PrimSpec(layer, prim.GetName(), Sdf.SpecifierDef)
+    for file in (live, below):
+        spec.payloadList.prependedItems.append(Sdf.Payload(asset_path(file, output)))
+    return layer
