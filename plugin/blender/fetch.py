@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import bpy
 import numpy as np
 
-from skinslide.arrays.meaning import NOTHING, Input, Other, Value, inputs
+from skinslide.arrays.meaning import Input, Other, Value, inputs
 from skinslide.problems import Fault
 
 from . import settings
+from .reading import Fetched, FetchedPatch
 
 EDGES = "edgeForceDensities"
 INTERPOLATIONS = {"POINT": "vertex", "FACE": "uniform", "CORNER": "faceVarying", "EDGE": "edge"}
@@ -41,44 +41,11 @@ DEFORMING = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class FetchedPatch:
-    """A patch: its settings by name, and its painted edges with their factors."""
-
-    name: str
-    values: dict[str, Value]
-
-    def value(self, source: Input) -> Value:
-        """A setting, or its name alone where it is not set."""
-        name = source.property(self.name)
-        return self.values.get(source.name) or Value(name, NOTHING, source.type_name)
-
-
-@dataclass(frozen=True)
-class Fetched:
-    """A mesh, as arrays of its own: threads may read it."""
-
-    name: str
-    folder: str  # that its relative paths start from
-    counts: np.ndarray  # (F,) int32
-    indices: np.ndarray  # (sum of counts,) int32
-    basis: np.ndarray  # (V, 3) float32
-    points: np.ndarray  # (V, 3) float32, as modifiers and shape keys leave them
-    values: dict[str, Value]  # of the mesh, by property
-    primvars: dict[str, Value]
-    patches: tuple[FetchedPatch, ...]
-
-
 def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Fetched:
     """All that there is to slide an object by. Raises Fault for one that cannot be."""
     check(thing)
     own, mesh = settings.of(thing), thing.data
     primvars = {value.name: value for value in (*_attributes(mesh), *_groups(thing))}
-    indices = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", indices)
-    counts = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_total", counts)
-    basis = basis_points(mesh)
     values = {
         each.property(): settings.value_of(own, each, each.property()) for each in settings.set_inputs(own, "mesh")
     }
@@ -87,9 +54,17 @@ def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Fetched:
         values["skinSlide:restPoints"] = rest._replace(name="skinSlide:restPoints")
     patches = tuple(_patch(mesh, each) for each in own.patches)
     folder = os.path.dirname(bpy.path.abspath(own.file or "//"))
-    return Fetched(
-        thing.name, folder, counts, indices, basis, evaluated_points(thing, depsgraph), values, primvars, patches
-    )
+    poses = basis_points(mesh), evaluated_points(thing, depsgraph)
+    to_world = np.array(thing.matrix_world.transposed(), np.float64)
+    return Fetched(thing.name, folder, *_faces(mesh), *poses, to_world, values, primvars, patches)
+
+
+def _faces(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """How many vertices each face has, and which."""
+    counts, indices = np.empty(len(mesh.polygons), np.int32), np.empty(len(mesh.loops), np.int32)
+    mesh.polygons.foreach_get("loop_total", counts)
+    mesh.loops.foreach_get("vertex_index", indices)
+    return counts, indices
 
 
 def check(thing: bpy.types.Object | None) -> None:

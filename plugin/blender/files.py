@@ -38,6 +38,7 @@ class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
         """The faces of the mesh, by which its prim is known."""
         fetched = fetch(context.active_object, context.evaluated_depsgraph_get())
         path, prim = bpy.path.abspath(self.filepath), self.prim
+        bpy.utils.expose_bundled_modules()  # its pxr
         return lambda: read_setup(path, prim, fetched.counts, fetched.indices)
 
     def write(self, context: bpy.types.Context, found: Read) -> str:
@@ -46,6 +47,7 @@ class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
         take(thing, found)
         own = settings.of(thing)
         own.file, own.prim, own.problem = self.filepath, found.prim, ""
+        settings.tell(thing)
         for each in found.left:
             self.report({"WARNING"}, each)
         return f"{len(found.patches)} patches of {found.prim}"
@@ -173,6 +175,7 @@ class SKINSLIDE_OT_export_setup(Waiting, ExportHelper):
         path = bpy.path.abspath(self.filepath)
         cache = bpy.path.abspath(self.cache) if self.cache else path.removesuffix(EXTENSION) + ".usdc"
         prim = self.prim or (settings.of(thing).prim if not self.with_cache else "")
+        bpy.utils.expose_bundled_modules()
         if not self.with_cache and not os.path.exists(cache):
             raise Fault(f"there is no cache {cache}")
         if self.with_cache:

@@ -18,8 +18,8 @@ from skinslide.arrays.canvas import false_colour
 from skinslide.problems import Fault
 
 from . import settings, work
-from .fetch import Fetched, evaluated_points, fetch, numbers
-from .reading import Numbers, Slid, Sliding
+from .fetch import evaluated_points, fetch, numbers
+from .reading import Fetched, Numbers, Slid, Sliding
 from .work import INTERVAL, Waiting, start, stop
 
 STRETCH = "skinSlide:stretch"  # the colour attribute of the slid object
@@ -29,23 +29,37 @@ SHADES = 256
 
 @dataclass
 class Session:
-    """One object that is live: its slider, and the frame that is being slid."""
+    """One object that is live: its slider, which the thread that slides makes, and the frame that is being slid."""
 
     name: str
     sliding: Sliding | None = None
-    future: Future[tuple[Sliding, Slid]] | None = None
-    stale: bool = False  # what is painted or set has changed since the slider was made
+    future: Future[Slid] | None = None
+    brings: bool = False  # a new set-up
+    stale: bool = False  # what is painted or set has changed since one was brought
+
+    def slide(self, fetched: Fetched | None, points: np.ndarray, own: Numbers) -> Slid:
+        """Slides a frame, of a new set-up or of the one before. Raises Fault."""
+        if fetched:
+            self.sliding = None
+            self.sliding = Sliding(fetched)
+        if not self.sliding:
+            raise Fault("there is nothing to slide by")
+        return self.sliding.slide(points, own)
+
+    def fits(self, thing: bpy.types.Object) -> bool:
+        """Whether the slider is that of the set-up as it is now."""
+        names = [patch.name for patch in settings.of(thing).patches]
+        return not self.stale and self.sliding is not None and self.sliding.names == names
+
+    def drop(self) -> None:
+        """Lets go of a frame that was not begun, but not of the set-up that it was to bring."""
+        if self.future and self.future.cancel():
+            self.stale = self.stale or self.brings
 
 
 _sessions: dict[str, Session] = {}
 _shades: list[np.ndarray] = []
 _showing = False  # what changes now is what is shown
-
-
-def _slide(sliding: Sliding | None, fetched: Fetched | None, points: np.ndarray, own: Numbers) -> tuple[Sliding, Slid]:
-    made = Sliding(fetched) if fetched else sliding
-    assert made
-    return made, made.slide(points, own)
 
 
 def live_objects() -> list[bpy.types.Object]:
@@ -59,14 +73,15 @@ def refresh(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     if thing.mode == "EDIT":  # in which nothing is evaluated
         session.stale = True
         return
+    session.drop()
     try:
-        fetched = fetch(thing, depsgraph) if session.stale or not session.sliding else None
+        fetched = None if session.fits(thing) else fetch(thing, depsgraph)
         points = fetched.points if fetched else evaluated_points(thing, depsgraph)
     except Fault as fault:
         _say(thing, str(fault))
         return
-    session.stale = False
-    session.future = start(_slide, session.sliding, fetched, points, numbers(thing))
+    session.stale, session.brings = False, fetched is not None
+    session.future = start(session.slide, fetched, points, numbers(thing))
     _show_when_done(session)
 
 
@@ -97,9 +112,8 @@ def _finish(session: Session) -> None:
     if thing is None or future is None or not settings.of(thing).slid:
         return
     try:
-        session.sliding, slid = future.result()
+        slid = future.result()
     except (Fault, MemoryError) as fault:
-        session.sliding = None
         _say(thing, str(fault))
         return
     show(thing, slid)
@@ -203,8 +217,8 @@ class SKINSLIDE_OT_live(Waiting):
         if thing and settings.of(thing).slid:
             return None
         depsgraph = context.evaluated_depsgraph_get()
-        fetched, own = fetch(thing, depsgraph), numbers(thing)
-        return lambda: _slide(None, fetched, fetched.points, own)
+        fetched, own, session = fetch(thing, depsgraph), numbers(thing), Session(thing.name)
+        return lambda: (session, session.slide(fetched, fetched.points, own))
 
     def write(self, context: bpy.types.Context, found: Any) -> str:
         """Makes the object, or takes it away."""
@@ -212,16 +226,15 @@ class SKINSLIDE_OT_live(Waiting):
         if found is None:
             switch_off(thing)
             return ""
-        sliding, slid = found
-        session = _sessions[thing.name] = Session(thing.name)
-        session.sliding = sliding
+        session, slid = found
+        _sessions[thing.name] = session
         shown = bpy.data.objects.new(f"{thing.name} slid", _plain_copy(thing))
         for collection in thing.users_collection:
             collection.objects.link(shown)
         settings.of(thing).slid = shown
         _veil(thing, True)
         show(thing, slid)
-        return "; ".join(sliding.warnings) or _summary(slid)
+        return "; ".join(session.sliding.warnings if session.sliding else ()) or _summary(slid)
 
 
 def _veil(thing: bpy.types.Object, veiled: bool) -> None:

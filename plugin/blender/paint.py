@@ -12,9 +12,9 @@ from skinslide.arrays.meaning import inputs
 from skinslide.problems import NO_EDGE, Fault
 
 from . import settings
-from .fetch import EDGES, Fetched, check, edge_keys, edges_of, fetch, group_weights
+from .fetch import EDGES, check, edge_keys, edges_of, fetch, group_weights
 from .patches import write_attribute, write_weights
-from .reading import Surface
+from .reading import Fetched, Surface
 from .work import Waiting
 
 CHOOSING = ("paintChannel", "patch", "forceDensityRule", "grow")  # what the faces of a patch depend on

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,8 +14,8 @@ from skinslide.arrays.meaning import Value, can_name_patch, input_of
 from skinslide.problems import NO_PATCH_NAME, Fault
 
 from . import settings
-from .fetch import EDGES, Fetched, FetchedPatch, fetch, group_weights
-from .reading import check_one_piece
+from .fetch import EDGES, fetch, group_weights
+from .reading import Fetched, FetchedPatch, check_one_piece
 from .work import Waiting
 
 RULE = "even"  # of patches that are new
@@ -62,6 +63,7 @@ class _NewPatch(Waiting):
         patch = own.patches.add()
         patch.name, patch.forceDensityRule = self.name, RULE
         own.active = len(own.patches) - 1
+        settings.tell(thing)
         return f"{self.name}: a patch of {int(np.count_nonzero(found.value))} {_ELEMENTS[found.interpolation or '']}"
 
 
@@ -76,8 +78,7 @@ _ELEMENTS = {"uniform": "faces", "vertex": "points"}
 def _with_patch(fetched: Fetched, name: str, chosen: Value) -> Fetched:
     rule = Value(f"skinSlide:{name}:forceDensityRule", RULE, "token")
     patch = FetchedPatch(name, {"forceDensityRule": rule})
-    fields = vars(fetched) | {"patches": (patch,), "primvars": fetched.primvars | {chosen.name: chosen}}
-    return Fetched(**fields)
+    return replace(fetched, patches=(patch,), primvars=fetched.primvars | {chosen.name: chosen})
 
 
 class SKINSLIDE_OT_patch_from_faces(_NewPatch):
@@ -128,6 +129,7 @@ class SKINSLIDE_OT_remove_patch(Waiting):
         remove_paint(thing, settings.active_patch(thing).name)
         own.patches.remove(own.active)
         own.active = max(0, own.active - 1)
+        settings.tell(thing)
         return ""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -27,9 +28,36 @@ from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, SliderError
 
-from .fetch import Fetched, FetchedPatch
-
 Numbers = Sequence[Sequence[tuple[Input, Value]]]
+
+
+@dataclass(frozen=True)
+class FetchedPatch:
+    """A patch: its settings by name, and its painted edges with their factors."""
+
+    name: str
+    values: dict[str, Value]
+
+    def value(self, source: Input) -> Value:
+        """A setting, or its name alone where it is not set."""
+        name = source.property(self.name)
+        return self.values.get(source.name) or Value(name, NOTHING, source.type_name)
+
+
+@dataclass(frozen=True)
+class Fetched:
+    """A mesh, as arrays of its own: threads may read it."""
+
+    name: str
+    folder: str  # that its relative paths start from
+    counts: np.ndarray  # (F,) int32
+    indices: np.ndarray  # (sum of counts,) int32
+    basis: np.ndarray  # (V, 3) float32
+    points: np.ndarray  # (V, 3) float32, as modifiers and shape keys leave them
+    to_world: np.ndarray  # (4, 4), takes points, as rows, to the world
+    values: dict[str, Value]  # of the mesh, by property
+    primvars: dict[str, Value]
+    patches: tuple[FetchedPatch, ...]
 
 
 class Slid(NamedTuple):
@@ -47,6 +75,9 @@ class Surface:
         self.fetched, self.meaning = fetched, MeshMeaning()
         with joined() as faults:
             _take(self.meaning, ((each, self._value(each)) for each in inputs("mesh")), faults)
+            with _noting(faults):
+                if self.meaning.has_faces:
+                    self.meaning.take_space(fetched.to_world, 0)
         self.topology = Topology.of(self.meaning)
 
     def _value(self, source: Input) -> Value:
@@ -99,6 +130,7 @@ class Sliding:
 
     def __init__(self, fetched: Fetched):
         self.fetched, surface = fetched, Surface(fetched)
+        self.names = [patch.name for patch in fetched.patches]
         self._meanings, self._base = list[PatchMeaning](), list[ControlsMeaning]()
         with joined() as faults:
             for patch in fetched.patches:
@@ -113,7 +145,8 @@ class Sliding:
         setups = [meaning.setup(base) for meaning, base in zip(self._meanings, self._base, strict=True)]
         self.rest_points = surface.meaning.rest_points()
         self.slider = _slider(surface, setups)
-        self.warnings = [each for each in (surface.meaning.warning, *(each.warning for each in self._meanings)) if each]
+        own = (surface.meaning.warning, surface.meaning.space_warning, *(each.warning for each in self._meanings))
+        self.warnings = [each for each in own if each]
 
     def _subdivision(self, source: Input) -> Value:
         """Of a mesh that Blender draws as its faces, unless a modifier subdivides it, which is off while it slides."""
@@ -140,15 +173,16 @@ def _slider(surface: Surface, setups: Sequence[PatchSetup]) -> Slider:
     fetched, meaning = surface.fetched, surface.meaning
     try:
         weld = meaning.weld(setups, [(0, fetched.points)]).vertices
-        rest, subdivision = meaning.rest_points(), meaning.subdivision()
-        return Slider(fetched.counts, fetched.indices, rest, setups, subdivision=subdivision, weld=weld)
+        rest, subdivision, space = meaning.rest_points(), meaning.subdivision(), meaning.space()
+        shape = fetched.counts, fetched.indices, rest
+        return Slider(*shape, setups, subdivision=subdivision, weld=weld, space=space)
     except SliderError as error:
         raise Fault(str(error)) from error
 
 
 def check_one_piece(fetched: Fetched) -> None:
     """Raises Fault where the last patch cannot be slid, or lies in several pieces."""
-    alone = Fetched(**(vars(fetched) | {"patches": fetched.patches[-1:]}))
+    alone = replace(fetched, patches=fetched.patches[-1:])
     pieces = len(Sliding(alone).slider.patches)
     if pieces > 1:
         raise Fault(

@@ -18,8 +18,13 @@ on_change: list[Callable[[bpy.types.Object], None]] = []
 
 
 def _changed(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    tell(settings.id_data)
+
+
+def tell(thing: bpy.types.Object) -> None:
+    """Says that the set-up of an object has changed."""
     for call in on_change:
-        call(settings.id_data)
+        call(thing)
 
 
 def _title(name: str) -> str:

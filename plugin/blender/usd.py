@@ -9,7 +9,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,21 +16,16 @@ import numpy as np
 from skinslide.arrays.meaning import NOTHING, SCHEMA, Input, MeshMeaning, Other, PatchMeaning, Value, input_of, inputs
 from skinslide.problems import Fault, StageError, StageProblems, UsageError
 
-from .fetch import Fetched, FetchedPatch
+from .reading import Fetched, FetchedPatch
 
 Keys = dict[tuple[str, str], list[tuple[float, float]]]  # of a patch and a setting: times and numbers
 
 
-def usd() -> ModuleType:
-    """Blender's own pxr, with the schema."""
-    import bpy
-
-    bpy.utils.expose_bundled_modules()
+def _import_usd() -> None:
+    """Has pxr imported, with the schema; the file format is for another USD, and such files are read as text."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # the file format is for another USD; files are read as text
-        import pxr
+        warnings.simplefilter("ignore", RuntimeWarning)
         from pxr import Usd  # noqa: F401
-    return pxr
 
 
 @dataclass
@@ -53,7 +47,7 @@ def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarra
 
     prim_path: where the mesh is; empty: wherever its faces are.
     """
-    usd()
+    _import_usd()
     from skinslide.stage.finding import patched_prims
     from skinslide.stage.mesh import take_mesh
     from skinslide.stage.opening import open_stage
@@ -148,7 +142,7 @@ def _expanded(value: Value, mesh: MeshMeaning) -> Value:
 
 def write_setup(path: str, cache: str, prim_path: str, fetched: Fetched, rest: np.ndarray, keys: Keys) -> str:
     """Writes a set-up beside a cache, and gives the path of the mesh in it. Raises Fault, having written nothing."""
-    usd()
+    _import_usd()
     from skinslide.author.layer import author_layer
 
     try:

@@ -18,8 +18,8 @@ PATIENCE = 0.02  # seconds that a frame may take before Blender goes on without 
 
 
 def patience() -> float | None:
-    """How long to wait for work; None: until it is done, as where there is no interface to keep in use."""
-    return None if bpy.app.background else PATIENCE
+    """How long to wait for work; None: until it is done, as for pictures, and where there is no interface."""
+    return None if bpy.app.background or bpy.app.is_job_running("RENDER") else PATIENCE
 
 
 def start(work: Callable[..., Any], *arguments: Any) -> Future[Any]:

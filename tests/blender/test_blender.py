@@ -37,7 +37,7 @@ def test_inside(name, results):
     assert not any(own.values()), "\n".join(own.values())
 
 
-@pytest.mark.parametrize("rule", ["unit", "even", "relaxed"])
+@pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world"])
 def test_what_is_shown_is_what_is_baked(rule, results, blender, tmp_path):
     """The same bytes, at each frame: the live object in Blender, and a bake of the stage that it exports."""
     setup = blender.out / f"{rule}.skinslide"
@@ -51,6 +51,10 @@ def test_what_is_shown_is_what_is_baked(rule, results, blender, tmp_path):
         cached = np.array(UsdGeom.Mesh.Get(cache, mesh.GetPath()).GetPointsAttr().Get(frame))
         assert baked.tobytes() == np.load(blender.out / f"{rule}.{frame}.npy").tobytes()
         assert (frame == 1001) == np.array_equal(baked, cached)
+
+
+def test_lengths_in_the_world_count(results, blender):
+    assert (blender.out / "world.1003.npy").read_bytes() != (blender.out / "even.1003.npy").read_bytes()
 
 
 def test_paint_survives_blenders_own_exporter(results, blender):
@@ -99,3 +103,12 @@ def test_no_operator_reads_rules_itself():
         spelt = [node.value for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Constant)]
         found = [value for value in spelt if value in rules]
         assert found == (["even"] if path.name == "patches.py" else []), path
+
+
+@pytest.mark.parametrize("name", ["reading.py", "usd.py"])
+def test_what_works_apart_knows_nothing_of_blender(name):
+    """Blender's data may be touched by its main thread alone."""
+    tree = ast.parse((ROOT / "plugin" / "blender" / name).read_text())
+    imported = [each.name for node in ast.walk(tree) if isinstance(node, ast.Import) for each in node.names]
+    within = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level]
+    assert "bpy" not in imported and set(within) <= {"reading"}

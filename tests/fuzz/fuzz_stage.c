@@ -48,6 +48,13 @@ static void *take_numbers(stream *s, skinslide_value_type type, int64_t count) {
     return bytes;
 }
 
+static const char *any_token(stream *s, const char *const *tokens) {
+    int32_t count = 0;
+    while (tokens[count])
+        count++;
+    return tokens[take_below(s, count)];
+}
+
 static void take_record(record *r, stream *s, const skinslide_stage_input *input) {
     static const char *const interpolations[] = {NULL, "constant", "uniform", "vertex", "varying", "faceVarying", "nonsense"};
     skinslide_value_type type = (skinslide_value_type)take_below(s, SKINSLIDE_VALUE_OTHER + 1);
@@ -60,7 +67,7 @@ static void take_record(record *r, stream *s, const skinslide_stage_input *input
     if (type == SKINSLIDE_VALUE_TEXT || type == SKINSLIDE_VALUE_ASSET) {
         take(s, r->text, MOST_TEXT - 1);
         if (input->tokens && take_below(s, 2))
-            strncpy(r->text, input->tokens[0], MOST_TEXT - 1);
+            strncpy(r->text, any_token(s, input->tokens), MOST_TEXT - 1);
         r->value.data = r->text, r->value.count = 1;
     } else {
         r->value.data = r->data = take_numbers(s, type, r->value.count * width);

@@ -111,11 +111,16 @@ def test_what_cannot_be_exported(tmp_path):
     assert path.read_text() == "#usda 1.0\n"
 
 
-@pytest.mark.parametrize("rule", ["unit", "even", "relaxed"])
+@pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world"])
 def test_for_the_bake(rule, scene, out):
-    """What is shown live, for the test outside to compare with a bake of what is exported."""
+    """What is shown live, for the test outside to compare with a bake of what is exported; with lengths in the world."""
     thing = sheet()
-    painted(thing, rule)
+    if rule == "world":
+        above = bpy.data.objects.new("above", None)
+        scene.collection.objects.link(above)
+        thing.parent, above.scale, thing.skinslide.worldSpace = above, (1, 1, 3), True
+        bpy.context.view_layer.update()
+    painted(thing, "even" if rule == "world" else rule)
     bpy.ops.skinslide.live()
     for frame in (1001, 1002, 1003):
         scene.frame_set(frame)

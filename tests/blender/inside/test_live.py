@@ -69,6 +69,22 @@ def test_it_follows_paint_and_settings(scene):
     assert np.array_equal(points(shown), fetch(thing, bpy.context.evaluated_depsgraph_get()).points)
 
 
+def test_it_follows_patches(scene):
+    """Those that are made, and those that are taken away; without any nothing can be slid, which is said."""
+    thing = sheet()
+    make_patch(thing, "a")
+    bpy.ops.skinslide.live()
+    scene.frame_set(1003)
+    before = points(thing.skinslide.slid)
+    make_patch(thing, "b", "unit")
+    both = points(thing.skinslide.slid)
+    assert both.tobytes() == slid_now(thing).tobytes() != before.tobytes()
+    bpy.ops.skinslide.remove_patch()
+    assert points(thing.skinslide.slid).tobytes() == before.tobytes()
+    bpy.ops.skinslide.remove_patch()
+    assert thing.skinslide.problem == "there is no patch to slide"
+
+
 def test_an_animated_envelope(scene):
     thing = sheet()
     patch = make_patch(thing)

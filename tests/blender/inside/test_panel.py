@@ -91,3 +91,21 @@ def test_frames_are_shown_once_they_are_there(scene, impatient):
     work.patience = lambda: None  # monkeypatch puts it back
     scene.frame_set(1003)
     assert points(shown).tobytes() == late.tobytes()
+
+
+def test_a_change_is_not_lost_with_its_frame(scene, impatient):
+    """A set-up that a later frame overtakes counts all the same."""
+    thing = sheet(40)
+    patch = make_patch(thing, rule="relaxed")
+    bpy.ops.skinslide.live()
+    for rule, frame in (("unit", 1002), ("even", 1003), ("fast", 1002), ("unit", 1003)):
+        patch.forceDensityRule = rule
+        scene.frame_set(frame)
+    until = time.monotonic() + 20
+    while live._look() and time.monotonic() < until:
+        time.sleep(0.01)
+    late = points(thing.skinslide.slid)
+    bpy.ops.skinslide.live()
+    work.patience = lambda: None
+    bpy.ops.skinslide.live()
+    assert points(thing.skinslide.slid).tobytes() == late.tobytes()
