@@ -113,7 +113,7 @@ def test_what_cannot_be_exported(tmp_path):
 
 @pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world"])
 def test_for_the_bake(rule, scene, out):
-    """What is shown live, for the test outside to compare with a bake of what is exported; with lengths in the world."""
+    """What is shown live, for the test outside to compare with a bake of what is exported."""
     thing = sheet()
     if rule == "world":
         above = bpy.data.objects.new("above", None)
