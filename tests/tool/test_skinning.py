@@ -156,7 +156,7 @@ def test_normals_are_those_that_usd_bakes(interpolation, method):
     stage, mesh = rigs.skinned_stage()
     UsdSkel.BindingAPI(mesh.GetPrim()).CreateSkinningMethodAttr(method)
     add_normals(mesh, interpolation)
-    usd, (normals, *_) = rigs.skinned_by_usd(stage), only_mesh(stage).skinned_normals()[1:]
+    usd, (normals, *_) = rigs.skinned_by_usd(stage), only_mesh(stage).skinned_vectors()[1:]
     for frame in FRAMES:
         np.testing.assert_allclose(normals.skinned(Usd.TimeCode(frame)), normals_of(usd, frame), atol=1e-6)
     assert np.abs(normals_of(usd, FRAMES[-1]) - normals_of(usd, FRAMES[0])).max() > 0.1
@@ -168,6 +168,61 @@ def add_normals(mesh, interpolation):
     vectors = np.random.default_rng(7).normal((0, 0, 1), 0.2, (count, 3))
     mesh.CreateNormalsAttr(stages.vectors(unit(vectors)))
     mesh.SetNormalsInterpolation(interpolation)
+
+
+def add_tangents(mesh, interpolation, type_name=Sdf.ValueTypeNames.Vector3fArray):
+    """From each point to that in the next row, as long as that is far; by corner those of its point."""
+    points = np.array(mesh.GetPointsAttr().Get(), np.float64)
+    ways = np.roll(points, -7, axis=0) - points
+    values = ways if interpolation == "vertex" else ways[np.array(mesh.GetFaceVertexIndicesAttr().Get())]
+    double = type_name == Sdf.ValueTypeNames.Vector3dArray
+    value = Vt.Vec3dArray.FromNumpy(values) if double else stages.vectors(values)
+    stages.set_primvar(mesh, "tangents", type_name, interpolation, value)
+
+
+@pytest.mark.parametrize("interpolation", ["vertex", "faceVarying"])
+@pytest.mark.parametrize("type_name", [Sdf.ValueTypeNames.Vector3fArray, Sdf.ValueTypeNames.Vector3dArray])
+def test_tangents_turn_as_the_joints_do(interpolation, type_name, tmp_path):
+    """Where one joint moves all points they are still from point to point; where two do they keep their lengths."""
+    stage, mesh = rigs.skinned_stage()
+    add_tangents(mesh, interpolation, type_name)
+    stages.set_property(mesh, "envelope", 0.0)
+    report = skinslide.bake_to_file(stage, tmp_path / "slid.usda")
+    assert not [problem for problem in report.problems if "tangents" in problem.message]
+    slid = Usd.Stage.Open(str(tmp_path / "slid.usda"))
+    tangents = slid.GetPrimAtPath(MESH).GetAttribute("primvars:tangents")
+    assert tangents.GetTypeName() == type_name and tangents.GetTimeSamples() == list(FRAMES)
+    corners = np.arange(49) if interpolation == "vertex" else np.array(mesh.GetFaceVertexIndicesAttr().Get())
+    rigid = np.isin(corners % 7, [0, 6])  # all of the root, or of the hand
+    for frame in FRAMES:
+        points, found = points_of(slid, frame), np.array(tangents.Get(frame))
+        ways = (np.roll(points, -7, axis=0) - points)[corners]
+        np.testing.assert_allclose(found[rigid], ways[rigid], atol=1e-6)
+        rest = np.linalg.norm(np.array(mesh.GetPrim().GetAttribute("primvars:tangents").Get()), axis=1)
+        np.testing.assert_allclose(np.linalg.norm(found, axis=1), rest, rtol=1e-5)
+    assert np.abs(found - np.array(tangents.Get(FRAMES[0]))).max() > 0.1
+
+
+def test_a_cache_has_tangents_too(tmp_path):
+    stage, mesh = rigs.skinned_stage()
+    add_tangents(mesh, "vertex")
+    character = stages.save(stage, tmp_path / "character.usda")
+    report = skinslide.cache(character, tmp_path / "cache.usdc")
+    assert report.meshes[0].normals == ["primvars:tangents"]
+    stages.set_property(mesh, "envelope", 0.0)
+    skinslide.bake_to_file(stage, tmp_path / "slid.usda")
+    layers = [Sdf.Layer.FindOrOpen(str(tmp_path / name)) for name in ("cache.usdc", "slid.usda")]
+    path = f"{MESH}.primvars:tangents"
+    for frame in FRAMES:
+        cached, slid = (np.array(layer.QueryTimeSample(path, frame)) for layer in layers)
+        np.testing.assert_array_equal(cached, slid)
+
+
+def test_rates_of_a_skinned_mesh_are_named(tmp_path):
+    stage, mesh = rigs.skinned_stage()
+    mesh.CreateVelocitiesAttr(stages.vectors(np.zeros((49, 3))))
+    said = [problem.message for problem in skinslide.bake_to_file(stage, tmp_path / "slid.usda").problems]
+    assert any(message.startswith("velocities cannot be recomputed, so the bake blocks them: ") for message in said)
 
 
 # ---- A bake above the character ----

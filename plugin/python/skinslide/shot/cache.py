@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.slider import version
@@ -40,7 +41,7 @@ class CachedMesh:
         points: How many it has.
         skeleton: The path of the Skeleton that it is unbound from.
         frames: The stage times that were written.
-        normals: The attributes of normals that were written.
+        normals: The attributes of normals, and of other vectors that turn as they do, that were written.
     """
 
     path: str
@@ -130,7 +131,7 @@ class _Cached:
 
     def __init__(self, mesh: PatchedMesh, times: list[Usd.TimeCode]):
         self._mesh, self.times = mesh, times
-        self._normals = [each for each in mesh.skinned_normals() if each.skinned(times[0]) is not None]
+        self._vectors = [each for each in mesh.skinned_vectors() if each.skinned(times[0]) is not None]
 
     def write(self, overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Yields each time once it is written."""
@@ -142,15 +143,17 @@ class _Cached:
             points = Vt.Vec3fArray.FromNumpy(self._mesh.points_at(time))
             overs.set(geometry.GetPointsAttr(), points, time)
             overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
-            for normals in self._normals:
-                overs.set(normals.attribute, Vt.Vec3fArray.FromNumpy(normals.skinned(time)), time)
+            for source in self._vectors:
+                skinned = source.skinned(time)
+                array = Vt.Vec3dArray if skinned is not None and skinned.dtype == np.float64 else Vt.Vec3fArray
+                overs.set(source.attribute, array.FromNumpy(skinned), time)
             yield time
-        for normals in self._normals:
-            if normals.indices and normals.indices.HasAuthoredValue():
-                overs.block(normals.indices)
+        for source in self._vectors:
+            if source.indices and source.indices.HasAuthoredValue():
+                overs.block(source.indices)
         overs.end_skinning(self._mesh.prim)
 
     def report(self) -> CachedMesh:
-        mesh, names = self._mesh, [normals.name for normals in self._normals]
+        mesh, names = self._mesh, [source.name for source in self._vectors]
         frames = [time.GetValue() for time in self.times]
         return CachedMesh(mesh.path, mesh.vertex_count, mesh.skeleton, frames, names)

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from pxr import Usd, UsdGeom, Vt
+from pxr import Usd, Vt
 
-from skinslide.arrays.meaning import DerivedMeaning, Output, Pose, inputs
+from skinslide.arrays.meaning import DerivedMeaning, Output, Pose
 from skinslide.arrays.meaning import Value as CachedValue
 from skinslide.problems import Fault, Problem, first_of
 from skinslide.shot.products import SlidFrames
 from skinslide.stage.mesh import PatchedMesh
-from skinslide.stage.values import FIRST, Source
+from skinslide.stage.values import FIRST
 
 
 class Value(NamedTuple):
@@ -38,7 +38,7 @@ class Derived:
         with contextlib.suppress(Fault):  # too many, of which some are named
             if between:
                 self._meaning.fill()
-        sources = [*map(mesh.derived_source, inputs("derived")), *_offered(mesh.prim, self._meaning)]
+        sources = list(mesh.derived_sources(self._meaning))
         self._sources = {source.wanted.property(): source for source in sources}
         for source in sources:
             self._meaning.take(source.wanted, source.first(), source.samples())
@@ -114,16 +114,6 @@ class Derived:
 
     def _warn(self, message: str, time: Usd.TimeCode = FIRST) -> None:
         self.problems.append(replace(self._mesh.problem(message, time), severity="warning"))
-
-
-def _offered(prim: Usd.Prim, meaning: DerivedMeaning) -> Iterator[Source]:
-    """The primvars that follow from points."""
-    for name in sorted(prim.GetAuthoredPropertyNames(lambda name: name.startswith("primvars:"))):
-        primvar = UsdGeom.Primvar(prim.GetAttribute(name))
-        if primvar and primvar.HasAuthoredValue():
-            interpolation = primvar.GetAttr().GetMetadata("interpolation")
-            wanted = meaning.offer(name, str(primvar.GetTypeName()), interpolation, primvar.GetElementSize())
-            yield from [Source(prim, wanted)] if wanted else []
 
 
 def _pose(time: Usd.TimeCode, frames: SlidFrames) -> Pose:

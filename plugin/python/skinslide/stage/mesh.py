@@ -12,6 +12,7 @@ from pxr import Usd, UsdGeom
 
 from skinslide.arrays.meaning import (
     DEFAULT_TIME,
+    DerivedMeaning,
     Input,
     MeshMeaning,
     Weld,
@@ -25,8 +26,9 @@ from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem, counted
 from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
+from skinslide.stage.following import carried, offered
 from skinslide.stage.patch import Animation, read_patch
-from skinslide.stage.skinning import SkinnedNormals, SkinnedPoints, Skinning
+from skinslide.stage.skinning import SkinnedPoints, SkinnedVectors, Skinning
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
 
@@ -170,16 +172,24 @@ class PatchedMesh:
         source = _source(self.prim, wanted, self.skinning)
         return positions(source.first()) if source.at(Usd.TimeCode.Default()) else None
 
-    def derived_source(self, wanted: Input) -> Source:
+    def derived_sources(self, meaning: DerivedMeaning) -> Iterator[Source]:
         """Where values that follow from points come from."""
-        if self.skinning and wanted.name == UsdGeom.Tokens.normals:
-            return SkinnedNormals(self.prim, wanted, self.skinning, self.face_indices)
-        return Source(self.prim, wanted)
+        turned = {UsdGeom.Tokens.normals, *(each.name for each in self._carried)}
+        for wanted in (*inputs("derived"), *offered(self.prim, meaning)):
+            yield self._skinned(wanted) if self.skinning and wanted.name in turned else Source(self.prim, wanted)
 
-    def skinned_normals(self) -> list[SkinnedNormals]:
-        """Those that it may have."""
-        sources = map(self.derived_source, inputs("derived"))
-        return [source for source in sources if isinstance(source, SkinnedNormals)]
+    def skinned_vectors(self) -> list[SkinnedVectors]:
+        """Normals, and other vectors that turn as they do, that it may have."""
+        normals = [each for each in inputs("derived") if each.name == UsdGeom.Tokens.normals]
+        return [self._skinned(each) for each in (*normals, *self._carried)] if self.skinning else []
+
+    @cached_property
+    def _carried(self) -> list[Input]:
+        return carried(self.prim, self.meaning) if self.skinning else []
+
+    def _skinned(self, wanted: Input) -> SkinnedVectors:
+        assert self.skinning
+        return SkinnedVectors(self.prim, wanted, self.skinning, self.face_indices)
 
     def controls_at(self, time: Usd.TimeCode) -> list[Controls] | None:
         """The controls of each patch, or None where none is animated."""

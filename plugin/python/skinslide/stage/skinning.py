@@ -116,6 +116,15 @@ class Skinning:
             self._turn(normals, corners, time)
         return np.array(normals)
 
+    def vectors(self, authored: np.ndarray, corners: np.ndarray | None, time: Usd.TimeCode) -> np.ndarray:
+        """Other vectors (n, 3) that turn as normals do, and keep their lengths; blend shapes know none of them."""
+        turned = Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(authored, np.float32))
+        if self._has_joints:
+            self._turn(turned, corners, time)
+        made, lengths = np.array(turned, np.float64), np.linalg.norm(authored, axis=1, keepdims=True)
+        now = np.linalg.norm(made, axis=1, keepdims=True)
+        return made * np.divide(lengths, now, out=np.zeros_like(now), where=now > 0)
+
     def _turn(self, normals: Vt.Vec3fArray, corners: np.ndarray | None, time: Usd.TimeCode) -> None:
         influences = (np.array(each) for each in self._query.ComputeVaryingJointInfluences(self.point_count, time))
         count, transforms = self._query.GetNumInfluencesPerComponent(), self._transforms(time)
@@ -186,11 +195,16 @@ class SkinnedPoints(Source):
         return found._replace(value=moved)
 
 
-class SkinnedNormals(Source):
-    """Normals of a skinned mesh as UsdSkel skins them: those by face, and the one of a whole mesh, it leaves alone."""
+class SkinnedVectors(Source):
+    """Normals of a skinned mesh as UsdSkel skins them, and other vectors that turn as they do.
+
+    Those by face, and the one of a whole mesh, it leaves alone.
+    """
 
     def __init__(self, prim: Usd.Prim, wanted: Input, skinning: Skinning, corners: np.ndarray):
         super().__init__(prim, wanted)
+        is_normals = wanted.name == UsdGeom.Tokens.normals
+        self._skin = skinning.normals if is_normals else skinning.vectors
         self._skinning, self._corners = skinning, corners
 
     def at(self, time: Usd.TimeCode) -> Value | None:
@@ -204,7 +218,10 @@ class SkinnedNormals(Source):
         return sorted({*super().samples(), *self._skinning.times()})
 
     def skinned(self, time: Usd.TimeCode) -> np.ndarray | None:
-        """Float32 (n, 3), one for each vertex or corner; None where there are no others, or what there is cannot be."""
+        """One for each vertex or corner (n, 3); None where there are no others, or what there is cannot be.
+
+        Float32, or float64 where those authored are.
+        """
         found = super().at(time)
         try:
             normals = positions(found) if found else None
@@ -215,11 +232,12 @@ class SkinnedNormals(Source):
         interpolation = found.interpolation or (
             UsdGeom.Tokens.constant if self.wanted.is_primvar else UsdGeom.Tokens.vertex
         )
+        dtype = np.float64 if found.value.dtype == np.float64 else np.float32
         if interpolation == UsdGeom.Tokens.faceVarying and len(normals) == len(self._corners):
-            return self._skinning.normals(normals, self._corners, time)
+            return self._skin(normals, self._corners, time).astype(dtype)
         by_vertex = interpolation in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying)
         fits = by_vertex and len(normals) == self._skinning.point_count
-        return self._skinning.normals(normals, None, time) if fits else None
+        return self._skin(normals, None, time).astype(dtype) if fits else None
 
 
 # ---- What USD computes, on arrays ----
