@@ -63,7 +63,7 @@ def read_normals(prim: Usd.Prim, times: list[float]) -> Normals:
 
 def cached_normals(mesh: PatchedMesh, times: list[float]) -> Normals:
     """Of a mesh that UsdSkel skins as it skins them; of another as they are authored or, for none, made."""
-    for skinned in mesh.skinned_normals() if mesh.skinning else []:
+    for skinned in mesh.skinned_vectors() if mesh.skinning else []:
         if skinned.attribute:
             return {time: skinned.skinned(Usd.TimeCode(time)).astype(float) for time in times}
     if not read_normals(mesh.prim, times):

@@ -140,6 +140,52 @@ static void carried_where_normals_are_known(void **state) {
     free_mesh(&mesh);
 }
 
+/* How far the mesh's own smooth normals are from the true ones, at most. */
+static double largest_coarseness(const test_mesh *mesh, const float *points) {
+    skinslide_mesh view = view_of(mesh);
+    uint8_t *all = malloc((size_t)mesh->vertex_count);
+    float *floats = malloc(POINT_BYTES(mesh));
+    double(*smooth)[3] = malloc((size_t)mesh->vertex_count * sizeof *smooth), worst = 0;
+    ss_memory memory = {0};
+    ss_around around = {0};
+    memset(all, 1, (size_t)mesh->vertex_count);
+    assert_true(ss_take_around(&view, all, &memory, &around));
+    ss_smooth_normals(&around, points, mesh->vertex_count, smooth);
+    double *expected = true_normals(mesh, points, floats);
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        worst = fmax(worst, angle(smooth[v], expected + 3 * v));
+    free(all), free(floats), free(smooth), free(expected);
+    ss_free(&memory);
+    return worst;
+}
+
+/* On sheets of ever more faces, whose own normals are off by ever less, carried ones are off by less than those, by every rule. */
+static void as_near_as_the_mesh_is_fine(void **state) {
+    (void)state;
+    double before[SKINSLIDE_RULE_EVEN + 1] = {0};
+    for (int32_t side = SIDE / 2; side <= 2 * SIDE; side *= 2) {
+        test_mesh mesh = quad_grid(side, side);
+        for (int32_t i = 0; i < 3 * mesh.vertex_count; i++)
+            mesh.points[i] *= (float)SIDE / (float)side;
+        float *points = bulging(&mesh);
+        double coarseness = largest_coarseness(&mesh, points);
+        for (int rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_EVEN; rule++) {
+            skinslide_patch_setup choices = SKINSLIDE_PATCH_SETUP_DEFAULT;
+            choices.rule = (skinslide_rule)rule;
+            rig r = rig_of(&mesh, choices);
+            double largest_slide;
+            float *slid = slide_with(&r, &mesh, points, NULL, NULL);
+            double worst = largest_error(&r, &mesh, points, slid, &largest_slide);
+            assert_true(worst < coarseness && (side == SIDE / 2 || worst < 0.6 * before[rule]));
+            before[rule] = worst;
+            free(slid);
+            free_rig(&r);
+        }
+        free(points);
+        free_mesh(&mesh);
+    }
+}
+
 /* A tiny slide turns hardly at all, and a slide half as far half as much: there is no jump at 0. */
 static void a_tiny_slide_turns_a_tiny_bit(void **state) {
     (void)state;
@@ -252,9 +298,10 @@ static void arguments_that_are_none(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_slid_turns_nothing),    cmocka_unit_test(carried_where_normals_are_known),
-        cmocka_unit_test(a_tiny_slide_turns_a_tiny_bit), cmocka_unit_test(overlapping_patches),
-        cmocka_unit_test(welded_points_turn_as_one),     cmocka_unit_test(arguments_that_are_none),
+        cmocka_unit_test(nothing_slid_turns_nothing),  cmocka_unit_test(carried_where_normals_are_known),
+        cmocka_unit_test(as_near_as_the_mesh_is_fine), cmocka_unit_test(a_tiny_slide_turns_a_tiny_bit),
+        cmocka_unit_test(overlapping_patches),         cmocka_unit_test(welded_points_turn_as_one),
+        cmocka_unit_test(arguments_that_are_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
