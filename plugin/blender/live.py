@@ -125,7 +125,7 @@ def _say(thing: bpy.types.Object, said: str) -> None:
     own = settings.of(thing)
     if own.problem != said:
         own.problem = said
-        if said and not bpy.app.background:
+        if said and work.interactive():
             bpy.app.timers.register(lambda: bpy.ops.skinslide.say(text=said) and None)
 
 

@@ -17,9 +17,14 @@ INTERVAL = 1 / 60  # seconds from one look to the next
 PATIENCE = 0.02  # seconds that a frame may take before Blender goes on without it
 
 
+def interactive() -> bool:
+    """Whether there is an interface to keep in use."""
+    return not bpy.app.background
+
+
 def patience() -> float | None:
     """How long to wait for work; None: until it is done, as for pictures, and where there is no interface."""
-    return None if bpy.app.background or bpy.app.is_job_running("RENDER") else PATIENCE
+    return PATIENCE if interactive() and not bpy.app.is_job_running("RENDER") else None
 
 
 def start(work: Callable[..., Any], *arguments: Any) -> Future[Any]:
@@ -71,7 +76,7 @@ class Waiting(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Begins, and waits for the work; of a script does all at once."""
-        if self.options.is_invoke and not bpy.app.background:
+        if self.options.is_invoke and interactive():
             return self._guarded(lambda: self._begun(context))
         return self._guarded(lambda: self._written(context, self._worked(self._fetched(context))))
 

@@ -79,6 +79,23 @@ def test_export_again_changes_what_is_blenders_alone(tmp_path):
     assert "SkinSlideAPI:a" in text and "SkinSlideAPI:b" not in text and ":b:" not in text and "kept" in text
 
 
+def test_an_import_is_undone(tmp_path):
+    thing = sheet()
+    painted(thing)
+    path = tmp_path / "x.skinslide"
+    bpy.ops.skinslide.export_setup(filepath=str(path))
+    sheet(name="other")
+    bpy.ops.ed.undo_push(message="before")
+    before = held(bpy.data.objects["other"])
+    bpy.ops.skinslide.import_setup(filepath=str(path))
+    after = held(bpy.data.objects["other"])
+    bpy.ops.ed.undo_push(message="import")
+    bpy.ops.ed.undo()
+    assert held(bpy.data.objects["other"]) == before != after and not bpy.data.objects["other"].skinslide.patches
+    bpy.ops.ed.redo()
+    assert held(bpy.data.objects["other"]) == after
+
+
 def test_what_cannot_be_imported(tmp_path):
     thing = sheet()
     make_patch(thing)

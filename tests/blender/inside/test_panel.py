@@ -1,8 +1,10 @@
-"""The panel: all that it shows is there; and the switch where Blender does not wait."""
+"""The panel: all that it shows is there; and operators and frames where Blender does not wait."""
 
 from __future__ import annotations
 
+import threading
 import time
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -11,6 +13,7 @@ from bl_ext.user_default.skinslide import live, work
 from bl_ext.user_default.skinslide.panel import SKINSLIDE_PT_panel
 
 from sheets import make_patch, points, sheet
+from skinslide.problems import Fault
 
 
 class Layout:
@@ -109,3 +112,84 @@ def test_a_change_is_not_lost_with_its_frame(scene, impatient):
     work.patience = lambda: None
     bpy.ops.skinslide.live()
     assert points(thing.skinslide.slid).tobytes() == late.tobytes()
+
+
+# ---- Operators that wait ----
+
+
+class Operator:
+    """What Waiting does, on an object of ours: Blender makes operators itself, of events, of which there are none."""
+
+    for _name in ("execute", "modal", "_fetched", "_worked", "_begun", "_written", "_guarded"):
+        locals()[_name] = getattr(work.Waiting, _name)
+
+    def __init__(self, work_apart):
+        self.work, self.written, self.reports = work_apart, [], []
+        self.options = SimpleNamespace(is_invoke=True)
+
+    def fetch(self, _context):
+        return self.work
+
+    def write(self, _context, found) -> str:
+        self.written.append(found)
+        return "done"
+
+    def report(self, kinds: set[str], text: str) -> None:
+        self.reports.append((kinds, text))
+
+
+class Window:
+    """A context that notes timers and who waits for them."""
+
+    active_object = None
+    window = None
+
+    def __init__(self):
+        self.window_manager, self.timers, self.waiting = self, [], []
+
+    def event_timer_add(self, interval: float, window) -> object:
+        self.timers.append(object())
+        return self.timers[-1]
+
+    def event_timer_remove(self, timer: object) -> None:
+        self.timers.remove(timer)
+
+    def modal_handler_add(self, operator: Operator) -> None:
+        self.waiting.append(operator)
+
+
+def ended(operator: Operator, window: Window) -> set[str]:
+    until = time.monotonic() + 20
+    while time.monotonic() < until:
+        found = operator.modal(window, SimpleNamespace(type="TIMER"))
+        if found != {"PASS_THROUGH"}:
+            return found
+        time.sleep(0.01)
+    raise AssertionError("it never ends")
+
+
+def test_an_operator_leaves_blender_in_use(monkeypatch):
+    """It begins, lets events pass, and writes once its work is done."""
+    monkeypatch.setattr(work, "interactive", lambda: True)
+    go, window = threading.Event(), Window()
+    operator = Operator(lambda: go.wait(20) and "found")
+    assert operator.execute(window) == {"RUNNING_MODAL"}
+    assert window.waiting == [operator] and len(window.timers) == 1
+    assert operator.modal(window, SimpleNamespace(type="MOUSEMOVE")) == {"PASS_THROUGH"}
+    assert operator.modal(window, SimpleNamespace(type="TIMER")) == {"PASS_THROUGH"} and not operator.written
+    go.set()
+    assert ended(operator, window) == {"FINISHED"}
+    assert operator.written == ["found"] and not window.timers and operator.reports == [({"INFO"}, "done")]
+
+
+def test_what_fails_apart_is_reported(monkeypatch):
+    def fails():
+        raise Fault("there is no patch to slide")
+
+    monkeypatch.setattr(work, "interactive", lambda: True)
+    operator, window = Operator(fails), Window()
+    assert operator.execute(window) == {"RUNNING_MODAL"}
+    assert ended(operator, window) == {"CANCELLED"}
+    assert (
+        operator.reports == [({"ERROR"}, "there is no patch to slide")] and not operator.written and not window.timers
+    )
