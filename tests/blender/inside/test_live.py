@@ -132,12 +132,8 @@ def test_it_is_undone(scene):
     assert points(thing.skinslide.slid).tobytes() == slid_now(thing).tobytes()
 
 
-def test_a_picture(scene, out):
-    """Rendered at the worst frame, in false colours: the slid skin is seen, and the cached is not."""
-    thing = sheet(24)
-    make_patch(thing)
-    thing.skinslide.most_stretch = 0.3
-    bpy.ops.skinslide.live()
+def set_the_scene(scene, size: int) -> None:
+    """A camera above the sheet, and a light."""
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.location, camera.rotation_euler = (0.1, -0.2, 1.9), (0.05, 0, 0)
     light = bpy.data.objects.new("light", bpy.data.lights.new("light", "SUN"))
@@ -145,9 +141,43 @@ def test_a_picture(scene, out):
         scene.collection.objects.link(each)
     scene.camera, scene.render.engine = camera, "CYCLES"
     scene.cycles.samples, scene.cycles.device = 4, "CPU"
-    scene.render.resolution_x = scene.render.resolution_y = 192
+    scene.render.resolution_x = scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
+
+
+def test_a_picture(scene, out):
+    """Rendered at the worst frame, in false colours: the slid skin is seen, and the cached is not."""
+    thing = sheet(24)
+    make_patch(thing)
+    thing.skinslide.most_stretch = 0.3
+    bpy.ops.skinslide.live()
+    set_the_scene(scene, 192)
     scene.frame_set(1003)
     scene.render.filepath = str(out / "slid.png")
     bpy.ops.render.render(write_still=True)
     assert (out / "slid.png").stat().st_size > 4000
+
+
+def test_an_animation(scene, tmp_path):
+    """Each frame of a render has what that frame slides to, as a picture of it alone has."""
+    thing = sheet()
+    make_patch(thing)
+    bpy.ops.skinslide.live()
+    set_the_scene(scene, 32)
+    scene.render.filepath = str(tmp_path / "frame")
+    bpy.ops.render.render(animation=True)
+    frames = [tmp_path / f"frame{frame}.png" for frame in (1001, 1002, 1003)]
+    assert len({each.read_bytes() for each in frames}) == 3
+    for frame, rendered in zip((1002, 1003), frames[1:], strict=True):
+        scene.frame_set(frame)
+        scene.render.filepath = str(tmp_path / "alone.png")
+        bpy.ops.render.render(write_still=True)
+        assert pixels(tmp_path / "alone.png") == pixels(rendered)
+
+
+def pixels(path) -> list[float]:
+    image = bpy.data.images.load(str(path))
+    try:
+        return list(image.pixels)
+    finally:
+        bpy.data.images.remove(image)
