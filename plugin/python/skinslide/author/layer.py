@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import secrets
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,6 +17,7 @@ from skinslide.stage.sources import EXTENSION
 from skinslide.write.place import (
     Changed,
     State,
+    asset_path,
     check_not_input,
     check_not_read,
     check_output,
@@ -92,11 +92,6 @@ def describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
         layer.pseudoRoot.SetInfo(field, root.GetInfo(field))
     # Without these a layer counts as 24, whatever it sublayers, and its sublayers' times are scaled to that.
     layer.timeCodesPerSecond, layer.framesPerSecond = stage.GetTimeCodesPerSecond(), stage.GetFramesPerSecond()
-
-
-def asset_path(path: Path, output: Path) -> str:
-    relative = os.path.relpath(path.resolve(), output.resolve().parent)
-    return relative if relative.startswith("..") else f"./{relative}"
 
 
 def _write(layer: Sdf.Layer, output: Path, before: State, force: bool) -> None:

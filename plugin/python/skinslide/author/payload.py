@@ -10,11 +10,11 @@ from pathlib import Path
 
 from pxr import Sdf, Tf, Usd
 
-from skinslide.author.layer import EXTENSIONS, asset_path, describe, in_the_way
+from skinslide.author.layer import EXTENSIONS, describe, in_the_way
 from skinslide.problems import UsageError
 from skinslide.stage.given import StageLike, StrPath, given_file, given_stage
 from skinslide.stage.sources import EXTENSION
-from skinslide.write.place import check_not_input, check_output, given_output, replacing, saved, writing
+from skinslide.write.place import asset_path, check_not_input, check_output, given_output, replacing, saved, writing
 
 
 class PayloadLayer:

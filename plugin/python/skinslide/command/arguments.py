@@ -374,6 +374,11 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
         help="those that the chunks must have, no more and no less, such as 1001:1024 (default: those of which --chunk "
         "made parts, else all of the shot between the first and the last)",
     )
+    command.add_argument(
+        "--clips",
+        action="store_true",
+        help="write value clips over the chunks, which stay, instead of copying their samples, with OUT.manifest.usda",
+    )
     _add_printing(command)
 
 

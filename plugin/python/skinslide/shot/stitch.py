@@ -5,14 +5,14 @@ each alone                             whole, by its own record, and not being w
 each with the first                    records, clocks, attributes, defaults, and samples of frames that several have
 all of them                            no frame is left out
 block what any chunk blocks            as a bake of all the frames would have
-stitch, and put the layer in place
+stitch, or write value clips over the chunks, and put the layer in place
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +23,10 @@ from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
+from skinslide.write.clips import Clip, block, write_clips
 from skinslide.write.overs import EXTENSIONS
 from skinslide.write.place import check_output, given_output, replacing, saved, state, writing
-from skinslide.write.record import MeshRecord, Record
+from skinslide.write.record import Record, joined
 
 # Fields of a chunk that say what is in it.
 _OWN_FIELDS = {"primChildren", "comment", "customLayerData"}
@@ -60,7 +61,9 @@ class StitchReport:
         return lines_text([f"{meshes}, {len(self.frames)} frames{first_to_last}", *map(str, self.problems)])
 
 
-def stitch(chunks: Iterable[StrPath], output: StrPath, *, frames: FramesLike | None = None) -> StitchReport:
+def stitch(
+    chunks: Iterable[StrPath], output: StrPath, *, frames: FramesLike | None = None, clips: bool = False
+) -> StitchReport:
     """Writes one layer with the samples of several that were baked from one stage: the layer of one bake.
 
     Args:
@@ -68,6 +71,8 @@ def stitch(chunks: Iterable[StrPath], output: StrPath, *, frames: FramesLike | N
         output: The layer: .usda, .usdc or .usd, written whole or not at all.
         frames: Those that the chunks must have, no more and no less; None: those of which they say that they are
             parts, or else all of the shot from the first to the last that they have.
+        clips: Writes value clips over the chunks, which stay where they are, instead of copying what they hold; and a
+            manifest beside the layer, of its name and .manifest.usda. USD reads the same samples.
 
     Returns:
         What the layer holds.
@@ -91,7 +96,10 @@ def stitch(chunks: Iterable[StrPath], output: StrPath, *, frames: FramesLike | N
     if problems:
         raise StageProblems(problems)
     opened.sort(key=lambda chunk: chunk.record.frames)
-    _write(opened, sorted(blocked), stitched)
+    if clips:
+        write_clips([Clip(chunk.path, chunk.layer, chunk.record) for chunk in opened], sorted(blocked), stitched)
+    else:
+        _write(opened, sorted(blocked), stitched)
     return _report(opened, blocked)
 
 
@@ -274,30 +282,12 @@ def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) 
         for chunk in chunks:
             UsdUtils.StitchLayers(layer, chunk.layer)
             _save(layer, output)  # a crate file takes what is saved out of memory
-        for path in blocked:
-            spec = layer.GetAttributeAtPath(path)
-            spec.ClearInfo("timeSamples")
-            spec.default = Sdf.ValueBlock()
-        _joined([chunk.record for chunk in chunks]).write(layer)
+        block(layer, blocked)
+        joined([chunk.record for chunk in chunks]).write(layer)
         _save(layer, output)
         changed = [problem for chunk in chunks for problem in chunk.changes()]
         if changed:
             raise StageProblems(changed)
-
-
-def _joined(records: Sequence[Record]) -> Record:
-    """That of one bake of all frames."""
-    meshes: dict[str, MeshRecord] = {}
-    for record in records:
-        for path, mesh in record.meshes.items():
-            known = meshes.get(path, mesh)
-            meshes[path] = replace(known, frames=tuple(sorted({*known.frames, *mesh.frames})))
-    common = [record.options for record in records]
-    options = {name: value for name, value in common[0].items() if all(each.get(name) == value for each in common)}
-    framed = [record for record in records if record.frames]
-    before = min(framed, key=lambda record: record.frames[0]).before if framed else None
-    after = max(framed, key=lambda record: record.frames[-1]).after if framed else None
-    return replace(records[0].whole(), meshes=dict(sorted(meshes.items())), options=options, before=before, after=after)
 
 
 def _save(layer: Sdf.Layer, output: Path) -> None:

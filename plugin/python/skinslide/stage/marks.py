@@ -23,7 +23,11 @@ def has_values(spec: Sdf.PropertySpec) -> bool:
 
 
 def baked_layer(prim: Usd.Prim) -> Sdf.Layer | None:
-    """The layer of an earlier bake that the points of a mesh, or their default value, come from."""
-    opinions = [spec for spec in UsdGeom.PointBased(prim).GetPointsAttr().GetPropertyStack() if has_values(spec)]
+    """The layer of an earlier bake that the points of a mesh, or their default value, come from.
+
+    Be it through value clips: then what is marked there has no values of its own.
+    """
+    stack = UsdGeom.PointBased(prim).GetPointsAttr().GetPropertyStack()
+    opinions = [spec for spec in stack if has_values(spec) or is_marked(spec)]
     strongest = opinions[:1] + [spec for spec in opinions if spec.HasInfo("default")][:1]
     return next((spec.layer for spec in strongest if is_marked(spec)), None)

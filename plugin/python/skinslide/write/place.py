@@ -165,6 +165,12 @@ def _clips(template: UsdUtils.DependencyInfo) -> list[str]:
     return [file for file in template.dependencies if wanted.fullmatch(file)]
 
 
+def asset_path(path: Path, output: Path) -> str:
+    """By which a layer that is written names another file, wherever the two are moved together."""
+    relative = os.path.relpath(path.resolve(), output.resolve().parent)
+    return relative if relative.startswith("..") else f"./{relative}"
+
+
 State: TypeAlias = tuple[int, ...] | None
 
 

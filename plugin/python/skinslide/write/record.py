@@ -91,6 +91,21 @@ class Record:
         return cls(meshes, told["options"], *ends, told.get("chunk", ""), wanted, told["version"])
 
 
+def joined(records: Sequence[Record]) -> Record:
+    """That of one bake of all frames."""
+    meshes: dict[str, MeshRecord] = {}
+    for record in records:
+        for path, mesh in record.meshes.items():
+            known = meshes.get(path, mesh)
+            meshes[path] = replace(known, frames=tuple(sorted({*known.frames, *mesh.frames})))
+    common = [record.options for record in records]
+    options = {name: value for name, value in common[0].items() if all(each.get(name) == value for each in common)}
+    framed = [record for record in records if record.frames]
+    before = min(framed, key=lambda record: record.frames[0]).before if framed else None
+    after = max(framed, key=lambda record: record.frames[-1]).after if framed else None
+    return replace(records[0].whole(), meshes=dict(sorted(meshes.items())), options=options, before=before, after=after)
+
+
 def _mesh(told: dict[str, Any]) -> MeshRecord:
     frames = tuple(told.pop("frames"))
     return MeshRecord(told, frames)

@@ -1,0 +1,102 @@
+"""Value clips over chunks: USD reads through them what it reads of the layer that copies all samples."""
+
+import json
+
+import numpy as np
+import pytest
+from pxr import Sdf, Usd
+from test_chunks import FRAMES, SHORT, STILL, parts, ranges, saved_shot
+
+import stages
+from skinslide import StageProblems, UsageError, bake_to_file, check, stitch
+from skinslide.command.cli import main
+from stages import MESH
+
+MESHES = (MESH, SHORT, STILL)
+
+
+@pytest.fixture
+def shot(tmp_path):
+    return saved_shot(tmp_path / "shot.usda")
+
+
+def above(layer, shot) -> Usd.Stage:
+    root = Sdf.Layer.CreateAnonymous(".usda")
+    root.timeCodesPerSecond = 24
+    root.subLayerPaths = [str(layer), str(shot)]
+    stage = Usd.Stage.Open(root)
+    stage.held = root
+    return stage
+
+
+def values(stage: Usd.Stage) -> dict:
+    """Of every attribute of every mesh: its samples, and its values at and between them, and beyond."""
+    found = {}
+    times = [FRAMES[0] - 1, *FRAMES, *(frame + 0.25 for frame in FRAMES)]
+    for path in MESHES:
+        for attribute in stage.GetPrimAtPath(path).GetAttributes():
+            read = [attribute.Get(Usd.TimeCode(time)) for time in times]
+            contents = [None if value is None else np.array(value).tobytes() for value in read]
+            found[f"{path}.{attribute.GetName()}"] = (attribute.GetTimeSamples(), contents)
+    return found
+
+
+def assert_same(chunks, shot, folder) -> None:
+    stitch(chunks, folder / "joined.usdc")
+    report = stitch(chunks, folder / "out.usda", clips=True)
+    assert report.frames == FRAMES
+    assert values(above(folder / "out.usda", shot)) == values(above(folder / "joined.usdc", shot))
+    assert not Sdf.Layer.OpenAsAnonymous(str(folder / "out.usda")).ListAllTimeSamples()
+
+
+@pytest.mark.parametrize("count", [1, 3, 8])
+def test_clips_are_the_joined_layer(count, shot, tmp_path):
+    chunks = parts(shot, tmp_path, count, diagnostics=True)
+    assert_same(chunks[::-1], shot, tmp_path)
+
+
+def test_overlaps(shot, tmp_path):
+    assert_same(ranges(shot, tmp_path, "1001-1005", "1004", "1003-1008"), shot, tmp_path)
+
+
+def test_what_is_blocked(tmp_path):
+    def edit(stage):
+        velocities = stage.GetPrimAtPath(MESH).GetAttribute("velocities")
+        velocities.Set(stages.vectors(np.zeros((5, 3))), FRAMES[-1])
+
+    shot = saved_shot(tmp_path / "shot.usda", edit)
+    assert_same(ranges(shot, tmp_path, "1001-1004", "1005-1008"), shot, tmp_path)
+
+
+def test_they_are_moved_together(shot, tmp_path):
+    (tmp_path / "a").mkdir()
+    stitch(parts(shot, tmp_path / "a"), tmp_path / "a" / "out.usda", clips=True)
+    expected = values(above(tmp_path / "a" / "out.usda", shot))
+    (tmp_path / "a").rename(tmp_path / "b")
+    assert values(above(tmp_path / "b" / "out.usda", shot)) == expected
+
+
+def test_a_bake_does_not_slide_clips_of_a_bake(shot, tmp_path):
+    stitch(parts(shot, tmp_path), tmp_path / "out.usda", clips=True)
+    stage = above(tmp_path / "out.usda", shot)
+    assert check(stage).failed
+    with pytest.raises(StageProblems, match=r"out\.usda"):
+        bake_to_file(stage, tmp_path / "again.usda")
+
+
+def test_what_does_not_fit_is_refused(shot, tmp_path):
+    chunks = parts(shot, tmp_path)
+    with pytest.raises(StageProblems, match="2 frames are in none"):
+        stitch(chunks[1:], tmp_path / "out.usda", clips=True)
+    assert not list(tmp_path.glob("out.*"))
+    stitch(chunks, tmp_path / "out.usda", clips=True)
+    with pytest.raises((StageProblems, UsageError), match=r"out\.usda"):
+        stitch([tmp_path / "out.usda"], tmp_path / "more.usda")
+
+
+def test_command(shot, tmp_path, capfd):
+    chunks = parts(shot, tmp_path)
+    out = tmp_path / "out.usda"
+    assert main(["stitch", *map(str, chunks), "-o", str(out), "--clips", "--json"]) == 0
+    assert json.loads(capfd.readouterr().out)["frames"] == FRAMES
+    assert sorted(path.name for path in tmp_path.glob("out.*")) == ["out.manifest.usda", "out.usda"]
