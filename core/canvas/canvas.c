@@ -31,9 +31,11 @@ static skinslide_status check_options(const skinslide_canvas_options *options, s
     return ss_egl_check_device(options->device, error);
 }
 
-static skinslide_status check_limits(const skinslide_canvas *canvas, skinslide_error *error) {
+static skinslide_status check_limits(skinslide_canvas *canvas, skinslide_error *error) {
     const ss_egl_api *gl = &canvas->egl->api;
     GLint most = 0;
+    gl->glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+    canvas->largest_texture = most < SKINSLIDE_LARGEST_MAP ? most : SKINSLIDE_LARGEST_MAP;
     gl->glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
     if (canvas->width > most || canvas->height > most)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a picture of %d by %d pixels is above the device's limit of %d",
@@ -63,7 +65,7 @@ static skinslide_status make_framebuffers(skinslide_canvas *canvas, skinslide_er
     gl->glGenFramebuffers(1, &canvas->drawn);
     gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
     attach(canvas, GL_COLOR_ATTACHMENT0, colour, SAMPLES);
-    attach(canvas, GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, SAMPLES);
+    attach(canvas, GL_DEPTH_STENCIL_ATTACHMENT, GL_DEPTH24_STENCIL8, SAMPLES);
     if (state == GL_FRAMEBUFFER_COMPLETE)
         state = gl->glCheckFramebufferStatus(GL_FRAMEBUFFER);
     gl->glEnable(GL_DEPTH_TEST);

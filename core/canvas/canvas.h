@@ -1,4 +1,5 @@
-/* A canvas from inside: canvas.c makes, clears and reads it, figure.c draws figures on it with what shading.c makes. */
+/* A canvas from inside: canvas.c makes, clears and reads it; figure.c draws figures on it, surface.c their surfaces and strokes.c
+ * what is drawn on these, with what shading.c makes. */
 #ifndef SKINSLIDE_CANVAS_H
 #define SKINSLIDE_CANVAS_H
 
@@ -8,25 +9,61 @@
 /* A program and its uniforms. */
 typedef struct ss_surface_program {
     GLuint program;
-    GLint to_clip, turn_normal, scale, encoded, colours;
+    GLint to_clip, turn_normal, scale, encoded, colours; /* -1: it has none */
 } ss_surface_program;
 
 /* Objects that draw figures. */
 typedef struct ss_figure_objects {
-    ss_surface_program chequer, false_colours;
-    GLuint outline_program;
-    GLint outline_to_clip, half_width, line_colour; /* its uniforms */
-    GLuint surface_array, outline_array;
+    ss_surface_program chequer, false_colours, tile;
+    GLuint stroke_program;
+    GLint stroke_to_clip, pen, line_colour; /* its uniforms */
+    GLuint surface_array, stroke_array;
     GLuint fixed_buffer, posed_buffer, triangle_buffer, segment_buffer;
 } ss_figure_objects;
 
 struct skinslide_canvas {
     ss_egl *egl;
-    int32_t width, height;
+    int32_t width, height, largest_texture;
     skinslide_pixels pixels;
     GLuint drawn, resolved; /* framebuffers: of several samples a pixel, and of one */
     ss_figure_objects objects;
 };
+
+/* Lines of one colour. */
+typedef struct ss_stroke {
+    int32_t count;
+    float (*ends)[2][3]; /* [count] less the origin; where both are one, a dot */
+    float width;         /* in lines of the outline */
+    float nearer;        /* brought towards the camera, in its depth */
+    float light[3];
+} ss_stroke;
+
+enum { SS_WIRE, SS_OUTLINE, SS_WAYS, SS_ENDS_OF_WAYS, SS_PINS, SS_STROKES };
+
+/* One call of skinslide_canvas_draw. */
+typedef struct ss_drawing {
+    const skinslide_canvas *canvas;
+    const skinslide_viewport *viewport;
+    const skinslide_figure *figure;
+    const skinslide_tessellation *mesh;
+    const skinslide_outline *outline;
+    skinslide_colour_tile *tiles; /* [figure->tile_count] */
+    GLuint *textures;             /* [figure->tile_count] */
+    ss_view view;
+    ss_tessellation_work work;
+    double origin[3];
+    uint8_t *in_sight;        /* [mesh->grid_count] */
+    uint32_t (*triangles)[3]; /* [triangle_count] of grids in sight, of room for all; with ghosts the patch's first */
+    int32_t triangle_count, inside_count;
+    ss_stroke strokes[SS_STROKES]; /* drawn in order */
+    float line;                    /* pixels that the outline is wide */
+} ss_drawing;
+
+/* In the work's memory, from its vertices. False where memory is short. */
+bool ss_list_strokes(ss_drawing *drawn);
+void ss_draw_strokes(const ss_drawing *drawn);
+/* With ghosts, the strokes too, which are under these. */
+void ss_draw_surface(const ss_drawing *drawn);
 
 /* The context is current. */
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);

@@ -1,34 +1,17 @@
-/* Draws figures: a surface under a light beside the camera, chequered or in false colours, then the outline of its patch. */
+/* Draws figures: what of one is in sight is posed and listed, then drawn. */
 #include "canvas.h"
+
+#include "paint.h"
 
 #include <math.h>
 #include <string.h>
-
-static const float outline_light[3] = {0.90f, 0.22f, 0.02f};
-
-/* One call of skinslide_canvas_draw. */
-typedef struct drawing {
-    const skinslide_canvas *canvas;
-    const skinslide_figure *figure;
-    const skinslide_tessellation *mesh;
-    const skinslide_outline *outline;
-    ss_view view;
-    ss_tessellation_work work;
-    double origin[3];
-    uint8_t *in_sight;        /* [mesh->grid_count] */
-    uint32_t (*triangles)[3]; /* [triangle_count] of grids in sight, of room for all */
-    int32_t triangle_count;
-    float (*ends)[2][3]; /* [outline->segment_count] */
-    float line;          /* pixels that the outline is wide */
-    float line_on_screen[2];
-} drawing;
 
 /* ---- What is in sight ---- */
 
 enum { LEEWAY = 20 }; /* percent: surfaces that OpenSubdiv fits may leave the hull of the vertices that make them */
 
 /* A bit for each side of the view that a vertex is beyond. */
-static unsigned beyond(const drawing *drawn, int32_t vertex) {
+static unsigned beyond(const ss_drawing *drawn, int32_t vertex) {
     const float *to_clip = drawn->view.to_clip, *point = drawn->figure->points + 3 * (int64_t)vertex;
     double clip[4];
     unsigned sides = 0;
@@ -44,7 +27,7 @@ static unsigned beyond(const drawing *drawn, int32_t vertex) {
 }
 
 /* False where all vertices that make it are beyond the same side of the view. What has the outline always is. */
-static bool in_sight(const drawing *drawn, const ss_grid *grid) {
+static bool in_sight(const ss_drawing *drawn, const ss_grid *grid) {
     const skinslide_tessellation *mesh = drawn->mesh;
     const int32_t *vertices = mesh->corner_vertex + mesh->face_start[grid->face];
     int32_t count = grid->side ? ss_limit_vertices(mesh->surfaces, grid->surface, &vertices) : ss_face_size(mesh, grid->face);
@@ -64,7 +47,7 @@ static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
 }
 
 /* Close to a patch, most of a mesh is out of sight. It is not posed, but where what is in sight has places of it. */
-static void skip_out_of_sight(drawing *drawn) {
+static void skip_out_of_sight(ss_drawing *drawn) {
     const skinslide_tessellation *mesh = drawn->mesh;
     for (int32_t p = 0; p < mesh->grid_count; p++) {
         drawn->in_sight[p] = in_sight(drawn, &mesh->grids[p]);
@@ -78,18 +61,29 @@ static void skip_out_of_sight(drawing *drawn) {
     }
 }
 
-static void list_triangles(drawing *drawn) {
+/* Of the grids in sight whose faces are inside, or are not; or of both. */
+static void list_triangles(ss_drawing *drawn, bool inside, bool outside) {
     for (int32_t p = 0, first = 0; p < drawn->mesh->grid_count; p++) {
-        int32_t own = ss_grid_triangles(drawn->mesh, &drawn->mesh->grids[p]);
-        if (drawn->in_sight[p])
+        const ss_grid *grid = &drawn->mesh->grids[p];
+        int32_t own = ss_grid_triangles(drawn->mesh, grid);
+        if (drawn->in_sight[p] && (drawn->outline->inside[grid->face] ? inside : outside)) {
             memcpy(drawn->triangles + drawn->triangle_count, drawn->mesh->triangles + first,
                    (size_t)own * sizeof *drawn->triangles);
-        drawn->triangle_count += drawn->in_sight[p] ? own : 0;
+            drawn->triangle_count += own;
+        }
         first += own;
     }
 }
 
-static void mark_inside(drawing *drawn) {
+static void order_triangles(ss_drawing *drawn) {
+    bool apart = drawn->figure->ghosts;
+    list_triangles(drawn, true, !apart);
+    drawn->inside_count = drawn->triangle_count;
+    if (apart)
+        list_triangles(drawn, false, true);
+}
+
+static void mark_inside(ss_drawing *drawn) {
     for (int32_t p = 0; p < drawn->mesh->grid_count; p++) {
         const ss_grid *grid = &drawn->mesh->grids[p];
         for (int32_t v = 0; v < ss_grid_size(drawn->mesh, grid) && drawn->in_sight[p]; v++)
@@ -97,72 +91,9 @@ static void mark_inside(drawing *drawn) {
     }
 }
 
-static void list_ends(drawing *drawn) {
-    const skinslide_outline *outline = drawn->outline;
-    for (int32_t i = 0; i < outline->segment_count; i++)
-        for (int end = 0; end < 2; end++)
-            memcpy(drawn->ends[i][end], drawn->work.vertices[outline->segments[i][end]].place, sizeof drawn->ends[i][end]);
-}
-
-/* ---- Drawing ---- */
-
-static void fill(const ss_egl_api *gl, GLenum target, GLuint buffer, const void *data, int64_t count, size_t size) {
-    gl->glBindBuffer(target, buffer);
-    gl->glBufferData(target, (GLsizeiptr)count * (GLsizeiptr)size, data, GL_STREAM_DRAW);
-}
-
-static void set_surface(const drawing *drawn) {
-    const ss_egl_api *gl = &drawn->canvas->egl->api;
-    const skinslide_figure *figure = drawn->figure;
-    const ss_surface_program *own = figure->values ? &drawn->canvas->objects.false_colours : &drawn->canvas->objects.chequer;
-    float turn_normal[9];
-    for (int i = 0; i < 9; i++)
-        turn_normal[i] = figure->left_handed ? -drawn->view.turn_normal[i] : drawn->view.turn_normal[i];
-    gl->glUseProgram(own->program);
-    gl->glUniformMatrix4fv(own->to_clip, 1, GL_FALSE, drawn->view.to_clip);
-    gl->glUniformMatrix3fv(own->turn_normal, 1, GL_FALSE, turn_normal);
-    gl->glUniform1i(own->encoded, drawn->canvas->pixels == SKINSLIDE_PIXELS_BYTES);
-    if (figure->values)
-        gl->glUniform2f(own->scale, figure->lowest, 1 / (figure->highest - figure->lowest));
-    else
-        gl->glUniform2f(own->scale, figure->squares, drawn->mesh->in_space);
-}
-
-static void draw_surface(const drawing *drawn) {
-    const ss_egl_api *gl = &drawn->canvas->egl->api;
-    const ss_figure_objects *objects = &drawn->canvas->objects;
-    const skinslide_tessellation *mesh = drawn->mesh;
-    const skinslide_figure *figure = drawn->figure;
-    set_surface(drawn);
-    gl->glBindVertexArray(objects->surface_array);
-    fill(gl, GL_ARRAY_BUFFER, objects->fixed_buffer, mesh->fixed, mesh->vertex_count, sizeof *mesh->fixed);
-    fill(gl, GL_ARRAY_BUFFER, objects->posed_buffer, drawn->work.vertices, mesh->vertex_count, sizeof *drawn->work.vertices);
-    fill(gl, GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer, drawn->triangles, drawn->triangle_count,
-         sizeof *drawn->triangles);
-    gl->glEnable(GL_POLYGON_OFFSET_FILL); /* behind its outline, however it slopes along the width of the line */
-    gl->glPolygonOffset(drawn->line, 4);
-    (figure->double_sided ? gl->glDisable : gl->glEnable)(GL_CULL_FACE);
-    gl->glFrontFace(drawn->view.mirrored == (figure->left_handed != 0) ? GL_CCW : GL_CW);
-    gl->glDrawElements(GL_TRIANGLES, 3 * drawn->triangle_count, GL_UNSIGNED_INT, NULL);
-    gl->glDisable(GL_CULL_FACE);
-    gl->glDisable(GL_POLYGON_OFFSET_FILL);
-}
-
-static void draw_outline(const drawing *drawn) {
-    const ss_egl_api *gl = &drawn->canvas->egl->api;
-    const ss_figure_objects *objects = &drawn->canvas->objects;
-    float colour[3];
-    ss_canvas_colour(drawn->canvas, outline_light, colour);
-    gl->glUseProgram(objects->outline_program);
-    gl->glUniformMatrix4fv(objects->outline_to_clip, 1, GL_FALSE, drawn->view.to_clip);
-    gl->glUniform2f(objects->half_width, drawn->line_on_screen[0] / 2, drawn->line_on_screen[1] / 2);
-    gl->glUniform3fv(objects->line_colour, 1, colour);
-    gl->glBindVertexArray(objects->outline_array);
-    fill(gl, GL_ARRAY_BUFFER, objects->segment_buffer, drawn->ends, drawn->outline->segment_count, sizeof *drawn->ends);
-    gl->glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, drawn->outline->segment_count);
-}
-
 /* ---- What can be drawn ---- */
+
+enum { MOST_TILES = 1000, WIDEST = 1000 };
 
 static skinslide_status check_paint(const skinslide_figure *figure, skinslide_error *error) {
     float range = figure->highest - figure->lowest;
@@ -171,6 +102,12 @@ static skinslide_status check_paint(const skinslide_figure *figure, skinslide_er
     if (figure->values && !(range > 0 && isnormal(range) && isnormal(1 / range)))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a scale from %g to %g", (double)figure->lowest, (double)figure->highest);
     skinslide_status status = SKINSLIDE_OK;
+    if (!(figure->line >= 0 && figure->line <= WIDEST))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "lines %g times as wide as usual; they may be 0 to %d",
+                       (double)figure->line, WIDEST);
+    if (figure->tile_count < 0 || figure->tile_count > MOST_TILES || (figure->tile_count > 0 && !figure->tiles))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "%d tiles of a texture; there may be 0 to %d", figure->tile_count,
+                       MOST_TILES);
     for (int32_t v = 0; figure->values && v < figure->tessellation->mesh_vertex_count && !status; v++)
         status = ss_check_value(v, figure->values[v], error);
     return status;
@@ -187,14 +124,40 @@ static skinslide_status check(const skinslide_canvas *canvas, const skinslide_vi
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the viewport is not on the canvas of %d by %d pixels", canvas->width,
                        canvas->height);
     skinslide_status status = check_paint(figure, error);
+    if (!status && figure->ways)
+        status = ss_check_points(figure->ways, figure->tessellation->mesh_vertex_count, "ways", error);
     return status ? status : ss_check_points(figure->points, figure->tessellation->mesh_vertex_count, "points", error);
+}
+
+static skinslide_status check_tile(const ss_drawing *drawn, const skinslide_colour_tile *tile, int32_t most,
+                                   skinslide_error *error) {
+    if (drawn->mesh->in_space)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no st for the tiles of a texture");
+    if (!tile->pixels || tile->number < SS_FIRST_TILE || tile->number >= SS_FIRST_TILE + SS_TILE_COLUMNS * SS_TILE_ROWS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has no pixels, or no place in a UDIM", tile->number);
+    if (tile->width < 1 || tile->height < 1 || tile->width > most || tile->height > most)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has %d by %d pixels; each side may have 1 to %d", tile->number,
+                       tile->width, tile->height, most);
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status take_tiles(ss_drawing *drawn, skinslide_error *error) {
+    const skinslide_colour_tile standard = SKINSLIDE_COLOUR_TILE_DEFAULT;
+    int32_t count = drawn->figure->tile_count;
+    drawn->tiles = SS_NEW(&drawn->work.memory, skinslide_colour_tile, count);
+    if (!drawn->tiles && count > 0)
+        return ss_out_of_memory(error);
+    skinslide_status status =
+        ss_take_all(drawn->figure->tiles, count, "skinslide_colour_tile", drawn->tiles, sizeof *drawn->tiles, &standard, error);
+    for (int32_t i = 0; i < count && !status; i++)
+        status = check_tile(drawn, &drawn->tiles[i], drawn->canvas->largest_texture, error);
+    return status;
 }
 
 /* ---- A figure ---- */
 
 /* All that needs no device. */
-static skinslide_status prepare(drawing *drawn, const skinslide_viewport *viewport, const skinslide_camera *camera,
-                                skinslide_error *error) {
+static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camera, skinslide_error *error) {
     const skinslide_figure *figure = drawn->figure;
     const skinslide_tessellation *mesh = drawn->mesh;
     ss_tessellation_work *work = &drawn->work;
@@ -204,18 +167,15 @@ static skinslide_status prepare(drawing *drawn, const skinslide_viewport *viewpo
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
     drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
     drawn->triangles = ss_new(&work->memory, mesh->triangle_count, sizeof *drawn->triangles);
-    drawn->ends = ss_new(&work->memory, drawn->outline->segment_count, sizeof *drawn->ends);
+    drawn->textures = SS_NEW(&work->memory, GLuint, figure->tile_count);
     if (!ss_tessellation_work_allocate(mesh, work))
         return ss_out_of_memory(error);
     skip_out_of_sight(drawn);
     ss_tessellate(mesh, figure->points, figure->values, drawn->origin, work);
-    list_triangles(drawn);
+    order_triangles(drawn);
     mark_inside(drawn);
-    list_ends(drawn);
-    drawn->line = fmaxf(1.5f, (float)viewport->height / 450);
-    drawn->line_on_screen[0] = 2 * drawn->line / (float)viewport->width;
-    drawn->line_on_screen[1] = 2 * drawn->line / (float)viewport->height;
-    return SKINSLIDE_OK;
+    drawn->line = fmaxf(1.5f, (float)drawn->viewport->height / 450) * (figure->line > 0 ? figure->line : 1);
+    return ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
 skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
@@ -227,16 +187,17 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
         status = check(canvas, viewport, camera, &own, error);
     if (status)
         return status;
-    drawing drawn = {.canvas = canvas, .figure = &own, .mesh = own.tessellation};
+    ss_drawing drawn = {.canvas = canvas, .figure = &own, .mesh = own.tessellation, .viewport = viewport};
     drawn.outline = own.outline ? own.outline : drawn.mesh->outline;
-    status = prepare(&drawn, viewport, camera, error);
+    status = take_tiles(&drawn, error);
+    if (!status)
+        status = prepare(&drawn, camera, error);
     if (!status)
         status = ss_gl_enter(canvas->egl, &before, error);
     if (!status) {
         canvas->egl->api.glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
         canvas->egl->api.glViewport(viewport->x, viewport->y, viewport->width, viewport->height);
-        draw_surface(&drawn);
-        draw_outline(&drawn);
+        ss_draw_surface(&drawn);
         status = ss_gl_leave(canvas->egl, &before, "drawing a figure", error);
     }
     ss_free(&drawn.work.memory);

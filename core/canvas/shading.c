@@ -1,4 +1,4 @@
-/* How figures look: the scale of false colours, the programs that draw surfaces and outlines, and what they are fed from. */
+/* How figures look: the scale of false colours, the programs that draw surfaces and strokes, and what they are fed from. */
 #include "canvas.h"
 
 #include <math.h>
@@ -84,39 +84,52 @@ static const char false_colour_fragment[] =
                      "    return inside > 0.5 ? found : plain;\n"
                      "}\n");
 
+/* A tile of a texture, whose lower left corner is at scale. */
+static const char tile_fragment[] = SURFACE_FRAGMENT("uniform vec2 scale;\n"
+                                                     "uniform sampler2D texels;\n"
+                                                     "vec3 base() {\n"
+                                                     "    vec2 p = coordinates.xy - scale;\n"
+                                                     "    vec3 found = texture(texels, vec2(p.x, 1.0 - p.y)).rgb;\n"
+                                                     "    if (any(lessThan(p, vec2(0.0))) || any(greaterThan(p, vec2(1.0))))\n"
+                                                     "        discard;\n"
+                                                     "    return found;\n"
+                                                     "}\n");
+
 /* Each segment is a strip as wide as the line, square at its ends. What of it is behind the near plane is cut off first: places
  * on the picture, on which its width is, have no meaning there. */
-static const char outline_vertex[] = "#version 300 es\n"
-                                     "uniform mat4 to_clip;\n"
-                                     "uniform vec2 half_width;\n"
-                                     "layout(location = 0) in vec3 begin;\n"
-                                     "layout(location = 1) in vec3 end;\n"
-                                     "void main() {\n"
-                                     "    vec4 a = to_clip * vec4(begin, 1.0), b = to_clip * vec4(end, 1.0);\n"
-                                     "    float a_ahead = a.z + a.w, b_ahead = b.z + b.w;\n"
-                                     "    if (max(a_ahead, b_ahead) <= 0.0) {\n"
-                                     "        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n"
-                                     "        return;\n"
-                                     "    }\n"
-                                     "    if (a_ahead < 0.0)\n"
-                                     "        a = mix(a, b, a_ahead / (a_ahead - b_ahead));\n"
-                                     "    else if (b_ahead < 0.0)\n"
-                                     "        b = mix(b, a, b_ahead / (b_ahead - a_ahead));\n"
-                                     "    vec2 along = (b.xy / b.w - a.xy / a.w) / half_width;\n"
-                                     "    along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);\n"
-                                     "    bool at_end = gl_VertexID > 1;\n"
-                                     "    vec2 aside = vec2(-along.y, along.x) * (gl_VertexID % 2 == 0 ? 1.0 : -1.0);\n"
-                                     "    gl_Position = at_end ? b : a;\n"
-                                     "    gl_Position.xy += (aside + (at_end ? along : -along)) * half_width * gl_Position.w;\n"
-                                     "}\n";
+static const char stroke_vertex[] = "#version 300 es\n"
+                                    "uniform mat4 to_clip;\n"
+                                    "uniform vec3 pen;\n"
+                                    "layout(location = 0) in vec3 begin;\n"
+                                    "layout(location = 1) in vec3 end;\n"
+                                    "void main() {\n"
+                                    "    vec2 half_width = pen.xy;\n"
+                                    "    vec4 a = to_clip * vec4(begin, 1.0), b = to_clip * vec4(end, 1.0);\n"
+                                    "    float a_ahead = a.z + a.w, b_ahead = b.z + b.w;\n"
+                                    "    if (max(a_ahead, b_ahead) <= 0.0) {\n"
+                                    "        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n"
+                                    "        return;\n"
+                                    "    }\n"
+                                    "    if (a_ahead < 0.0)\n"
+                                    "        a = mix(a, b, a_ahead / (a_ahead - b_ahead));\n"
+                                    "    else if (b_ahead < 0.0)\n"
+                                    "        b = mix(b, a, b_ahead / (b_ahead - a_ahead));\n"
+                                    "    vec2 along = (b.xy / b.w - a.xy / a.w) / half_width;\n"
+                                    "    along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);\n"
+                                    "    bool at_end = gl_VertexID > 1;\n"
+                                    "    vec2 aside = vec2(-along.y, along.x) * (gl_VertexID % 2 == 0 ? 1.0 : -1.0);\n"
+                                    "    gl_Position = at_end ? b : a;\n"
+                                    "    gl_Position.xy += (aside + (at_end ? along : -along)) * half_width * gl_Position.w;\n"
+                                    "    gl_Position.z -= pen.z * gl_Position.w;\n"
+                                    "}\n";
 
-static const char outline_fragment[] = "#version 300 es\n"
-                                       "precision highp float;\n"
-                                       "uniform vec3 line_colour;\n"
-                                       "layout(location = 0) out vec4 colour;\n"
-                                       "void main() {\n"
-                                       "    colour = vec4(line_colour, 1.0);\n"
-                                       "}\n";
+static const char stroke_fragment[] = "#version 300 es\n"
+                                      "precision highp float;\n"
+                                      "uniform vec3 line_colour;\n"
+                                      "layout(location = 0) out vec4 colour;\n"
+                                      "void main() {\n"
+                                      "    colour = vec4(line_colour, 1.0);\n"
+                                      "}\n";
 
 /* ---- Objects ---- */
 
@@ -140,8 +153,8 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     point_to(gl, 4, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, value));
     point_to(gl, 1, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, inside));
     gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
-    gl->glGenVertexArrays(1, &objects->outline_array);
-    gl->glBindVertexArray(objects->outline_array);
+    gl->glGenVertexArrays(1, &objects->stroke_array);
+    gl->glBindVertexArray(objects->stroke_array);
     gl->glBindBuffer(GL_ARRAY_BUFFER, objects->segment_buffer);
     for (GLuint end = 0; end < 2; end++) {
         point_to(gl, end, 3, sizeof(float[2][3]), end * sizeof(float[3]));
@@ -150,17 +163,18 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
 }
 
 static void find_uniforms(const ss_egl_api *gl, ss_figure_objects *objects) {
-    for (int i = 0; i < 2; i++) {
-        ss_surface_program *own = i ? &objects->false_colours : &objects->chequer;
+    ss_surface_program *const programs[] = {&objects->chequer, &objects->false_colours, &objects->tile};
+    for (int i = 0; i < 3; i++) {
+        ss_surface_program *own = programs[i];
         own->to_clip = gl->glGetUniformLocation(own->program, "to_clip");
         own->turn_normal = gl->glGetUniformLocation(own->program, "turn_normal");
         own->scale = gl->glGetUniformLocation(own->program, "scale");
         own->encoded = gl->glGetUniformLocation(own->program, "encoded");
         own->colours = gl->glGetUniformLocation(own->program, "colours");
     }
-    objects->outline_to_clip = gl->glGetUniformLocation(objects->outline_program, "to_clip");
-    objects->half_width = gl->glGetUniformLocation(objects->outline_program, "half_width");
-    objects->line_colour = gl->glGetUniformLocation(objects->outline_program, "line_colour");
+    objects->stroke_to_clip = gl->glGetUniformLocation(objects->stroke_program, "to_clip");
+    objects->pen = gl->glGetUniformLocation(objects->stroke_program, "pen");
+    objects->line_colour = gl->glGetUniformLocation(objects->stroke_program, "line_colour");
 }
 
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error) {
@@ -168,7 +182,9 @@ skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_object
     if (!status)
         status = ss_gl_program(gl, surface_vertex, false_colour_fragment, NULL, 0, &objects->false_colours.program, error);
     if (!status)
-        status = ss_gl_program(gl, outline_vertex, outline_fragment, NULL, 0, &objects->outline_program, error);
+        status = ss_gl_program(gl, surface_vertex, tile_fragment, NULL, 0, &objects->tile.program, error);
+    if (!status)
+        status = ss_gl_program(gl, stroke_vertex, stroke_fragment, NULL, 0, &objects->stroke_program, error);
     if (status)
         return status;
     make_arrays(gl, objects);

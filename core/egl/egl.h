@@ -47,15 +47,20 @@ extern "C" {
     X(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                                                                           \
     X(PFNGLBINDTEXTUREPROC, glBindTexture)                                                                                     \
     X(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray)                                                                             \
+    X(PFNGLBLENDCOLORPROC, glBlendColor)                                                                                       \
+    X(PFNGLBLENDFUNCPROC, glBlendFunc)                                                                                         \
     X(PFNGLBLITFRAMEBUFFERPROC, glBlitFramebuffer)                                                                             \
     X(PFNGLBUFFERDATAPROC, glBufferData)                                                                                       \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, glCheckFramebufferStatus)                                                               \
     X(PFNGLCLEARBUFFERFVPROC, glClearBufferfv)                                                                                 \
+    X(PFNGLCLEARBUFFERIVPROC, glClearBufferiv)                                                                                 \
     X(PFNGLCLEARBUFFERUIVPROC, glClearBufferuiv)                                                                               \
+    X(PFNGLCOLORMASKPROC, glColorMask)                                                                                         \
     X(PFNGLCOMPILESHADERPROC, glCompileShader)                                                                                 \
     X(PFNGLCREATEPROGRAMPROC, glCreateProgram)                                                                                 \
     X(PFNGLCREATESHADERPROC, glCreateShader)                                                                                   \
     X(PFNGLDELETESHADERPROC, glDeleteShader)                                                                                   \
+    X(PFNGLDELETETEXTURESPROC, glDeleteTextures)                                                                               \
     X(PFNGLDEPTHFUNCPROC, glDepthFunc)                                                                                         \
     X(PFNGLDISABLEPROC, glDisable)                                                                                             \
     X(PFNGLDRAWARRAYSPROC, glDrawArrays)                                                                                       \
@@ -72,6 +77,7 @@ extern "C" {
     X(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                                                                           \
     X(PFNGLGENTEXTURESPROC, glGenTextures)                                                                                     \
     X(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays)                                                                             \
+    X(PFNGLGENERATEMIPMAPPROC, glGenerateMipmap)                                                                               \
     X(PFNGLGETERRORPROC, glGetError)                                                                                           \
     X(PFNGLGETINTEGERVPROC, glGetIntegerv)                                                                                     \
     X(PFNGLGETPROGRAMINFOLOGPROC, glGetProgramInfoLog)                                                                         \
@@ -86,8 +92,11 @@ extern "C" {
     X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, glRenderbufferStorageMultisample)                                               \
     X(PFNGLSCISSORPROC, glScissor)                                                                                             \
     X(PFNGLSHADERSOURCEPROC, glShaderSource)                                                                                   \
+    X(PFNGLSTENCILFUNCPROC, glStencilFunc)                                                                                     \
+    X(PFNGLSTENCILOPPROC, glStencilOp)                                                                                         \
     X(PFNGLTEXPARAMETERIPROC, glTexParameteri)                                                                                 \
     X(PFNGLTEXSTORAGE2DPROC, glTexStorage2D)                                                                                   \
+    X(PFNGLTEXSUBIMAGE2DPROC, glTexSubImage2D)                                                                                 \
     X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, glTransformFeedbackVaryings)                                                         \
     X(PFNGLUNIFORM1IPROC, glUniform1i)                                                                                         \
     X(PFNGLUNIFORM2FPROC, glUniform2f)                                                                                         \

@@ -1,4 +1,4 @@
-/* Draws values of a mesh's vertices in its texture coordinates.
+/* Draws values of a mesh's vertices, or of its corners, in its texture coordinates.
  *
  * A row of texel centres at height y crosses the side from a up to b where a.y <= y < b.y. The side's column is the first whose
  * centre is on it or right of it, found exactly; a triangle covers the columns from one of its two crossed sides up to the
@@ -27,6 +27,8 @@ typedef struct map {
     int32_t *face_start; /* [mesh face_count + 1] */
     int32_t *tiles;      /* [index_count] of each corner */
     int32_t tile, side;
+    const float *values; /* [vertex_count], or by corner [index_count] */
+    bool by_corner;
     float *texels;           /* [side][side] from the top row on; NAN: not covered */
     float *rows[3];          /* [side + 2] each, for the dilation */
     int32_t low[2], high[2]; /* columns and rows [low, high) hold all that is covered */
@@ -124,8 +126,13 @@ static void place_corner(const map *m, int32_t corner, double place[2]) {
     place[1] = ((double)st[1] - tile / SS_TILE_COLUMNS) * m->side;
 }
 
+/* Where the value of a corner is among the values. */
+static int32_t place_of_value(const map *m, int32_t corner) {
+    return m->by_corner ? corner : m->layout->mesh->face_indices[corner];
+}
+
 /* The fan of a face. Whether it covers a texel. */
-static bool draw_face(map *m, int32_t face, const float *values) {
+static bool draw_face(map *m, int32_t face) {
     bool covers = false;
     int32_t first = m->face_start[face];
     for (int32_t c = first + 1; c + 1 < m->face_start[face + 1]; c++) {
@@ -133,7 +140,7 @@ static bool draw_face(map *m, int32_t face, const float *values) {
         triangle t;
         for (int i = 0; i < 3; i++) {
             place_corner(m, corners[i], t.corner[i]);
-            t.value[i] = values[m->layout->mesh->face_indices[corners[i]]];
+            t.value[i] = m->values[place_of_value(m, corners[i])];
         }
         covers = draw_triangle(m, &t) || covers;
     }
@@ -141,13 +148,13 @@ static bool draw_face(map *m, int32_t face, const float *values) {
 }
 
 /* Returns how many faces of the tile cover no texel. */
-static int32_t draw_faces(map *m, const float *values) {
+static int32_t draw_faces(map *m) {
     int32_t missed = 0;
     for (int64_t i = 0; i < (int64_t)m->side * m->side; i++)
         m->texels[i] = NAN;
     for (int32_t i = 0; i < m->layout->face_count; i++)
         if (is_in_tile(m, m->layout->faces[i]))
-            missed += !draw_face(m, m->layout->faces[i], values);
+            missed += !draw_face(m, m->layout->faces[i]);
     return missed;
 }
 
@@ -201,12 +208,12 @@ static skinslide_status check(const skinslide_texture_layout *layout, int32_t ti
     return SKINSLIDE_OK;
 }
 
-static skinslide_status check_values(const map *m, const float *values, skinslide_error *error) {
+static skinslide_status check_values(const map *m, skinslide_error *error) {
     for (int32_t i = 0; i < m->layout->face_count; i++) {
         int32_t face = m->layout->faces[i];
         for (int32_t c = m->face_start[face]; c < m->face_start[face + 1]; c++) {
-            int32_t vertex = m->layout->mesh->face_indices[c];
-            skinslide_status status = ss_check_value(vertex, values[vertex], error);
+            float value = m->values[place_of_value(m, c)];
+            skinslide_status status = ss_check_value(m->layout->mesh->face_indices[c], value, error);
             if (status)
                 return status;
         }
@@ -214,7 +221,7 @@ static skinslide_status check_values(const map *m, const float *values, skinslid
     return SKINSLIDE_OK;
 }
 
-static skinslide_status prepare(map *m, ss_memory *memory, const float *values, skinslide_error *error) {
+static skinslide_status prepare(map *m, ss_memory *memory, skinslide_error *error) {
     const skinslide_texture_layout *layout = m->layout;
     const skinslide_mesh *mesh = layout->mesh;
     m->tiles = SS_NEW(memory, int32_t, mesh->index_count);
@@ -225,29 +232,40 @@ static skinslide_status prepare(map *m, ss_memory *memory, const float *values, 
         return ss_out_of_memory(error);
     ss_start_faces(mesh, m->face_start);
     skinslide_status status = skinslide_texture_tiles(layout, m->tiles, error);
-    return status ? status : check_values(m, values, error);
+    return status ? status : check_values(m, error);
 }
 
-skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int32_t tile, const float *values, int32_t side,
-                                    float *texels, int32_t *missed_faces, skinslide_error *error) {
+static skinslide_status draw(map *m, int32_t *missed_faces, skinslide_error *error) {
     ss_taken_layout taken;
-    skinslide_status status = check(layout, tile, values, side, texels, error);
+    skinslide_status status = check(m->layout, m->tile, m->values, m->side, m->texels, error);
     if (!status)
-        status = ss_take_layout(&layout, &taken, error);
+        status = ss_take_layout(&m->layout, &taken, error);
     if (status)
         return status;
     ss_memory memory = {0};
-    map m = {.layout = layout, .tile = tile, .side = side, .texels = texels, .low = {side, side}};
-    status = prepare(&m, &memory, values, error);
+    m->low[0] = m->low[1] = m->side;
+    status = prepare(m, &memory, error);
     if (!status) {
-        int32_t missed = draw_faces(&m, values);
+        int32_t missed = draw_faces(m);
         for (int pass = 0; pass < DILATION; pass++)
-            dilate(&m);
-        for (int64_t i = 0; i < (int64_t)side * side; i++)
-            texels[i] = isnan(texels[i]) ? 0 : texels[i];
+            dilate(m);
+        for (int64_t i = 0; i < (int64_t)m->side * m->side; i++)
+            m->texels[i] = isnan(m->texels[i]) ? 0 : m->texels[i];
         if (missed_faces)
             *missed_faces = missed;
     }
     ss_free(&memory);
     return status;
+}
+
+skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int32_t tile, const float *values, int32_t side,
+                                    float *texels, int32_t *missed_faces, skinslide_error *error) {
+    map m = {.layout = layout, .tile = tile, .values = values, .side = side, .texels = texels};
+    return draw(&m, missed_faces, error);
+}
+
+skinslide_status skinslide_map_draw_corners(const skinslide_texture_layout *layout, int32_t tile, const float *values,
+                                            int32_t side, float *texels, int32_t *missed_faces, skinslide_error *error) {
+    map m = {.layout = layout, .tile = tile, .values = values, .by_corner = true, .side = side, .texels = texels};
+    return draw(&m, missed_faces, error);
 }

@@ -1,36 +1,71 @@
-/* The outline of a patch on a tessellated mesh: the sides of its faces with no other face of it beyond. Any faces will do. */
+/* The outline of a patch on a tessellated mesh: the sides of its faces with no other face of it beyond. Any faces will do. And
+ * all of their sides and corners, which may be drawn on it. */
 #include "picture.h"
 
 #include <stdlib.h>
 
-static void add_side(skinslide_outline *own, const ss_grid *grid, int side) {
-    for (int32_t step = 0; step < grid->side; step++, own->segment_count++) {
-        own->segments[own->segment_count][0] = ss_on_side(grid, side, step);
-        own->segments[own->segment_count][1] = ss_on_side(grid, side, step + 1);
+typedef struct segments {
+    uint32_t (*ends)[2];
+    int32_t count;
+} segments;
+
+static void add_side(segments *to, const ss_grid *grid, int side) {
+    for (int32_t step = 0; step < grid->side; step++, to->count++) {
+        to->ends[to->count][0] = ss_on_side(grid, side, step);
+        to->ends[to->count][1] = ss_on_side(grid, side, step + 1);
     }
 }
 
-/* The part of side k of the face, which is on the outline, that the grid has. */
-static void outline_side(skinslide_outline *own, const ss_grid *grid, int32_t k) {
-    int32_t n = ss_face_size(own->tessellation, grid->face);
+/* The part of side k of its face, of n sides, that the grid has. */
+static void add_part(segments *to, const ss_grid *grid, int32_t k, int32_t n) {
     if (!grid->side) {
-        own->segments[own->segment_count][0] = (uint32_t)(grid->first_vertex + k);
-        own->segments[own->segment_count++][1] = (uint32_t)(grid->first_vertex + (k + 1) % n);
+        to->ends[to->count][0] = (uint32_t)(grid->first_vertex + k);
+        to->ends[to->count++][1] = (uint32_t)(grid->first_vertex + (k + 1) % n);
     } else if (grid->corner < 0) {
-        add_side(own, grid, k);
+        add_side(to, grid, k);
     } else if (grid->corner == k) {
-        add_side(own, grid, 0);
+        add_side(to, grid, 0);
     } else if (grid->corner == (k + 1) % n) {
-        add_side(own, grid, 3);
+        add_side(to, grid, 3);
     }
 }
 
-static void list_segments(skinslide_outline *own, const uint8_t *border) {
+/* The sides of faces inside whose corners are chosen [corner_count]. */
+static int32_t list_sides(const skinslide_outline *own, const uint8_t *chosen, uint32_t (*ends)[2]) {
     const skinslide_tessellation *mesh = own->tessellation;
-    for (int32_t p = 0; p < mesh->grid_count; p++)
-        for (int32_t k = 0; own->inside[mesh->grids[p].face] && k < ss_face_size(mesh, mesh->grids[p].face); k++)
-            if (border[mesh->face_start[mesh->grids[p].face] + k])
-                outline_side(own, &mesh->grids[p], k);
+    segments to = {ends, 0};
+    for (int32_t p = 0; p < mesh->grid_count; p++) {
+        const ss_grid *grid = &mesh->grids[p];
+        int32_t n = ss_face_size(mesh, grid->face);
+        for (int32_t k = 0; own->inside[grid->face] && k < n; k++)
+            if (chosen[mesh->face_start[grid->face] + k])
+                add_part(&to, grid, k, n);
+    }
+    return to.count;
+}
+
+/* The vertex of a grid at corner k of its face, of n; -1 where that is another grid's. */
+static int64_t at_corner(const ss_grid *grid, int32_t k) {
+    if (!grid->side)
+        return grid->first_vertex + k;
+    if (grid->corner < 0)
+        return ss_on_side(grid, k, 0);
+    return grid->corner == k ? (int64_t)ss_on_side(grid, 0, 0) : -1;
+}
+
+/* listed is scratch [mesh_vertex_count], of zeros. */
+static void list_corners(skinslide_outline *own, uint8_t *listed) {
+    const skinslide_tessellation *mesh = own->tessellation;
+    for (int32_t p = 0; p < mesh->grid_count; p++) {
+        const ss_grid *grid = &mesh->grids[p];
+        for (int32_t k = 0; own->inside[grid->face] && k < ss_face_size(mesh, grid->face); k++) {
+            int32_t vertex = mesh->corner_vertex[mesh->face_start[grid->face] + k];
+            if (listed[vertex] || at_corner(grid, k) < 0)
+                continue;
+            own->corners[own->corner_count][0] = (uint32_t)vertex;
+            own->corners[own->corner_count++][1] = (uint32_t)at_corner(grid, k), listed[vertex] = 1;
+        }
+    }
 }
 
 /* border [corner_count]: sides of faces inside with no other of them beyond. count is scratch [edge_count], of zeros. */
@@ -41,6 +76,15 @@ static void find_border(const skinslide_outline *own, int32_t *count, uint8_t *b
     for (int32_t c = 0; c < faces->corner_count; c++)
         border[c] = own->inside[faces->corner_face[c]] && count[faces->corner_edge[c]] == 1 &&
                     faces->corner_vertex[c] != faces->corner_vertex[ss_next_corner(faces, c)];
+}
+
+/* Of each edge of faces inside one side, of its first face. used is scratch [edge_count], of zeros. */
+static void choose_each_once(const skinslide_outline *own, uint8_t *used, uint8_t *once) {
+    const ss_faces *faces = &own->tessellation->skin;
+    for (int32_t c = 0; c < faces->corner_count; c++) {
+        once[c] = own->inside[faces->corner_face[c]] && !used[faces->corner_edge[c]];
+        used[faces->corner_edge[c]] |= once[c];
+    }
 }
 
 /* Room for every side of what is inside. */
@@ -60,14 +104,23 @@ static bool fill(skinslide_outline *own, const int32_t *chosen, int32_t count) {
     ss_memory scratch = {0};
     int32_t *uses = SS_NEW(&scratch, int32_t, mesh->skin.edge_count);
     uint8_t *border = SS_NEW(&scratch, uint8_t, mesh->faces.corner_count);
+    uint8_t *used = SS_NEW(&scratch, uint8_t, mesh->skin.edge_count);
+    uint8_t *once = SS_NEW(&scratch, uint8_t, mesh->faces.corner_count);
+    uint8_t *listed = SS_NEW(&scratch, uint8_t, mesh->mesh_vertex_count);
     own->inside = SS_NEW(&own->memory, uint8_t, mesh->mesh_face_count);
     for (int32_t i = 0; i < count && own->inside; i++)
         own->inside[chosen[i]] = 1;
-    own->segments = own->inside ? ss_new(&own->memory, most_segments(own), sizeof *own->segments) : NULL;
+    int64_t most = own->inside ? most_segments(own) : 0;
+    own->segments = ss_new(&own->memory, most, sizeof *own->segments);
+    own->sides = ss_new(&own->memory, most, sizeof *own->sides);
+    own->corners = ss_new(&own->memory, mesh->mesh_vertex_count, sizeof *own->corners);
     bool allocated = !scratch.failed && !own->memory.failed;
     if (allocated) {
         find_border(own, uses, border);
-        list_segments(own, border);
+        choose_each_once(own, used, once);
+        own->segment_count = list_sides(own, border, own->segments);
+        own->side_count = list_sides(own, once, own->sides);
+        list_corners(own, listed);
     }
     ss_free(&scratch);
     return allocated;

@@ -40,6 +40,10 @@ struct skinslide_outline {
     uint8_t *inside; /* [mesh_face_count] the face is in the patch */
     int32_t segment_count;
     uint32_t (*segments)[2]; /* vertices of the tessellation */
+    int32_t side_count;
+    uint32_t (*sides)[2]; /* the same of every side of the faces, each once */
+    int32_t corner_count;
+    uint32_t (*corners)[2]; /* a vertex of the mesh, each once, and the one of the tessellation that is there */
 };
 
 struct skinslide_tessellation {

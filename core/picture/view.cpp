@@ -19,6 +19,7 @@ const double field_of_view = 0.5;  /* radians, up and down */
 const double margin = 1.12;        /* round what is framed */
 const double least_distance = 0.5; /* of its diagonal */
 const double cancelled = 0.25;     /* of the area: normals that sum to less say nothing */
+const double much_less = 0.5;      /* of what a pose could be turned to the camera */
 const double no_area = 1e-14;      /* of the diagonal squared: faces of less are lines */
 
 /* USD's rows of points as rows are the columns of points as columns. */
@@ -41,23 +42,36 @@ double largest(const dmat3 &matrix) {
 
 struct Subject {
     const skinslide_subject &own;
-    const int32_t *start; /* [mesh face_count] first corner of each face */
+    int32_t *start; /* [mesh face_count] first corner of each face */
+    dvec3 *turns;   /* [pose_count] scratch */
 };
 
-/* The faces in each pose, in the world. Calls body(vertices, n, place of a vertex, -1 where faces turn right seen from outside,
+/* The faces in a pose, in the world. Calls body(vertices, n, place of a vertex, -1 where faces turn right seen from outside,
  * else 1). */
-template <typename Body> void each_face(const Subject &subject, Body body) {
+template <typename Body> void each_face_of(const Subject &subject, int32_t pose, Body body) {
     const skinslide_subject &own = subject.own;
-    for (int32_t pose = 0; pose < own.pose_count; pose++) {
-        dmat4 matrix = matrix_of(own.to_world ? own.to_world + 16 * int64_t(pose) : nullptr);
-        double turn = (glm::determinant(dmat3(matrix)) < 0) == (own.left_handed != 0) ? 1 : -1;
-        auto place = [&](int32_t vertex) {
-            const float *p = own.poses[pose] + 3 * int64_t(vertex);
-            return dvec3(matrix * glm::dvec4(p[0], p[1], p[2], 1));
-        };
-        for (int32_t i = 0; i < own.face_count; i++)
-            body(own.mesh->face_indices + subject.start[own.faces[i]], own.mesh->face_counts[own.faces[i]], place, turn);
-    }
+    dmat4 matrix = matrix_of(own.to_world ? own.to_world + 16 * int64_t(pose) : nullptr);
+    double turn = (glm::determinant(dmat3(matrix)) < 0) == (own.left_handed != 0) ? 1 : -1;
+    auto place = [&](int32_t vertex) {
+        const float *p = own.poses[pose] + 3 * int64_t(vertex);
+        return dvec3(matrix * glm::dvec4(p[0], p[1], p[2], 1));
+    };
+    for (int32_t i = 0; i < own.face_count; i++)
+        body(own.mesh->face_indices + subject.start[own.faces[i]], own.mesh->face_counts[own.faces[i]], place, turn);
+}
+
+/* And in each pose. */
+template <typename Body> void each_face(const Subject &subject, Body body) {
+    for (int32_t pose = 0; pose < subject.own.pose_count; pose++)
+        each_face_of(subject, pose, body);
+}
+
+/* Half the sum of the cross products of a fan: as long as its area is large, and outwards where it turns left. */
+template <typename Place> dvec3 area_of(const int32_t *v, int32_t n, Place place) {
+    dvec3 sum(0);
+    for (int32_t k = 1; k + 1 < n; k++)
+        sum += 0.5 * glm::cross(place(v[k]) - place(v[0]), place(v[k + 1]) - place(v[0]));
+    return sum;
 }
 
 struct Box {
@@ -92,9 +106,7 @@ struct Shape {
                     farthest = p;
                 box.add(p);
             }
-            dvec3 sum(0);
-            for (int32_t k = 1; k + 1 < n; k++)
-                sum += 0.5 * glm::cross(place(v[k]) - place(v[0]), place(v[k + 1]) - place(v[0]));
+            dvec3 sum = area_of(v, n, place);
             normal += turn * sum;
             area += glm::length(sum);
             if (glm::length(sum) > 0)
@@ -127,6 +139,50 @@ struct Shape {
         return glm::normalize(aside);
     }
 };
+
+/* ---- From where ---- */
+
+/* How a pose is turned: the sum of the faces' area vectors as a share of their area; 0 where they cancel out, as round a limb, of
+ * which some is seen from anywhere. */
+dvec3 turn_of(const Subject &subject, int32_t pose) {
+    dvec3 sum(0);
+    double area = 0;
+    each_face_of(subject, pose, [&](const int32_t *v, int32_t n, auto place, double turn) {
+        dvec3 own = area_of(v, n, place);
+        sum += turn * own, area += glm::length(own);
+    });
+    return glm::length(sum) > cancelled * area ? sum / area : dvec3(0);
+}
+
+/* How much the pose that is turned away most is turned to a direction. */
+double least_turned(const Subject &subject, dvec3 direction) {
+    double least = 1;
+    for (int32_t pose = 0; pose < subject.own.pose_count; pose++)
+        if (subject.turns[pose] != dvec3(0))
+            least = std::min(least, glm::dot(subject.turns[pose], direction));
+    return least;
+}
+
+/* The direction of all poses together; unless one that is halfway between two of them is much better for the pose that is
+ * turned away most, as where a character walks round. */
+dvec3 choose_direction(const Subject &subject, const Shape &shape, dvec3 up) {
+    int32_t count = subject.own.pose_count;
+    for (int32_t pose = 0; pose < count; pose++)
+        subject.turns[pose] = turn_of(subject, pose);
+    dvec3 common = shape.direction(up), best = common;
+    double enough = least_turned(subject, common), most = enough;
+    for (int32_t first = 0; first < count; first++)
+        for (int32_t second = 0; second <= first; second++) {
+            dvec3 sum = subject.turns[first] + subject.turns[second];
+            if (!(glm::length(sum) > cancelled))
+                continue;
+            dvec3 between = glm::normalize(sum);
+            double least = least_turned(subject, between);
+            if (least > most)
+                most = least, best = between;
+        }
+    return enough < much_less * most ? best : common;
+}
 
 /* ---- Framing ---- */
 
@@ -184,7 +240,7 @@ skinslide_status frame(const Subject &subject, dvec3 up, double aspect, skinslid
     double size = shape.box.size();
     skinslide_camera found = {};
     if (size > 0 && std::isfinite(size))
-        found = look(subject, shape, shape.direction(up), up, aspect);
+        found = look(subject, shape, choose_direction(subject, shape, up), up, aspect);
     if (!(size > 0) || !std::isfinite(size) || !all_finite(found.to_camera, 16) || !all_finite(found.to_screen, 16))
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "no camera can have the faces in sight: they are all in one place, or endless");
@@ -192,12 +248,14 @@ skinslide_status frame(const Subject &subject, dvec3 up, double aspect, skinslid
     return SKINSLIDE_OK;
 }
 
-/* NULL where memory is short. */
-const int32_t *list_starts(const skinslide_mesh &mesh, ss_memory *scratch) {
-    int32_t *start = SS_NEW(scratch, int32_t, mesh.face_count);
-    for (int32_t f = 0, c = 0; start && f < mesh.face_count; c += mesh.face_counts[f++])
-        start[f] = c;
-    return start;
+/* False where memory is short. */
+bool prepare(Subject &subject, ss_memory *memory) {
+    const skinslide_mesh &mesh = *subject.own.mesh;
+    subject.start = SS_NEW(memory, int32_t, mesh.face_count);
+    subject.turns = SS_NEW(memory, dvec3, subject.own.pose_count);
+    for (int32_t f = 0, c = 0; subject.start && f < mesh.face_count; c += mesh.face_counts[f++])
+        subject.start[f] = c;
+    return !memory->failed;
 }
 
 /* ---- Bad input ---- */
@@ -253,9 +311,9 @@ skinslide_status skinslide_frame_faces(const skinslide_subject *subject, const d
     if (status)
         return status;
     ss_memory scratch = {};
-    const int32_t *start = list_starts(*own.mesh, &scratch);
-    status =
-        start ? frame(Subject{own, start}, glm::normalize(glm::make_vec3(up)), aspect, camera, error) : ss_out_of_memory(error);
+    Subject all{own, nullptr, nullptr};
+    status = prepare(all, &scratch) ? frame(all, glm::normalize(glm::make_vec3(up)), aspect, camera, error)
+                                    : ss_out_of_memory(error);
     ss_free(&scratch);
     return status;
 }

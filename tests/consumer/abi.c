@@ -165,7 +165,11 @@ static void draw(skinslide_tessellation *tessellation, const skinslide_camera *c
     skinslide_canvas *canvas;
     uint8_t pixels[8 * 8 * 4];
     options.width = options.height = 8;
+    skinslide_colour_tile tile = SKINSLIDE_COLOUR_TILE_DEFAULT;
+    const uint8_t texel[4] = {255, 255, 255, 255};
+    tile.pixels = texel, tile.width = tile.height = 1;
     figure.tessellation = tessellation, figure.points = rest, figure.double_sided = 1;
+    figure.tiles = &tile, figure.tile_count = 1;
     if (!said("canvas", skinslide_canvas_create(&options, &canvas, &error)))
         return;
     if (said("device", skinslide_canvas_device(canvas, &device, &error)) &&
@@ -175,6 +179,14 @@ static void draw(skinslide_tessellation *tessellation, const skinslide_camera *c
         printf("drawn %d, largest %d\n", pixels[4 * (8 * 4 + 4)] > 0, device.largest_resolution > 0);
     UNKNOWN(device);
     skinslide_canvas_destroy(canvas);
+}
+
+static void strain(void) {
+    skinslide_strain own = SKINSLIDE_STRAIN_DEFAULT;
+    float largest[VERTICES];
+    own.largest = largest;
+    if (said("strain", skinslide_measure_strain(&mesh, NULL, faces, FACES, points, &own, &error)))
+        printf("stretched by %g\n", largest[4]);
 }
 
 static void picture(void) {
@@ -258,6 +270,7 @@ int main(void) {
     write_image();
     find_edges();
     picture();
+    strain();
     find_patches();
     take_values();
     refine();

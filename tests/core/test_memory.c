@@ -261,13 +261,18 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     skinslide_status status = skinslide_tessellation_create(&view, NULL, s->faces, 20, &tessellation, error);
     if (!status)
         status = skinslide_outline_create(tessellation, s->faces, 10, &outline, error);
-    const skinslide_figure figure = {sizeof(skinslide_figure), tessellation, outline, .points = s->points, .squares = 1};
+    const skinslide_strain strain = SKINSLIDE_STRAIN_DEFAULT;
+    skinslide_figure figure = SKINSLIDE_FIGURE_DEFAULT;
+    figure.tessellation = tessellation, figure.outline = outline, figure.points = figure.ways = s->points;
+    figure.wire = figure.ghosts = 1;
     if (!status)
         status = skinslide_frame_faces(&subject, up, 1, &camera, error);
     if (!status)
         status = skinslide_canvas_create(&options, &canvas, error);
     if (!status)
         status = skinslide_canvas_draw(canvas, &all, &camera, &figure, error);
+    if (!status)
+        status = skinslide_measure_strain(&view, NULL, s->faces, 20, s->points, &strain, error);
     if (!status)
         status = skinslide_canvas_read(canvas, pixels, error);
     skinslide_canvas_destroy(canvas);

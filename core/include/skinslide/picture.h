@@ -64,6 +64,17 @@ SKINSLIDE_API skinslide_status skinslide_outline_create(const skinslide_tessella
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_outline_destroy(skinslide_outline *outline);
 
+/* A tile of a mesh's own texture, or all of it. Start from SKINSLIDE_COLOUR_TILE_DEFAULT. */
+typedef struct skinslide_colour_tile {
+    size_t size;           /* sizeof(skinslide_colour_tile) */
+    const uint8_t *pixels; /* [height][width][4] sRGB from the top row on; the fourth is not read */
+    int32_t width, height; /* 1 to SKINSLIDE_LARGEST_MAP, and within the device's limit */
+    int32_t number;        /* 1001 + u + 10 v; 1001 where the texture is no UDIM */
+} skinslide_colour_tile;
+
+#define SKINSLIDE_COLOUR_TILE_DEFAULT                                                                                          \
+    { sizeof(skinslide_colour_tile), 0, 0, 0, 1001 }
+
 /* A mesh in one pose, and what it is painted with. Start from SKINSLIDE_FIGURE_DEFAULT. */
 typedef struct skinslide_figure {
     size_t size; /* sizeof(skinslide_figure) */
@@ -76,10 +87,17 @@ typedef struct skinslide_figure {
     float squares;               /* of the chequer, for each unit of st or of length at rest; > 0 */
     skinslide_bool double_sided; /* no: faces turned away from the camera are left out, as USD has it */
     skinslide_bool left_handed;  /* the mesh's orientation is leftHanded */
+    const skinslide_colour_tile *tiles; /* [tile_count] drawn where st is in them, a chequer elsewhere; values are stronger */
+    const float *ways;     /* [mesh vertex_count][3] lines are drawn by which vertices of the patch came; NULL: none */
+    const uint8_t *pins;   /* [mesh vertex_count] not 0: a dot is drawn, where it is of the patch; NULL: none */
+    int32_t tile_count;    /* 0 to 1000 */
+    skinslide_bool wire;   /* the sides of the patch's faces are drawn */
+    skinslide_bool ghosts; /* of what is nearer than the patch, and is not of it, only a shadow is seen */
+    float line;            /* how many times as wide as usual lines and dots are; 0: 1 */
 } skinslide_figure;
 
 #define SKINSLIDE_FIGURE_DEFAULT                                                                                               \
-    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0 }
+    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
 SKINSLIDE_API void skinslide_false_colour(float share, float colour[3]);
@@ -108,7 +126,9 @@ typedef struct skinslide_subject {
 
 /* A camera that has a subject in sight in each of its poses, as near as all of it fits, and no nearer than half the diagonal of
  * its box, along the picture and into it. It looks against the mean of the faces' normals over the poses; where those cancel
- * out, as round a limb, from where the faces are widest.
+ * out, as round a limb, from where the faces are widest. Where that turns some pose less than half as far to the
+ * camera as can be, by a normal of a pose or halfway between two, it looks against this. What else of the mesh may hide the
+ * faces does not count: a figure with ghosts shows them.
  *   up      in  the world's, a direction
  *   aspect  in  width of the picture by its height
  * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite: names the pose; or no camera can see them: all in one place),
@@ -161,8 +181,8 @@ typedef struct skinslide_viewport {
 
 /* Draws a figure, four samples a pixel, behind what is nearer of what was drawn before. It is shaded by a light beside the
  * camera, in which a surface that faces the camera has its own colour.
- * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer or of the scale), BAD_POINTS (points, values or matrices not
- * finite), DEVICE_FAILED, OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer, of the scale or of a tile; tiles on a mesh without st),
+ * BAD_POINTS (points, values, ways or matrices not finite), DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                                      const skinslide_camera *camera, const skinslide_figure *figure,
                                                      skinslide_error *error);
@@ -191,6 +211,43 @@ enum { SKINSLIDE_LARGEST_MAP = 16384 }; /* texels along each side */
  * tile: names the face), BAD_POINTS (a value of the faces is not finite: names the vertex), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_map_draw(const skinslide_texture_layout *layout, int32_t tile, const float *values,
                                                   int32_t side, float *texels, int32_t *missed_faces, skinslide_error *error);
+
+/* The same of values at the corners of faces, which may differ from face to face at a vertex.
+ *   values  in  [index_count] of the mesh
+ * Fails likewise. */
+SKINSLIDE_API skinslide_status skinslide_map_draw_corners(const skinslide_texture_layout *layout, int32_t tile,
+                                                          const float *values, int32_t side, float *texels,
+                                                          int32_t *missed_faces, skinslide_error *error);
+
+/* ---- Stretch with its sign, for wrinkles -------------------------------------------------------------------------------- */
+
+/* The principal stretches of a pose: lengths by lengths at rest, above 1 where skin is drawn out, below 1 where it is pressed
+ * together; and which way. Any of the arrays may be NULL: it is not wanted. Start from SKINSLIDE_STRAIN_DEFAULT. */
+typedef struct skinslide_strain {
+    size_t size;       /* sizeof(skinslide_strain) */
+    float *largest;    /* out [vertex_count] in the direction that is stretched most */
+    float *smallest;   /* out [vertex_count] and across it */
+    float *area_ratio; /* out [vertex_count] area by area at rest: the product of both */
+    float *direction;  /* out [index_count][2] of the largest, in the texture coordinates of each corner of the mesh: cos 2a and
+                          sin 2a with a its angle from s towards t, so that it is one with its opposite and may be blended; 0
+                          where stretch is the same in all directions */
+} skinslide_strain;
+
+#define SKINSLIDE_STRAIN_DEFAULT                                                                                               \
+    { sizeof(skinslide_strain), 0, 0, 0, 0 }
+
+/* Measures a pose at each vertex: of the tensors at the corners of its faces the mean by their area at rest. Where nothing is
+ * stretched, and at vertices of none of the faces, stretches and area are 1. The same bytes on every machine.
+ *   mesh    in  rest_points too; what is welded is one vertex
+ *   st      in  [index_count][2] texture coordinates of the mesh's corners, face by face; NULL where no direction is wanted
+ *   faces   in  [face_count] mesh faces that count
+ *   points  in  [vertex_count][3] the pose
+ *   strain  in, its arrays out
+ * Fails with BAD_ARGUMENT, BAD_MESH, BAD_POINTS (not finite, or stretched more than a float can say: names the vertex),
+ * BAD_CONTROL (st not finite: names the face), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_measure_strain(const skinslide_mesh *mesh, const float *st, const int32_t *faces,
+                                                        int32_t face_count, const float *points, const skinslide_strain *strain,
+                                                        skinslide_error *error);
 
 #ifndef SKINSLIDE_CDEF
 #ifdef __cplusplus

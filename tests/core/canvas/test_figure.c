@@ -378,7 +378,9 @@ static void where_normals_cancel_colours_are_plain(void **state) {
         double s = 1 / sizes[i], back[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1};
         for (int k = 0; k < 9; k++)
             (&scaled[0][0])[k] = (float)(sizes[i] * (&points[0][0])[k]);
-        skinslide_figure figure = {sizeof(skinslide_figure), both, NULL, &scaled[0][0], back, values, 0, 1, 1, 1, 0};
+        skinslide_figure figure = SKINSLIDE_FIGURE_DEFAULT;
+        figure.tessellation = both, figure.points = &scaled[0][0], figure.to_world = back;
+        figure.values = values, figure.double_sided = 1;
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
         draw(canvas, &figure);
         read_all(canvas, pixels);
@@ -515,6 +517,166 @@ static void an_outline_of_its_own(void **state) {
                  "no tessellation, or no place for the outline");
     skinslide_outline_destroy(NULL);
     end_sheet(&some), end_sheet(&all);
+}
+
+/* ---- Strokes ---- */
+
+static const float purple[3] = {0.80f, 0.02f, 0.30f}, white[3] = {0.95f, 0.93f, 0.88f};
+
+/* Faces of 24 by 32 pixels, of which the first row is the patch: of its sides those inside it are drawn, thinly; on its outline the
+ * outline is. */
+static void sides_of_the_patch_are_drawn(void **state) {
+    (void)state;
+    static pixel pixels[HEIGHT][WIDTH];
+    sheet s = sheet_of(4, 2, everywhere, 4, true);
+    paint(&s, 0.5f);
+    for (int wire = 0; wire < 2; wire++) {
+        skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+        s.figure.wire = wire;
+        draw(canvas, &s.figure);
+        read_all(canvas, pixels);
+        for (int32_t x = 2; x < WIDTH - 2; x++) {
+            bool side = x % 24 == 0 || x % 24 == 23;
+            assert_int_equal(is_share(pixels[HEIGHT - 10][x], 0.5f), !(side && wire)); /* the lower row is the first */
+            assert_true(is_colour(pixels[10][x], (float[3]){0.33f, 0.31f, 0.30f}, 1e-3));
+        }
+        assert_int_equal(pixels[HEIGHT - 10][24][1] < 0.5f, wire);
+    }
+    end_sheet(&s);
+}
+
+/* A dot at a pin of the patch, none at one outside; a line to a vertex from where it came. */
+static void pins_and_ways_are_drawn(void **state) {
+    (void)state;
+    static pixel pixels[HEIGHT][WIDTH];
+    uint8_t pins[15] = {0};
+    float ways[45] = {0};
+    sheet s = sheet_of(4, 2, everywhere, 4, true); /* vertices 5 to 9 are at y = 32, x = 0, 24, .. */
+    skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    paint(&s, 0.5f);
+    pins[2] = pins[12] = 1, ways[3 * 7] = ways[3 * 12] = 20;
+    s.figure.pins = pins, s.figure.ways = ways;
+    draw(canvas, &s.figure);
+    read_all(canvas, pixels);
+    assert_true(is_colour(pixels[HEIGHT - 1][48], purple, 1e-3)); /* vertex 2, at (48, 0) */
+    assert_false(is_colour(pixels[HEIGHT - 5][48], purple, 0.1));
+    assert_false(is_colour(pixels[0][48], purple, 0.1));         /* vertex 12, above */
+    assert_true(is_colour(pixels[HEIGHT / 2][48], white, 1e-3)); /* vertex 7, at (48, 32), which came from (28, 32) */
+    for (int32_t x = 0; x < WIDTH; x++)
+        if (x < 26 || x > 51)
+            assert_false(pixels[HEIGHT / 2][x][2] > 0.5f && pixels[HEIGHT / 2][x][0] > 0.5f);
+        else if (x > 29 && x < 49)
+            assert_true(pixels[HEIGHT / 2][x][2] > 0.3f);
+    s.figure.line = 3;
+    canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    draw(canvas, &s.figure);
+    read_all(canvas, pixels);
+    assert_true(is_colour(pixels[HEIGHT - 5][48], purple, 1e-3)); /* 13.5 pixels wide */
+    end_sheet(&s);
+}
+
+/* ---- Ghosts ---- */
+
+/* The left half is the patch, and another sheet of the same mesh lies before all of it: it covers what is outside, and darkens the
+ * patch by its share alone. Behind, it is not seen. */
+static void what_hides_the_patch_is_a_shadow(void **state) {
+    (void)state;
+    static pixel pixels[HEIGHT][WIDTH];
+    const float plain[3] = {0.33f, 0.31f, 0.30f};
+    float colour[3], thin[3];
+    skinslide_false_colour(0.9f, colour);
+    for (int k = 0; k < 3; k++)
+        thin[k] = 0.16f * plain[k] + 0.84f * colour[k];
+    for (int i = 0; i < 3; i++) {         /* no ghosts; ghosts; ghosts of what is behind */
+        test_mesh pair = quad_grid(2, 3); /* faces 0, 1 are the lower sheet, 4, 5 the upper; 2, 3 join them, edge-on */
+        skinslide_mesh view = view_of(&pair);
+        float values[12];
+        int32_t patch[1] = {0};
+        skinslide_error error;
+        skinslide_tessellation *own;
+        skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+        for (int32_t v = 0; v < 12; v++) {
+            int row = v / 3, column = v % 3;
+            float *p = pair.points + 3 * v;
+            values[v] = 0.9f, p[0] = (float)(row < 2 ? column : 2 - column) * WIDTH / 2.0f;
+            p[1] = row == 0 || row == 3 ? 0 : HEIGHT, p[2] = (float)(row < 2 ? 0 : i < 2 ? 50 : -50);
+        }
+        assert_ok(skinslide_tessellation_create(&view, NULL, patch, 1, &own, &error), &error);
+        skinslide_figure figure = SKINSLIDE_FIGURE_DEFAULT;
+        figure.tessellation = own, figure.points = pair.points, figure.values = values;
+        figure.ghosts = i > 0, figure.double_sided = 1;
+        draw(canvas, &figure);
+        read_all(canvas, pixels);
+        const float *seen = i == 0 ? plain : i == 1 ? thin : colour;
+        for (int32_t x = 6; x < WIDTH; x++)
+            if (abs(x - WIDTH / 2) > 4)
+                for (int k = 0; k < 3; k++)
+                    assert_near(pixels[HEIGHT / 2][x][k], x < WIDTH / 2 ? seen[k] : plain[k], 2e-3);
+        skinslide_tessellation_destroy(own);
+        free_mesh(&pair);
+    }
+}
+
+/* ---- Textures ---- */
+
+/* Two tiles side by side over three quarters of a sheet, whose st goes from 0 to 2; a chequer where there is none. */
+static void tiles_are_drawn_where_st_is(void **state) {
+    (void)state;
+    static pixel pixels[HEIGHT][WIDTH];
+    static const uint8_t rows[2][4] = {{255, 0, 0, 0}, {0, 255, 0, 0}}, white_one[1][4] = {{255, 255, 255, 0}};
+    skinslide_colour_tile tiles[2] = {SKINSLIDE_COLOUR_TILE_DEFAULT, SKINSLIDE_COLOUR_TILE_DEFAULT};
+    sheet s = sheet_of(2, 1, everywhere, 2, true);
+    for (int32_t v = 0; v < s.tessellation->vertex_count; v++)
+        s.tessellation->fixed[v].coordinates[0] *= 3;
+    tiles[0].pixels = rows[0], tiles[0].width = 1, tiles[0].height = 2; /* red above green */
+    tiles[1].pixels = white_one[0], tiles[1].number = 1002, tiles[1].width = tiles[1].height = 1;
+    s.figure.tiles = tiles, s.figure.tile_count = 2, s.figure.squares = 0.1f;
+    skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    draw(canvas, &s.figure);
+    read_all(canvas, pixels);
+    for (int32_t x = 2; x < WIDTH - 2; x++)
+        if (x % 32 > 1 && x % 32 < 30) {
+            const float *high = pixels[4][x], *low = pixels[HEIGHT - 5][x];
+            const double above[3] = {x < 64, x >= 32 && x < 64, x >= 32 && x < 64};
+            const double below[3] = {x >= 32 && x < 64, x < 64, x >= 32 && x < 64};
+            if (x < 64)
+                assert_colour(high, above), assert_colour(low, below);
+            else
+                assert_colour(high, dark), assert_colour(low, dark);
+        }
+    end_sheet(&s);
+}
+
+static void tiles_that_cannot_be(void **state) {
+    (void)state;
+    static const uint8_t white_one[4] = {255, 255, 255, 255};
+    sheet s = sheet_of(1, 1, everywhere, 1, true), space = sheet_of(1, 1, everywhere, 1, false);
+    skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    skinslide_camera camera = in_pixels(WIDTH, HEIGHT);
+    skinslide_error error;
+    skinslide_colour_tile tile = SKINSLIDE_COLOUR_TILE_DEFAULT;
+    s.figure.tiles = &tile, s.figure.tile_count = 1;
+    tile.pixels = white_one, tile.width = 1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "tile 1001 has 1 by 0 pixels; each side may have 1 to 16384");
+    tile.height = 1, tile.number = 1000;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "tile 1000 has no pixels, or no place in a UDIM");
+    s.figure.tile_count = 1001;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "1001 tiles of a texture; there may be 0 to 1000");
+    tile.number = 1001, space.figure.tiles = &tile, space.figure.tile_count = 1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &space.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "there is no st for the tiles of a texture");
+    s.figure.line = -1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "lines -1 times as wide as usual; they may be 0 to 1000");
+    s.figure.line = 0;
+    float ways[12] = {[4] = NAN};
+    s.figure.tile_count = 0, s.figure.ways = ways;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_POINTS,
+                 "ways: vertex 1 is not finite: (0, nan, 0)");
+    end_sheet(&s), end_sheet(&space);
 }
 
 /* From inside a cube, turned any way: every pixel of the outline is at an edge of the patch, and those of edges that reach behind
@@ -703,6 +865,11 @@ int main(void) {
         cmocka_unit_test(backs_are_left_out),
         cmocka_unit_test(the_outline_is_on_top),
         cmocka_unit_test(an_outline_of_its_own),
+        cmocka_unit_test(sides_of_the_patch_are_drawn),
+        cmocka_unit_test(pins_and_ways_are_drawn),
+        cmocka_unit_test(what_hides_the_patch_is_a_shadow),
+        cmocka_unit_test(tiles_are_drawn_where_st_is),
+        cmocka_unit_test(tiles_that_cannot_be),
         cmocka_unit_test(from_inside_nothing_smears),
         cmocka_unit_test(parts_of_pictures_are_theirs),
         cmocka_unit_test(pictures_do_not_know_sizes_or_places),

@@ -214,6 +214,29 @@ static void a_bent_sheet_is_seen_from_its_mean_normal(void **state) {
     end_framing(&f);
 }
 
+/* A sheet that turns about y, in degrees: a quarter turn is seen from its mean normal, (0, 0, 1) twice and (-1, 0, 0). One of 140
+ * would show its back there, and is seen from halfway. */
+static void what_turns_away_is_seen_from_between(void **state) {
+    (void)state;
+    const double turns[2] = {-90, 140}, degree = acos(-1) / 180, expected[2] = {-atan(0.5), 70 * degree};
+    for (int i = 0; i < 2; i++) {
+        framed f;
+        double out[3];
+        start_framing(&f, quad_grid(3, 3), false);
+        float *turned = copy_points(&f.mesh);
+        for (int32_t v = 0; v < f.mesh.vertex_count; v++) {
+            turned[3 * v + 2] = (float)(-sin(turns[i] * degree) * turned[3 * v]);
+            turned[3 * v] = (float)(cos(turns[i] * degree) * turned[3 * v]);
+        }
+        f.poses[1] = f.poses[0], f.poses[2] = turned, f.subject.pose_count = 3;
+        look(&f, y_up, 1);
+        towards(&f, out);
+        assert_near(atan2(out[0], out[2]), expected[i], 1e-6);
+        f.poses[1] = NULL;
+        end_framing(&f);
+    }
+}
+
 static void up_along_the_view(void **state) {
     (void)state;
     const double ups[4][3] = {{0, 0, 1}, {0, 0, -5}, {1e-9, 0, 1}, {0, 1e-100, 0}};
@@ -469,6 +492,7 @@ int main(void) {
         cmocka_unit_test(the_outside_is_seen),
         cmocka_unit_test(limbs_are_seen_from_the_side),
         cmocka_unit_test(a_bent_sheet_is_seen_from_its_mean_normal),
+        cmocka_unit_test(what_turns_away_is_seen_from_between),
         cmocka_unit_test(up_along_the_view),
         cmocka_unit_test(up_is_up),
         cmocka_unit_test(motions_commute),

@@ -1,0 +1,166 @@
+/* Draws a figure's surface: chequered, in false colours, or with the tiles of its texture over the chequer. What hides the patch
+ * may be left out there, but for a shadow: the patch is drawn first, and the stencil remembers where.
+ *
+ *     the patch                 marks
+ *     what is outside           where there is no mark
+ *     strokes
+ *     what is outside, nearer   where there is one: its depth, then its colour, thinly, of the nearest alone */
+#include "canvas.h"
+
+#include "paint.h"
+
+static const float shadow = 0.16f; /* of the colour of what hides */
+
+static void fill(const ss_egl_api *gl, GLenum target, GLuint buffer, const void *data, int64_t count, size_t size) {
+    gl->glBindBuffer(target, buffer);
+    gl->glBufferData(target, (GLsizeiptr)count * (GLsizeiptr)size, data, GL_STREAM_DRAW);
+}
+
+/* ---- Programs ---- */
+
+static void use(const ss_drawing *drawn, const ss_surface_program *own) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    float turn_normal[9];
+    for (int i = 0; i < 9; i++)
+        turn_normal[i] = drawn->figure->left_handed ? -drawn->view.turn_normal[i] : drawn->view.turn_normal[i];
+    gl->glUseProgram(own->program);
+    gl->glUniformMatrix4fv(own->to_clip, 1, GL_FALSE, drawn->view.to_clip);
+    gl->glUniformMatrix3fv(own->turn_normal, 1, GL_FALSE, turn_normal);
+    gl->glUniform1i(own->encoded, drawn->canvas->pixels == SKINSLIDE_PIXELS_BYTES);
+}
+
+static void draw_range(const ss_drawing *drawn, int32_t first, int32_t count) {
+    const void *offset = (const void *)(uintptr_t)((size_t)first * sizeof *drawn->triangles);
+    drawn->canvas->egl->api.glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, offset);
+}
+
+/* Triangles [first, first + count), as the figure has them painted. */
+static void draw_painted(const ss_drawing *drawn, int32_t first, int32_t count) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    const ss_figure_objects *objects = &drawn->canvas->objects;
+    const skinslide_figure *figure = drawn->figure;
+    use(drawn, figure->values ? &objects->false_colours : &objects->chequer);
+    if (figure->values)
+        gl->glUniform2f(objects->false_colours.scale, figure->lowest, 1 / (figure->highest - figure->lowest));
+    else
+        gl->glUniform2f(objects->chequer.scale, figure->squares, drawn->mesh->in_space);
+    draw_range(drawn, first, count);
+    for (int32_t i = 0; i < figure->tile_count && !figure->values; i++) {
+        int32_t tile = drawn->tiles[i].number - SS_FIRST_TILE;
+        use(drawn, &objects->tile);
+        gl->glUniform2f(objects->tile.scale, (float)(tile % SS_TILE_COLUMNS), (float)(tile / SS_TILE_COLUMNS));
+        gl->glBindTexture(GL_TEXTURE_2D, drawn->textures[i]);
+        draw_range(drawn, first, count);
+    }
+}
+
+/* ---- Textures ---- */
+
+static GLsizei levels_of(const skinslide_colour_tile *tile) {
+    GLsizei levels = 1;
+    for (int32_t side = tile->width > tile->height ? tile->width : tile->height; side > 1; side /= 2)
+        levels++;
+    return levels;
+}
+
+static void load_textures(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    gl->glGenTextures(drawn->figure->tile_count, drawn->textures);
+    for (int32_t i = 0; i < drawn->figure->tile_count; i++) {
+        const skinslide_colour_tile *tile = &drawn->tiles[i];
+        gl->glBindTexture(GL_TEXTURE_2D, drawn->textures[i]);
+        gl->glTexStorage2D(GL_TEXTURE_2D, levels_of(tile), GL_SRGB8_ALPHA8, tile->width, tile->height);
+        gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, tile->width, tile->height, GL_RGBA, GL_UNSIGNED_BYTE, tile->pixels);
+        gl->glGenerateMipmap(GL_TEXTURE_2D);
+        gl->glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+        gl->glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        gl->glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+}
+
+/* ---- Ghosts ---- */
+
+static void clear_marks(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    const skinslide_viewport *place = drawn->viewport;
+    const GLint none = 0;
+    gl->glEnable(GL_SCISSOR_TEST);
+    gl->glScissor(place->x, place->y, place->width, place->height);
+    gl->glClearBufferiv(GL_STENCIL, 0, &none);
+    gl->glDisable(GL_SCISSOR_TEST);
+}
+
+static void draw_shadows(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    int32_t first = drawn->inside_count, count = drawn->triangle_count - drawn->inside_count;
+    gl->glStencilFunc(GL_EQUAL, 1, 1);
+    gl->glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    use(drawn, &drawn->canvas->objects.false_colours);
+    draw_range(drawn, first, count);
+    gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+    gl->glEnable(GL_BLEND);
+    gl->glBlendColor(0, 0, 0, shadow);
+    gl->glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+    gl->glDepthFunc(GL_EQUAL);
+    draw_range(drawn, first, count);
+    gl->glDepthFunc(GL_LEQUAL);
+    gl->glDisable(GL_BLEND);
+    gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+/* For all that is drawn of the surface itself. */
+static void begin(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    gl->glBindVertexArray(drawn->canvas->objects.surface_array);
+    gl->glEnable(GL_POLYGON_OFFSET_FILL); /* behind its outline, however it slopes along the width of the line */
+    gl->glPolygonOffset(drawn->line, 4);
+    (drawn->figure->double_sided ? gl->glDisable : gl->glEnable)(GL_CULL_FACE);
+    gl->glFrontFace(drawn->view.mirrored == (drawn->figure->left_handed != 0) ? GL_CCW : GL_CW);
+}
+
+static void end(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    gl->glDisable(GL_CULL_FACE);
+    gl->glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+static void draw_with_ghosts(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    clear_marks(drawn);
+    gl->glEnable(GL_STENCIL_TEST);
+    gl->glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+    gl->glStencilFunc(GL_ALWAYS, 1, 1);
+    draw_painted(drawn, 0, drawn->inside_count);
+    gl->glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl->glStencilFunc(GL_EQUAL, 0, 1);
+    draw_painted(drawn, drawn->inside_count, drawn->triangle_count - drawn->inside_count);
+    end(drawn);
+    gl->glDisable(GL_STENCIL_TEST);
+    ss_draw_strokes(drawn);
+    gl->glEnable(GL_STENCIL_TEST);
+    begin(drawn);
+    draw_shadows(drawn);
+    gl->glDisable(GL_STENCIL_TEST);
+}
+
+/* ---- All ---- */
+
+void ss_draw_surface(const ss_drawing *drawn) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    const ss_figure_objects *objects = &drawn->canvas->objects;
+    const skinslide_tessellation *mesh = drawn->mesh;
+    load_textures(drawn);
+    begin(drawn);
+    fill(gl, GL_ARRAY_BUFFER, objects->fixed_buffer, mesh->fixed, mesh->vertex_count, sizeof *mesh->fixed);
+    fill(gl, GL_ARRAY_BUFFER, objects->posed_buffer, drawn->work.vertices, mesh->vertex_count, sizeof *drawn->work.vertices);
+    fill(gl, GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer, drawn->triangles, drawn->triangle_count,
+         sizeof *drawn->triangles);
+    if (drawn->figure->ghosts)
+        draw_with_ghosts(drawn);
+    else
+        draw_painted(drawn, 0, drawn->triangle_count);
+    end(drawn);
+    if (!drawn->figure->ghosts)
+        ss_draw_strokes(drawn);
+    gl->glDeleteTextures(drawn->figure->tile_count, drawn->textures);
+}
