@@ -48,6 +48,7 @@ step "body"
 "$venv/bin/skinslide" preview "$(stage body)" -o "$out/body/pictures" --html "$out/body/report.html" --json --quiet \
     >"$out/body/preview.json"
 "$python" examples/measure/gain.py "$out/gain.jpg" "$(stage body)" "$(stage elbow),$(stage face)" >/dev/null
+"$python" examples/measure/wrinkles.py "$out/wrinkles.jpg" "$(stage fingers)" >/dev/null
 for example in sleeve face; do
     step "$example"
     "$python" examples/measure/pictures.py "$out/$example.jpg" "$(stage "$example")" unit,relaxed chequer,stretch >/dev/null
@@ -75,6 +76,7 @@ Look at these in $out:
   body/report.html               a body that nobody painted, in a browser, from the frame at which it gains most
   gain.jpg                       an elbow and a face there: the cache, a patch that somebody painted, nothing painted
   sleeve.jpg face.jpg character.jpg  the cache, and what the rules make of it
+  wrinkles.jpg                   a hand that closes, wrinkled where its skin is pressed together
   id_buffers.png                 the textures in which the lookup finds faces
 Of each example, as elbow:
   elbow/stage.usda               the cache and its patch; sublayer elbow/slid.usdc above it

@@ -81,6 +81,25 @@ def two_quads() -> tuple[Usd.Stage, UsdGeom.Mesh]:
 BY_HAND = (0, math.sqrt(1 / 3), math.sqrt(1 / 2))
 
 
+def test_the_strain_of_two_quads(tmp_path, capsys):
+    """One file of five channels: of the right quad the largest is e, along s, so that twice its angle is 0."""
+    path = stages.save(two_quads()[0], tmp_path / "shot.usda")
+    words = ["--size", "32", "--strain", "--frames", "2", "--json", "--quiet"]
+    assert main(["maps", str(path), "-o", str(tmp_path / "maps"), *words]) == 0
+    told = json.loads(capsys.readouterr().out)["maps"]
+    assert [each["kind"] for each in told] == [*KINDS, "strain"]
+    file = tmp_path / "maps" / "skin_GEO.strain.0002.exr"
+    channels = {name: decode_exr(file.read_bytes(), name).pixels for name in ("largest", "smallest", "area")}
+    way = [decode_exr(file.read_bytes(), f"direction.{axis}").pixels for axis in "xy"]
+    ends = (1, math.sqrt((1 + math.e**2) / 2), math.e)  # in the middle the mean of both tensors
+    row = np.interp(np.arange(8, 24) + 0.5, (8, 16, 24), ends)
+    for name, expected in (("largest", row), ("area", row), ("smallest", np.ones(16))):
+        np.testing.assert_allclose(channels[name][8:24, 8:24], np.tile(expected, (16, 1)), atol=2e-6)
+    np.testing.assert_allclose(way[0][8:24, 17:24], 1, atol=1e-6)
+    np.testing.assert_allclose(way[1][8:24, 17:24], 0, atol=1e-6)
+    assert told[-1]["lowest"] == 1 and told[-1]["highest"] == pytest.approx(math.e)
+
+
 def test_a_known_stretch(tmp_path):
     maps(stages.save(two_quads()[0], tmp_path / "shot.usda"), tmp_path / "maps", size=32)
     for kind in ("stretchBefore", "stretchAfter"):
@@ -358,7 +377,8 @@ def test_command(tmp_path, shot, capfd):
         said["meshes"][0]["patches"][0]["max"]["largest_slide"], rel=1e-5
     )
     assert main(["maps", str(shot), "-o", str(folder), "--frames=-5", "--map-size", "16", "--quiet"]) == 0
-    assert capfd.readouterr() == ("", "") and (folder / "skin_GEO.slide.-0005.exr").is_file()
+    out, err = capfd.readouterr()
+    assert out == "" and "beyond the samples" in err and (folder / "skin_GEO.slide.-0005.exr").is_file()
 
 
 def test_another_primvar(tmp_path, capfd):

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 from PIL import Image
-from pxr import Sdf, Ts, Usd, UsdGeom, Vt
+from pxr import Sdf, Ts, Usd, UsdGeom, UsdShade, Vt
 from scipy import ndimage
 
 import skinslide
@@ -190,16 +190,185 @@ def test_nothing_else_is_written(shot, tmp_path):
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".png"}
 
 
-@pytest.mark.parametrize("name", ["elbow", "sleeve", "face"])
-def test_the_examples_pictures_are_as_made(name, example_stage):
-    """Those beside the examples are what run.sh makes: JPEG is off by some levels, another device at some edges."""
-    chosen = (["unit"], ["chequer"]) if name == "elbow" else (["unit", "relaxed"], ["chequer", "stretch"])
-    stage = example_stage(name)
-    drawn = load("measure/pictures.py").draw(stage, *chosen).astype(int)
+def assert_kept(name, drawn):
+    """A picture beside the examples is what run.sh makes: JPEG is off by some levels, another device at some edges."""
     with Image.open(EXAMPLES / f"{name}.jpg") as image:
         kept = np.array(image).astype(int)
     assert kept.shape == drawn.shape
     assert np.abs(kept - drawn).mean() < 3
+
+
+@pytest.mark.parametrize("name", ["sleeve", "face"])
+def test_the_examples_pictures_are_as_made(name, example_stage):
+    drawn = load("measure/pictures.py").draw(example_stage(name), ["unit", "relaxed"], ["chequer", "stretch"])
+    assert_kept(name, drawn)
+
+
+def test_the_picture_of_what_is_gained_is_as_made(example_stage, tmp_path):
+    """And tells of less stretch from column to column, of the same edges."""
+    gain, stage = load("measure/gain.py"), tmp_path / "stage.usda"
+    skinslide.setup_to_file(example_stage("body"), stage, whole=True)
+    painted = [str(example_stage(name)) for name in ("elbow", "face")]
+    assert_kept("gain", gain.draw(str(stage), painted))
+    mesh = gain.first_mesh(str(stage))
+    for each in painted:
+        _, columns = gain.columns(mesh, gain.first_mesh(each).patches[0])
+        cache, unit, even = (column.measure for column in columns)
+        assert even < 0.85 * cache and even < 0.9 * unit and unit < cache
+
+
+# ---- Other views, and other rules ----
+
+
+def hue(pixels):
+    """The mean colour of the middle, less its grey."""
+    middle = pixels[20:-20, 60:-60].reshape(-1, 3).mean(axis=0)
+    return middle - middle.mean()
+
+
+def test_density_is_shown_by_colour(tmp_path):
+    """Little is blue, much is red, as painted; nothing painted lies between, and neither depends on the frame."""
+    found = {}
+    for density in (None, 0.1, 10.0):
+        stage, mesh = sheet()
+        if density:
+            name, floats = f"skinSlide:{PATCH}:forceDensity", Sdf.ValueTypeNames.FloatArray
+            every = np.full(len(mesh.GetPointsAttr().Get()), density, np.float32)
+            stages.set_primvar(mesh, name, floats, "vertex", Vt.FloatArray.FromNumpy(every))
+        draw(stage, tmp_path / str(density), views="density", frames="1001,1003")
+        first, last = (halves(picture(tmp_path / str(density), "density", frame))[0] for frame in ("1001", "1003"))
+        found[density] = hue(first)
+        assert np.abs(hue(first) - hue(last)).max() < 3
+    assert found[0.1][2] > 30 and found[10.0][0] > 30 and found[None][1] > 30
+
+
+def test_slides_are_shown_by_colour_and_by_ways(tmp_path):
+    """Before there are none; after there are, and lines on them, which at rest are none either."""
+    stage, _mesh = sheet()
+    draw(stage, tmp_path, views="slide")
+    still, still_slid = halves(picture(tmp_path, "slide", "1001"))
+    before, after = halves(picture(tmp_path, "slide", "1003"))
+    assert max(np.abs(hue(each) - hue(still)).max() for each in (still_slid, before)) < 2
+    assert np.abs(hue(after) - hue(still)).max() > 10
+    white = [np.count_nonzero(each.min(axis=2) > 200) for each in (before, after)]
+    assert white[0] == 0 and white[1] > 100
+
+
+def test_pins_are_dots(tmp_path):
+    stage, mesh = sheet()
+    weight = np.ones(len(mesh.GetPointsAttr().Get()), np.float32)
+    draw(stage, tmp_path / "none", views="slide", frames="1001")
+    weight[np.argmin(np.linalg.norm(np.array(mesh.GetPointsAttr().Get()), axis=1))] = 0
+    name, floats = f"skinSlide:{PATCH}:weight", Sdf.ValueTypeNames.FloatArray
+    stages.set_primvar(mesh, name, floats, "vertex", Vt.FloatArray.FromNumpy(weight))
+    draw(stage, tmp_path / "one", views="slide", frames="1001")
+    pixels = [halves(picture(tmp_path / folder, "slide", "1001"))[0] for folder in ("none", "one")]
+    rows, columns = np.nonzero(np.abs(pixels[1] - pixels[0]).sum(axis=2) > 60)
+    assert 4 < len(rows) < 60 and np.ptp(rows) < 10 and np.ptp(columns) < 10
+
+
+def test_the_sides_of_faces_are_drawn_where_they_are_wanted(tmp_path):
+    stage, _mesh = sheet()
+    found = []
+    for wire in (False, True):
+        draw(stage, tmp_path / str(wire), views="stretch", frames="1001", wire=wire)
+        before, _ = halves(picture(tmp_path / str(wire), "stretch", "1001"))
+        found.append(np.abs(np.diff(before[40], axis=0)).sum())
+    assert found[1] > 2 * found[0]
+
+
+def test_what_hides_a_patch_is_a_shadow(tmp_path):
+    """A sheet of the same mesh in front of all of it: the patch is seen through it."""
+    shape = stages.grid(8, 8)
+    shape.points[:, 2] = 0
+    pictures = []
+    for covered in (False, True):
+        cover = shape.points + np.array([0, 0, 0.3] if covered else [9, 0, 0])
+        both = stages.Shape(
+            np.concatenate([shape.points, cover]),
+            np.concatenate([shape.counts] * 2),
+            np.concatenate([shape.indices, shape.indices + len(shape.points)]),
+        )
+        stage, mesh = stages.patched_stage(both, stages.block(8, range(2, 6), range(2, 6)))
+        for frame in FRAMES:
+            mesh.GetPointsAttr().Set(stages.vectors(both.points), frame)
+        draw(stage, tmp_path / str(covered), frames="1001", squares=8)
+        pictures.append(halves(picture(tmp_path / str(covered), frame="1001"))[0])
+    middle = [each[40:-40, 100:-100] for each in pictures]
+    assert contrast(middle[1]) > 0.7 * contrast(middle[0]) and not np.array_equal(*middle)
+
+
+def test_rules_are_compared_side_by_side(tmp_path):
+    """Each column is what its rule makes of the patch; the report is of the patch as it is set up."""
+    stage, mesh = sheet()
+    mesh.GetPrim().CreateAttribute(f"skinSlide:{PATCH}:forceDensityRule", Sdf.ValueTypeNames.Token).Set("fast")
+    report = draw(
+        stage, tmp_path / "rules", compare=("unit", "relaxed"), size=(720, 270), views="stretch", frames="1003"
+    )
+    pixels = picture(tmp_path / "rules", "stretch", "1003")
+    columns = [pixels[50:-50, i * 240 : (i + 1) * 240].astype(int) for i in range(3)]
+    for i, rule in enumerate(("unit", "relaxed"), start=1):
+        mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:forceDensityRule").Set(rule)
+        draw(stage, tmp_path / rule, size=(480, 270), views="stretch", frames="1003")
+        before, after = (
+            half[:, :] for half in np.split(picture(tmp_path / rule, "stretch", "1003")[50:-50], 2, axis=1)
+        )
+        assert np.abs(columns[0] - before).mean() < 1 and np.abs(columns[i] - after).mean() < 1
+    assert report.meshes[0].patches[0].results[0].relax_steps == 0
+
+
+def test_a_rule_that_cannot_slide_a_patch_is_named(tmp_path, capfd):
+    stage, _mesh = stages.patched_stage(stages.box(), np.arange(6))
+    stage.GetPrimAtPath(stages.MESH).GetAttribute(f"skinSlide:{PATCH}:forceDensityRule").Set("even")
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    words = ["--compare", "even,unit", "--size", "64x32"]
+    assert main(["preview", path, "-o", str(tmp_path / "out"), *words]) == 3
+    assert f"error: {stages.MESH}: under the rule unit: " in capfd.readouterr().err
+
+
+def textured(stage, mesh, tmp_path, file):
+    """A material of a texture, on a mesh."""
+    material = UsdShade.Material.Define(stage, "/World/look")
+    surface, reader = (UsdShade.Shader.Define(stage, f"/World/look/{name}") for name in ("surface", "texture"))
+    surface.CreateIdAttr("UsdPreviewSurface"), reader.CreateIdAttr("UsdUVTexture")
+    reader.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(str(tmp_path / file))
+    colour = surface.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+    colour.ConnectToSource(reader.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
+    material.CreateSurfaceOutput().ConnectToSource(surface.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
+
+
+@pytest.mark.parametrize("udim", [False, True])
+def test_the_texture_of_the_mesh_is_shown(udim, tmp_path):
+    """Red above green, as the file has them; on a UDIM in its first tile."""
+    stage, mesh = sheet()
+    pixels = np.zeros((8, 8, 3), np.uint8)
+    pixels[:4, :, 0] = pixels[4:, :, 1] = 255
+    Image.fromarray(pixels).save(tmp_path / ("skin.1001.png" if udim else "skin.png"))
+    textured(stage, mesh, tmp_path, "skin.<UDIM>.png" if udim else "skin.png")
+    draw(stage, tmp_path / "out", views="texture", frames="1001")
+    before, after = halves(picture(tmp_path / "out", "texture", "1001"))
+    for half in (before, after):
+        upper, lower = half[10:40, 100:-100].mean(axis=(0, 1)), half[-40:-10, 100:-100].mean(axis=(0, 1))
+        assert upper[0] > 200 > 60 > upper[1] and lower[1] > 200 > 60 > lower[0]
+
+
+@pytest.mark.parametrize(
+    ("file", "message"),
+    [
+        (None, "has no material, whose texture could be shown"),
+        ("none.png", "/World/look/texture.inputs:file: there is no file"),
+        ("shot.usda", "is no picture that can be read"),
+    ],
+)
+def test_textures_that_cannot_be_shown(file, message, tmp_path, capfd):
+    stage, mesh = sheet()
+    if file:
+        textured(stage, mesh, tmp_path, file)
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["preview", path, "-o", str(tmp_path / "out"), "--view", "texture", "--size", "64x32"]) == 3
+    said = capfd.readouterr().err
+    assert f"error: {stages.MESH}: patch {PATCH}: " in said and message in said
 
 
 # ---- What the chequer follows ----

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, UsdValidation
+from pxr import Sdf, Usd, UsdGeom, UsdValidation, Vt
 
 import skinslide
 import stages
@@ -12,6 +12,8 @@ from skinslide.stage.opening import open_stage
 from stages import FRAMES, MESH
 
 STRETCH, SLIDE = "primvars:skinSlide:stretch", "primvars:skinSlide:slide"
+LARGEST, SMALLEST = "primvars:skinSlide:largestStretch", "primvars:skinSlide:smallestStretch"
+AREA, DIRECTION = "primvars:skinSlide:areaRatio", "primvars:skinSlide:stretchDirection"
 OTHER = "/World/prop/still_GEO"
 PLACES = ["root", "session"]
 Types = Sdf.ValueTypeNames
@@ -77,6 +79,52 @@ def test_rest_gives_zeros_bit_for_bit(tmp_path):
         assert samples(tmp_path / "slid.usdc", name)[FRAMES[0]].tobytes() == bytes(4 * 49)
 
 
+def test_strain_of_a_uniform_stretch(tmp_path):
+    """The envelope is 0, so that skin stays in the cache, which is stretched by known factors along two ways at an
+    angle: in st, which is turned against the sheet, the larger's angle is less by the turn."""
+    (large, small), angle, turn = (1.5, 0.8), 0.7, 0.4
+    shape = stages.grid()
+    stage, mesh = stages.patched_stage(shape)
+    ways = np.array([[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0]])
+    stretch = large * np.outer(ways[0], ways[0]) + small * np.outer(ways[1], ways[1])
+    flat = shape.points * [1, 1, 0]
+    mesh.GetPointsAttr().Set(stages.vectors(flat))
+    for frame in FRAMES:
+        mesh.GetPointsAttr().Set(stages.vectors(flat @ stretch if frame > FRAMES[0] else flat), frame)
+    stages.set_property(mesh, "envelope", 0.0)
+    across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    st = Vt.Vec2fArray.FromNumpy((flat[shape.indices][:, :2] @ across).astype(np.float32))
+    stages.set_primvar(mesh, "st", Types.TexCoord2fArray, "faceVarying", st)
+    output = tmp_path / "slid.usdc"
+    bake_to_file(stages.save(stage, tmp_path / "shot.usda"), output, diagnostics=True)
+    for name, value in ((LARGEST, large), (SMALLEST, small), (AREA, large * small)):
+        found = samples(output, name)
+        np.testing.assert_allclose(found[FRAMES[0]], 1, atol=1e-6)
+        np.testing.assert_allclose(found[FRAMES[1]], value, rtol=1e-5)
+    directions = samples(output, DIRECTION)
+    expected = [np.cos(2 * (angle - turn)), np.sin(2 * (angle - turn))]
+    np.testing.assert_allclose(directions[FRAMES[1]], np.tile(expected, (len(shape.indices), 1)), atol=1e-4)
+    assert not directions[FRAMES[0]].any()
+    layer = Sdf.Layer.OpenAsAnonymous(str(output))
+    spec = layer.GetAttributeAtPath(f"{MESH}.{DIRECTION}")
+    assert (spec.typeName, spec.GetInfo("interpolation")) == (Types.Float2Array, "faceVarying")
+
+
+def test_without_texture_coordinates_there_is_no_direction(tmp_path):
+    stage, _mesh, _faces = overlapping_stage()
+    bake_to_file(stages.save(stage, tmp_path / "shot.usda"), tmp_path / "slid.usdc", diagnostics=True)
+    layer = Sdf.Layer.OpenAsAnonymous(str(tmp_path / "slid.usdc"))
+    assert layer.GetAttributeAtPath(f"{MESH}.{LARGEST}") and not layer.GetAttributeAtPath(f"{MESH}.{DIRECTION}")
+
+
+def test_texture_coordinates_that_cannot_be(tmp_path, capfd):
+    stage, mesh, _faces = overlapping_stage()
+    stages.set_primvar(mesh, "st", Types.TexCoord2fArray, "faceVarying", Vt.Vec2fArray(3))
+    path = str(stages.save(stage, tmp_path / "shot.usda"))
+    assert main(["bake", path, "-o", str(tmp_path / "slid.usdc"), "--diagnostics"]) == 3
+    assert f"error: {MESH}: " in capfd.readouterr().err and not (tmp_path / "slid.usdc").exists()
+
+
 def test_density_against_numpy():
     """Two patches painted differently: at a vertex each one's mean over its edges, then the mean of both."""
     sheet, dice = stages.grid(), np.random.default_rng(2)
@@ -127,7 +175,7 @@ def test_beside_the_points(tmp_path):
     assert main(["bake", str(shot), "-o", str(measured), "--diagnostics", "--quiet"]) == 0
     layer = Sdf.Layer.OpenAsAnonymous(str(measured))
     over = layer.GetPrimAtPath(MESH)
-    for name in (STRETCH, SLIDE):
+    for name in (STRETCH, SLIDE, LARGEST, SMALLEST, AREA):
         spec = layer.GetAttributeAtPath(f"{MESH}.{name}")
         assert (spec.typeName, spec.GetInfo("interpolation")) == (Types.FloatArray, "vertex")
         over.RemoveProperty(spec)

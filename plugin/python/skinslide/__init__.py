@@ -2,8 +2,8 @@
 
 `bake` corrects a stage, `farm` writes a job of chunks that `stitch` puts together, `cache` writes what UsdSkel skins,
 `check` says what would be slid, `preview` draws it before and after, `maps` in texture coordinates, as a bake also does
-for `Pictures` and `Maps`; `setup` writes a patch, `paint` its edges, `mirror` its counterpart on a mesh's other side.
-`Slider` is the same on numpy arrays, and needs no USD.
+for `Pictures` and `Maps`, and `report` makes a page of many shots; `setup` writes a patch, `paint` its edges, `mirror`
+its counterpart on a mesh's other side. `Slider` is the same on numpy arrays, and needs no USD.
 
 Importing skinslide loads nothing but this: each name brings what it needs when it is first asked for.
 """
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from skinslide.picture.maps import DrawnMaps, Maps, MapsReport, maps
     from skinslide.picture.meshmaps import WrittenMap
     from skinslide.picture.preview import Pictures, PreviewReport, preview
+    from skinslide.picture.shots import ShotPatch, ShotRecord, ShotsReport, report
     from skinslide.problems import (
         FrameProblem,
         FrameSpecError,
@@ -84,6 +85,9 @@ __all__ = [
     "Problem",
     "Roughness",
     "Sample",
+    "ShotPatch",
+    "ShotRecord",
+    "ShotsReport",
     "SkinSlideAPI",
     "SkinSlideLiveAPI",
     "SkinSlideMeshAPI",
@@ -111,6 +115,7 @@ __all__ = [
     "parse_frames",
     "plugin_dir",
     "preview",
+    "report",
     "setup",
     "setup_to_file",
     "stitch",
@@ -131,6 +136,7 @@ _HOMES = {
     "picture.maps": ("DrawnMaps", "Maps", "MapsReport", "maps"),
     "picture.meshmaps": ("WrittenMap",),
     "picture.preview": ("Pictures", "PreviewReport", "preview"),
+    "picture.shots": ("ShotPatch", "ShotRecord", "ShotsReport", "report"),
     "problems": (
         "FrameProblem",
         "FrameSpecError",

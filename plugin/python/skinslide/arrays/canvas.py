@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from skinslide.arrays.native import (
     device_number,
     enum_value,
     new,
+    new_array,
     read,
     writable,
 )
@@ -99,6 +100,17 @@ class Scale(NamedTuple):
     highest: float
 
 
+class Marks(NamedTuple):
+    """What is drawn on the skin of a patch."""
+
+    wire: bool = False  # the sides of its faces
+    pins: np.ndarray | None = None  # (V,) bool: a dot at each
+    ways: np.ndarray | None = None  # (V, 3) by which vertices came to where they are
+
+
+NO_MARKS = Marks()
+
+
 class Canvas:
     """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light)."""
 
@@ -137,8 +149,16 @@ class Canvas:
         outline: Outline | None = None,
         double_sided: bool = False,
         left_handed: bool = False,
+        ghosts: bool = False,
+        marks: Marks = NO_MARKS,
+        texture: Mapping[int, np.ndarray] | None = None,
+        line: float = 1.0,
     ) -> None:
-        """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale."""
+        """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale.
+
+        A texture is uint8 (height, width, 4) by the number of its tile, in the place of the chequer. With ghosts, what
+        hides the patch is but a shadow. Lines are `line` times as wide as usual.
+        """
         native, figure = Arguments(), new("figure")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
         figure.tessellation = tessellation.handle.pointer
@@ -149,6 +169,13 @@ class Canvas:
         if scale:
             figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
             figure.lowest, figure.highest = scale.lowest, scale.highest
+        figure.ghosts, figure.wire, figure.line = ghosts, marks.wire, line
+        if marks.pins is not None:
+            figure.pins = native.pointer(marks.pins, np.bool_, (tessellation.vertex_count,), "pins")
+        if marks.ways is not None:
+            figure.ways = native.points(marks.ways, tessellation.vertex_count, "ways")
+        tiles = _tiles(native, texture or {})
+        figure.tiles, figure.tile_count = tiles, len(texture or {})
         call(lib.skinslide_canvas_draw, self._handle.pointer, _viewport(viewport), _camera(camera), figure)
 
     def read(self) -> np.ndarray:
@@ -198,6 +225,14 @@ def _camera(camera: Camera) -> Any:
     for name, values in camera._asdict().items():
         ffi.memmove(getattr(made, name), _doubles(values, (4, 4), name), 16 * 8)
     return made
+
+
+def _tiles(native: Arguments, texture: Mapping[int, np.ndarray]) -> Any:
+    tiles = new_array("colour_tile", len(texture))
+    for tile, (number, pixels) in zip(tiles, texture.items(), strict=True):
+        tile.pixels = native.pointer(pixels, np.uint8, (-1, -1, 4), f"tile {number}")
+        tile.number, (tile.height, tile.width) = number, pixels.shape[:2]
+    return tiles
 
 
 def _viewport(viewport: Viewport) -> Any:

@@ -95,6 +95,15 @@ def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_
     return texels, missed[0]
 
 
+def draw_corner_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_TILE) -> np.ndarray:
+    """The same of values at the corners of faces (sum of counts,)."""
+    native, texels = Arguments(), np.empty((side, side), np.float32)
+    given = native.pointer(values, np.float32, (len(corners.face_indices),), "values")
+    layout = _layout(native, corners)
+    call(lib.skinslide_map_draw_corners, layout, tile, given, side, writable("float[]", texels), ffi.NULL)
+    return texels
+
+
 def _layout(native: Arguments, corners: Corners) -> Any:
     """Points are not read."""
     layout = new("texture_layout")

@@ -208,7 +208,13 @@ class Sample(NamedTuple):
     slid: np.ndarray
 
 
-_CTYPES: dict[type, str] = {np.int32: "int32_t[]", np.float32: "float[]", np.bool_: "uint8_t[]", np.float64: "double[]"}
+_CTYPES: dict[type, str] = {
+    np.int32: "int32_t[]",
+    np.float32: "float[]",
+    np.float64: "double[]",
+    np.bool_: "uint8_t[]",
+    np.uint8: "uint8_t[]",
+}
 
 
 class Arguments:

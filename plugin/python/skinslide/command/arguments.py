@@ -88,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_cache(_add_command(commands, "cache", "write the points that UsdSkel skins into a layer of samples"))
     _add_stitch(_add_command(commands, "stitch", "put chunks of frames, baked apart, into one layer"))
     _add_farm(_add_command(commands, "farm", "write a job that bakes chunks of frames on a farm and stitches them"))
+    _add_report(_add_command(commands, "report", "write one page of many shots, from what --json printed of each"))
     return parser
 
 
@@ -178,6 +179,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     maps = command.add_argument_group("maps of the same frames, as maps draws them, with --patch and --st")
     maps.add_argument("--maps", metavar="DIR", help="a folder for them, as of maps -o")
     _add_option(maps, MapOptions.__dataclass_fields__["size"], "map_size", _MAP_SIZE)
+    _add_options(maps, MapOptions, "strain")
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:
@@ -217,7 +219,7 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
         "One channel, Y. A map is replaced in one step, so one that fails or is killed leaves it as it was",
     )
     _add_options(command, SlideOptions)
-    _add_options(command, MapOptions, "patches", "st")
+    _add_options(command, MapOptions, "patches", "st", "strain")
     size = MapOptions.__dataclass_fields__["size"]
     _add_option(command, size, "size", _MAP_SIZE, size.metadata["flag"])
     _add_printing(command)
@@ -397,6 +399,17 @@ def _add_farm(command: argparse.ArgumentParser) -> None:
     _add_options(command, LayerOptions, *(each.name for each in fields(LayerOptions) if each.name != "share"))
     command.add_argument("--pictures", metavar="DIR", help="a folder for pictures, which a task draws at the end")
     _add_page(command)
+    _add_printing(command)
+
+
+def _add_report(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "folder",
+        metavar="DIR",
+        help="a folder with what bake --json or preview --json printed of each shot, in it or below, in files that end "
+        "in .json. A page of pictures beside one, of its name or called report.html, is led to",
+    )
+    command.add_argument("-o", "--output", metavar="FILE", help="the page, .html (default: DIR/shots.html)")
     _add_printing(command)
 
 

@@ -114,6 +114,7 @@ def _also(pictures: str | None, html: str | None, maps: str | None, options: dic
     drawn = {each.name: options.pop(each.name) for each in fields(PictureOptions) if each.name in options}
     mapped = {name: drawn[name] for name in ("patches", "st") if name in drawn}
     size = {"size": options.pop("map_size")} if "map_size" in options else {}
+    strain = {"strain": options.pop("strain")} if "strain" in options else {}
     products: list[Product] = []
     if pictures is not None or html is not None:
         from skinslide.picture.preview import Pictures
@@ -124,9 +125,9 @@ def _also(pictures: str | None, html: str | None, maps: str | None, options: dic
     if maps is not None:
         from skinslide.picture.maps import Maps
 
-        products.append(Maps(maps, **mapped, **size))
-    elif size:
-        raise UsageError("there is a size of maps, but no folder (--maps) for them")
+        products.append(Maps(maps, **mapped, **size, **strain))
+    elif size or strain:
+        raise UsageError("there are options of maps, but no folder (--maps) for them")
     return products
 
 
@@ -190,6 +191,13 @@ def _farm(
     return _reported(report, {"stage": stage}, lines, json, quiet), DONE
 
 
+def _report(
+    report: Callable[..., Any], folder: str, *, output: str | None = None, json: bool = False, quiet: bool = False
+) -> Result:
+    made = report(folder, output)
+    return _reported(made, {}, [made.text(), *_written(made.page)], json, quiet), DONE
+
+
 def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bool, quiet: bool) -> str:
     """What is printed of a report: one document, lines, or its warnings alone, which then go to stderr."""
     if json:
@@ -246,4 +254,5 @@ _COMMANDS: dict[str, tuple[Callable[..., Result], str, str]] = {
     "mirror": (_author, "author.mirror", "mirror_to_file"),
     "stitch": (_stitch, "shot.stitch", "stitch"),
     "farm": (_farm, "queues.farm", "farm"),
+    "report": (_report, "picture.shots", "report"),
 }

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import quote
 
 import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.canvas import Canvas
+from skinslide.arrays.slider import Slider
 from skinslide.picture import lettering
 from skinslide.picture.canvases import Canvases
 from skinslide.picture.page import Strip, compressed
 from skinslide.picture.series import Column, Moment, Series, Skin
 from skinslide.picture.settings import settings_of
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, errors
+from skinslide.shot.advice import advice
 from skinslide.shot.options import PictureOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
 from skinslide.shot.products import MeshMaking, SlidFrame, SlidFrames
@@ -59,14 +63,22 @@ class DrawnPictures:
         return [f"{rate}, drawn with {self.device}"]
 
 
+@dataclass
+class Budget:
+    """How many bytes each picture of a page may have: known once all meshes are."""
+
+    of_each: int = 0
+
+
 class Easel(NamedTuple):
     """What all meshes are drawn with."""
 
     options: PictureOptions
     canvases: Canvases
     folder: OutputFolder | None
-    page: bool  # whether there will be one
+    page: Path | None  # where there will be one
     drawn: DrawnPictures
+    budget: Budget
 
 
 class _Encoded(NamedTuple):
@@ -74,7 +86,7 @@ class _Encoded(NamedTuple):
 
     file: bytes | None
     thumbnail: bytes | None
-    jpeg: bytes | None
+    small: bytes | None  # for a page
 
 
 class MeshPictures(MeshMaking):
@@ -85,6 +97,10 @@ class MeshPictures(MeshMaking):
         self._mesh, self._slider, self._times = planned.mesh, planned.slider, planned.times
         self._report, self._easel, self._options = report, easel, easel.options
         self._problems: list[Problem] = []
+        self._rules = self._options.compare or ()
+        self.sliders = [self._slider_of(rule) for rule in self._rules]
+        if errors(self._problems):
+            raise StageProblems(self._problems)
         self._series = self._make_all()
         self._look()
         self._problems = list(dict.fromkeys(self._problems))  # a fault of the mesh is found with each of its patches
@@ -94,7 +110,29 @@ class MeshPictures(MeshMaking):
         self._on_sheet = {self._times[i] for i in shown}
         # A strip for each series and view.
         self.thumbnails: list[list[bytes]] = [[] for _ in range(self.picture_count)]
-        self._jpegs: list[list[bytes]] = [[] for _ in range(self.picture_count)]
+        self._small: list[list[bytes]] = [[] for _ in range(self.picture_count)]
+
+    @property
+    def total(self) -> int:
+        """Pictures of all frames."""
+        return self.picture_count * len(self._times)
+
+    @property
+    def columns(self) -> int:
+        """Poses side by side on a picture."""
+        return 1 + max(1, len(self._rules))
+
+    def _slider_of(self, rule: str) -> Slider:
+        """One by which every patch follows a rule; where there is none, the mesh's own, and a problem."""
+        try:
+            found = self._mesh.build([replace(patch, rule=rule) for patch in self._mesh.patches])
+            if [each.vertex_count for each in found.patches] == [each.vertex_count for each in self._slider.patches]:
+                return found
+            reason = "its patches are other pieces"
+        except SliderError as error:
+            reason = str(error)
+        self._problems.append(Problem("error", self._mesh.path, None, None, f"under the rule {rule}: {reason}"))
+        return self._slider
 
     @property
     def picture_count(self) -> int:
@@ -108,7 +146,8 @@ class MeshPictures(MeshMaking):
         if not chosen:
             return []
         try:
-            skin = Skin.of(self._mesh, np.concatenate([self._slider.faces(i) for i in chosen]), self._options.st)
+            faces = np.concatenate([self._slider.faces(i) for i in chosen])
+            skin = Skin.of(self._mesh, faces, self._options.st, textured="texture" in self._options.views)
         except (Fault, SliderError) as fault:
             names = dict.fromkeys(patches[i].name for i in chosen)
             self._problems += [Problem("error", self._mesh.path, name, None, str(fault)) for name in names]
@@ -122,7 +161,7 @@ class MeshPictures(MeshMaking):
 
     def _make_series(self, skin: Skin, index: int) -> Series | None:
         try:
-            return Series.of(skin, self._slider, index, self._options)
+            return Series.of(skin, self._slider, index, self._options, self.columns)
         except (Fault, SliderError) as fault:
             name = self._slider.patches[index].name
             self._problems.append(Problem("error", self._mesh.path, name, None, str(fault)))
@@ -149,8 +188,10 @@ class MeshPictures(MeshMaking):
         moments = [series.moment(time) for series in self._series]
 
         def work(frame: SlidFrame) -> list[_Encoded]:
+            slid = {rule: frame.by(slider) for rule, slider in zip(self._rules, self.sliders, strict=True)}
             with self._easel.canvases.taken() as canvas:
-                return [self._encode(each, time in self._on_sheet) for each in self._draw(canvas, moments, frame)]
+                drawn = self._draw(canvas, moments, frame, slid or {"after": frame})
+                return [self._encode(each, time in self._on_sheet) for each in drawn]
 
         return work
 
@@ -160,15 +201,15 @@ class MeshPictures(MeshMaking):
         for number, picture in enumerate(made):
             if picture.thumbnail:
                 self.thumbnails[number].append(picture.thumbnail)
-            if picture.jpeg:
-                self._jpegs[number].append(picture.jpeg)
+            if picture.small:
+                self._small[number].append(picture.small)
             if picture.file and self._easel.folder:
                 path = self._path(self._easel.folder, number, time)
                 self._easel.folder.write(path, picture.file)
                 self._easel.drawn.files.append(str(path))
 
     def end(self) -> list[Problem]:
-        return self._problems
+        return [*self._problems, *advice(self._mesh, self._slider.patches, self._slider)]
 
     def _path(self, folder: OutputFolder, number: int, time: Usd.TimeCode) -> Path:
         """MESH.PATCH.VIEW.FRAME.png, or MESH.PATCH.PIECE.VIEW.FRAME.png, of a picture of each frame."""
@@ -177,29 +218,49 @@ class MeshPictures(MeshMaking):
         words = [info.name, *([str(info.piece + 1)] if info.piece_count > 1 else []), self._options.views[view]]
         return folder.path(self._mesh.prim.GetPath(), words, frame_of(time), self._options.form)
 
-    def _draw(self, canvas: Canvas, moments: list[Moment], frame: SlidFrame) -> Iterator[np.ndarray]:
+    def _draw(
+        self, canvas: Canvas, moments: list[Moment], frame: SlidFrame, slid: dict[str, SlidFrame]
+    ) -> Iterator[np.ndarray]:
         """Before and after, series by series, view by view."""
-        measured, drawn = frame.measured(), self._mesh.drawn_points
         for series, moment in zip(self._series, moments, strict=True):
-            result = frame.patches[series.index]
-            columns = [
-                Column("before", drawn(frame.cached), measured.stretch_before, result.stretch_before),
-                Column("after", drawn(frame.slid), measured.stretch_after, result.stretch_after),
-            ]
+            columns = [self._before(frame, series.index)]
+            columns += [self._after(title, each, series.index) for title, each in slid.items()]
             for view in self._options.views:
                 yield series.draw(canvas, view, moment, columns, self._options.most_stretch)
+
+    def _before(self, frame: SlidFrame, index: int) -> Column:
+        measured, points = frame.measured(), self._mesh.drawn_points(frame.cached)
+        measure = frame.patches[index].stretch_before
+        return Column("before", points, measured.stretch_before, measure, measured.force_density)
+
+    def _after(self, title: str, frame: SlidFrame, index: int) -> Column:
+        measured, points = frame.measured(), self._mesh.drawn_points(frame.slid)
+        ways, measure = points - self._mesh.drawn_points(frame.cached), frame.patches[index].stretch_after
+        return Column(title, points, measured.stretch_after, measure, measured.force_density, ways)
 
     def _encode(self, pixels: np.ndarray, on_sheet: bool) -> _Encoded:
         files = self._easel.folder is not None
         file = lettering.as_file(pixels, self._options.form) if files else None
         thumbnail = lettering.thumbnail(pixels) if files and on_sheet else None
-        return _Encoded(file, thumbnail, compressed(lettering.displayed(pixels)) if self._easel.page else None)
+        small = compressed(lettering.displayed(pixels), self._easel.budget.of_each) if self._easel.page else None
+        return _Encoded(file, thumbnail, small)
 
     def strips(self) -> Iterator[Strip]:
         """What a page shows of each series."""
         views = self._options.views
         for number, series in enumerate(self._series):
             patch = self._report.patches[series.index]
-            own = self._jpegs[number * len(views) : (number + 1) * len(views)]
+            which = range(number * len(views), (number + 1) * len(views))
+            pictures = {view: self._small[i] for view, i in zip(views, which, strict=True)}
+            files = {view: self._addresses(i) for view, i in zip(views, which, strict=True)}
             settings = settings_of(self._mesh, patch.info.setup)
-            yield Strip(self._mesh.path, patch, dict(zip(views, own, strict=True)), settings)
+            columns = ("before", *(self._rules or ("after",)))
+            yield Strip(self._mesh.path, patch, pictures, settings, columns, files)
+
+    def _addresses(self, number: int) -> list[str]:
+        """Of the pictures in full size, seen from the page; none, where they are not kept."""
+        folder, page = self._easel.folder, self._easel.page
+        if not folder or not page or self._options.form != "png":
+            return []
+        paths = (self._path(folder, number, time) for time in self._times)
+        return [quote(Path(os.path.relpath(path, page.absolute().parent)).as_posix()) for path in paths]

@@ -93,8 +93,8 @@ def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_
     _lay(pixels, np.array(card), place, place.height - card.height if at_foot else 0)
 
 
-def write_scale(pixels: np.ndarray, highest: float, place: Viewport) -> None:
-    """Puts the scale of stretch, from none to `highest`, into the lower left corner of a part of a picture."""
+def write_scale(pixels: np.ndarray, title: str, ticks: tuple[str, str, str], place: Viewport) -> None:
+    """Puts the scale of colours, with what its ends and its middle are, into the lower left corner of a part."""
     font = font_of(place.height)
     pad, wide, tall = round(font.size * _GAP), max(2, round(place.height * 0.34)), round(font.size * 0.7)
     card = Image.new("RGBA", (wide + 4 * pad, round(font.size * 3.2) + tall), _SHADE)
@@ -102,9 +102,9 @@ def write_scale(pixels: np.ndarray, highest: float, place: Viewport) -> None:
     for x in range(wide):
         colour = tuple(_encoded(np.array(false_colour(x / (wide - 1)))).tolist())
         draw.line([(2 * pad + x, 2 * pad), (2 * pad + x, 2 * pad + tall)], (*colour, 255))
-    for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
-        draw.text((2 * pad + share * wide, 2.3 * pad + tall), f"{share * highest:.3g}", _TEXT, font, anchor=anchor)
-    draw.text((2 * pad, pad // 4), "stretch", _TEXT, font)
+    for share, anchor, tick in zip((0.0, 0.5, 1.0), ("la", "ma", "ra"), ticks, strict=True):
+        draw.text((2 * pad + share * wide, 2.3 * pad + tall), tick, _TEXT, font, anchor=anchor)
+    draw.text((2 * pad, pad // 4), title, _TEXT, font)
     _lay(pixels, np.array(card), place, place.height - card.height)
 
 

@@ -14,7 +14,7 @@ from threading import Semaphore
 from typing import Any, Unpack
 
 from skinslide.arrays.native import Lookup
-from skinslide.picture.meshmaps import KINDS, Atlas, MeshMaps, WrittenMap
+from skinslide.picture.meshmaps import KINDS, STRAIN, Atlas, MeshMaps, WrittenMap
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
 from skinslide.shot.options import Frames, MapKeywords, MapOptions, Prims, SlideOptions
@@ -71,10 +71,10 @@ def maps(
 class Maps(MapOptions):
     """Maps of stretch before and after, slide distance and force density over the faces of patches.
 
-    Each is an OpenEXR file of one channel, Y: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where the faces reach
-    beyond the first tile of a UDIM; each is written whole or not at all. Force density is that of paint, textures and
-    edges, without what is constant, which changes nothing; painting by such a map gives the same densities again, but
-    for what an edge blurs.
+    Each is an OpenEXR file of one channel, Y, but strain, which has several: MESH.KIND.FRAME.exr, or
+    MESH.KIND.TILE.FRAME.exr where the faces reach beyond the first tile of a UDIM; each is written whole or not at all.
+    Force density is that of paint, textures and edges, without what is constant, which changes nothing; painting by
+    such a map gives the same densities again, but for what an edge blurs.
 
     Attributes:
         folder: Where maps go, made where there is none.
@@ -125,7 +125,7 @@ class DrawnMaps:
         Returns:
             A line for each kind of map of each mesh, and one of all.
         """
-        kinds = [self._line(mesh.path, kind) for mesh in meshes for kind in KINDS]
+        kinds = [self._line(mesh.path, kind) for mesh in meshes for kind in (*KINDS, STRAIN)]
         written = f"{self.folder}: {_maps(len(self.maps))} of {self.size} x {self.size} texels written"
         return [*filter(None, kinds), written]
 

@@ -10,9 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from pxr import Usd
 
-from skinslide.arrays.images import FIRST_TILE, Corners, draw_map, encode_exr, map_tiles
+from skinslide.arrays.images import FIRST_TILE, Corners, draw_corner_map, draw_map, encode_exr, map_tiles
 from skinslide.arrays.native import PatchSetup
+from skinslide.arrays.strain import Strain
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems
+from skinslide.shot.diagnostics import MeshStrain
 from skinslide.shot.options import MapOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
 from skinslide.shot.products import MeshMaking, SlidFrame, SlidFrames
@@ -27,6 +29,7 @@ KINDS = {
     "slide": "slide",
     "forceDensity": "force_density",
 }
+STRAIN = "strain"
 _CHANNEL = "Y"
 
 
@@ -44,7 +47,7 @@ class WrittenMap(NamedTuple):
     Attributes:
         file: Its path.
         prim: The path of the mesh.
-        kind: stretchBefore, stretchAfter, slide or forceDensity.
+        kind: stretchBefore, stretchAfter, slide or forceDensity; strain.
         tile: The number of its UDIM tile; None: the mesh has no other.
         frame: The stage time; None: the default time.
         lowest: The least value of the vertices drawn.
@@ -97,6 +100,7 @@ class MeshMaps(MeshMaking):
         try:
             self._st = _find_st(mesh, self._options.st)
             self._first = self._corners_at(FIRST)
+            self._strain = MeshStrain(mesh, self._st.attribute.GetName()) if self._options.strain else None
         except Fault as fault:
             raise StageProblems([mesh.problem(str(fault), FIRST)]) from fault
         except FrameProblem as bad:
@@ -105,12 +109,12 @@ class MeshMaps(MeshMaking):
     def check_files(self) -> None:
         """Raises UsageError for a file that cannot be written."""
         _, tiles = self._first
-        self._atlas.folder.check_all(self._path(name) for time in self._times for name in _map_names(tiles, time))
+        self._atlas.folder.check_all(self._path(name) for time in self._times for name in self._map_names(tiles, time))
 
     def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], _Drawn]:
         changes = self._st.varies and not time.IsDefault()
         corners, tiles = self._corners_at(time) if changes else self._first
-        return lambda frame: self._draw(frame, corners, _map_names(tiles, time))
+        return lambda frame: self._draw(frame, corners, self._map_names(tiles, time))
 
     def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: _Drawn) -> None:
         """Writes the maps."""
@@ -134,9 +138,13 @@ class MeshMaps(MeshMaking):
 
     def _draw(self, frame: SlidFrame, corners: Corners, names: list[MapName]) -> _Drawn:
         measured = frame.measured(self._chosen)
+        strain = self._strain.of(self._mesh.drawn_points(frame.slid)) if self._strain else None
         made, missed = [], 0
         with self._atlas.room:
             for name in names:
+                if name.kind == STRAIN and strain:
+                    made.append(self._draw_strain(strain, corners, name))
+                    continue
                 values = getattr(measured, KINDS[name.kind])
                 texels, without = draw_map(corners, values, self._options.size, name.tile or FIRST_TILE)
                 inside = values[self._vertices]
@@ -144,6 +152,23 @@ class MeshMaps(MeshMaking):
                 made.append(_Map(name, data, float(inside.min()), float(inside.max())))
                 missed += without if name.kind == names[0].kind else 0
         return _Drawn(made, missed)
+
+    def _draw_strain(self, strain: Strain, corners: Corners, name: MapName) -> _Map:
+        """Its channels in one file."""
+        size, tile = self._options.size, name.tile or FIRST_TILE
+        fields = {"largest": strain.largest, "smallest": strain.smallest, "area": strain.area_ratio}
+        channels = {channel: draw_map(corners, values, size, tile)[0] for channel, values in fields.items()}
+        for k, axis in enumerate("xy"):
+            values = np.zeros(len(corners.face_indices)) if strain.direction is None else strain.direction[:, k]
+            channels[f"direction.{axis}"] = draw_corner_map(corners, values.astype(np.float32), size, tile)
+        least, most = strain.smallest[self._vertices].min(), strain.largest[self._vertices].max()
+        return _Map(name, encode_exr(channels, wrap="clamp"), float(least), float(most))
+
+    def _map_names(self, tiles: list[int], time: Usd.TimeCode) -> list[MapName]:
+        """Without tiles where the first is the only one."""
+        shown = [None] if tiles == [FIRST_TILE] else tiles
+        kinds = [*KINDS, *([STRAIN] if self._options.strain else [])]
+        return [MapName(kind, tile, frame_of(time)) for kind in kinds for tile in shown]
 
     def _path(self, name: MapName) -> Path:
         words = [name.kind, *([] if name.tile is None else [str(name.tile)])]
@@ -166,12 +191,6 @@ class MeshMaps(MeshMaking):
                 raise FrameProblem(self._mesh.problem(message, time, patch.name)) from error
         tiles = np.unique(map_tiles(corners))
         return corners, tiles[tiles > 0].tolist()
-
-
-def _map_names(tiles: list[int], time: Usd.TimeCode) -> list[MapName]:
-    """Without tiles where the first is the only one."""
-    shown = [None] if tiles == [FIRST_TILE] else tiles
-    return [MapName(kind, tile, frame_of(time)) for kind in KINDS for tile in shown]
 
 
 def _find_st(mesh: PatchedMesh, name: str) -> Source:

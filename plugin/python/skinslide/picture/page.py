@@ -1,7 +1,8 @@
 """The report of a shot as one HTML page: pictures and curves of each patch under one scrubber over the frames.
 
-The page loads nothing, from anywhere: its policy allows the one style, the one script, and images within it. All that
-is shown of the first frame is in the markup, so that the page reads without its script and prints.
+The page loads nothing, from anywhere: its policy allows the one style, the one script, and images within it. It opens
+at the frame where sliding removes most stretch. All that is shown of it is in the markup, so that the page reads
+without its script and prints.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import hashlib
 import io
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,22 @@ from PIL import Image
 from skinslide.picture.plots import charts
 from skinslide.shot.report import BakeReport, PatchReport, milliseconds_text, roughness_text, stretch_text, time_text
 
-_SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
-_PICTURE_WIDTH = 1920  # more than a page shows, unless on a screen of twice the pixels
+_SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg", b"RIFF": "image/webp"}
+_PAGE_BYTES = 6_400_000  # of all pictures, which take a third more as text
+_LEAST_BYTES, _MOST_BYTES = 3_000, 150_000  # of a picture
+# Widths in pixels, qualities, and how many bytes they come to, as shares of those of the first.
+_SIZES = (
+    (1600, 84, 1.0),
+    (1280, 78, 0.55),
+    (1280, 62, 0.4),
+    (1120, 52, 0.3),
+    (960, 46, 0.22),
+    (800, 40, 0.16),
+    (640, 34, 0.12),
+    (480, 32, 0.08),
+    (360, 28, 0.05),
+)
+_FILM, _FILM_WIDTH = 16, 112  # frames on a film, at most; pixels that one is wide
 
 
 @dataclass(frozen=True)
@@ -32,8 +47,12 @@ class Strip:
 
     prim: str
     patch: PatchReport
-    pictures: Mapping[str, Sequence[bytes]]  # by view: a PNG or JPEG a frame, before and after side by side
+    pictures: Mapping[str, Sequence[bytes]]  # by view: a PNG, JPEG or WebP a frame, with its columns side by side
     settings: Mapping[str, str]  # what was used, as it is to be shown
+    columns: Sequence[str] = ("before", "after")  # of equal width
+    files: Mapping[str, Sequence[str]] = field(
+        default_factory=dict
+    )  # by view: where a frame's full size is, from the page
 
 
 def page(
@@ -59,19 +78,23 @@ def page(
         _check(strip)
     if not (math.isfinite(time_codes_per_second) and time_codes_per_second > 0):
         raise ValueError(f"{time_codes_per_second} time codes per second: a page cannot be played at that")
-    timeline, templates = _Timeline.of(strips), _templates()
-    return templates.get_template("page.html").render(
+    timeline = _Timeline.of(strips)
+    start = _start(strips, timeline)
+    return render(
+        "page.html",
         title=title,
-        style=_inlined(templates, "page.css"),
-        script=_inlined(templates, "page.js"),
         facts=facts,
         strips=strips,
+        samples=[timeline.sample(strip.patch, start) for strip in strips],
+        start=start,
         problems=report.problems,
         timeline=timeline,
         views=list(dict.fromkeys(view for strip in strips for view in strip.pictures)),
+        columns=list(dict.fromkeys(column for strip in strips for column in strip.columns[1:])),
         data={
             "frames": timeline.frames,
             "labels": timeline.labels,
+            "start": start,
             "positions": [timeline.positions(strip.patch) for strip in strips],
             "timeCodesPerSecond": time_codes_per_second,
         },
@@ -97,8 +120,29 @@ class _Timeline:
         place = {frame: i for i, frame in enumerate(self.frames)}
         return [place[frame] for frame in patch.frames if frame is not None]
 
+    def sample(self, patch: PatchReport, index: int) -> int:
+        """Which of a patch's frames is shown at a frame: itself, else the last before it, else the first."""
+        return max((i for i, position in enumerate(self.positions(patch)) if position <= index), default=0)
+
+
+def _start(strips: Sequence[Strip], timeline: _Timeline) -> int:
+    """Where most stretch is removed from all patches together; where they stretch most, if it is removed nowhere."""
+    patches = [strip.patch for strip in strips]
+    shown = [[patch.results[timeline.sample(patch, i)] for patch in patches] for i in range(len(timeline.frames))]
+    gains = [sum(result.stretch_before - result.stretch_after for result in results) for results in shown]
+    if max(gains, default=0.0) <= 0:
+        gains = [sum(result.stretch_before for result in results) for results in shown]
+    return int(np.argmax(gains)) if gains else 0
+
 
 # ---- Templates ----
+
+
+def render(name: str, **values: Any) -> str:
+    """A page of a template, with the style of all pages and a script of its own name."""
+    templates = _templates()
+    style, script = _inlined(templates, "page.css"), _inlined(templates, name.replace(".html", ".js"))
+    return templates.get_template(name).render(style=style, script=script, **values)
 
 
 def _templates() -> Environment:
@@ -114,6 +158,7 @@ def _templates() -> Environment:
     )
     templates.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
     templates.globals["charts_of"] = charts
+    templates.globals.update(film_of=_film, others=_others)
     templates.filters.update(
         change=_change,
         digest=_digest,
@@ -160,6 +205,11 @@ def _change(change: float | None) -> str:
     return "" if change is None else f"{100 * change:+.0f} %".replace("-", "\N{MINUS SIGN}")
 
 
+def _others(pictures: Sequence[bytes], but: int) -> list[str | None]:
+    """Every picture for the script, but one that is in the markup."""
+    return [None if i == but else _uri(picture) for i, picture in enumerate(pictures)]
+
+
 def _uri(picture: bytes) -> str:
     return f"data:{_media_type(picture)};base64,{base64.b64encode(picture).decode()}"
 
@@ -177,20 +227,48 @@ def _check(strip: Strip) -> None:
             raise ValueError(f"{where}: {len(pictures)} pictures of {view} for {len(frames)} frames")
         for frame, picture in zip(frames, pictures, strict=True):
             if _media_type(picture) is None:
-                raise ValueError(f"{where}: frame {time_text(frame)}: the picture of {view} is neither PNG nor JPEG")
+                raise ValueError(f"{where}: frame {time_text(frame)}: the picture of {view} is no PNG, JPEG or WebP")
 
 
 def _media_type(picture: bytes) -> str | None:
     return next((kind for signature, kind in _SIGNATURES.items() if picture.startswith(signature)), None)
 
 
-def compressed(pixels: np.ndarray) -> bytes:
-    """A rendered picture, uint8 (height, width, 3), for a page of many frames: some tenth of its PNG.
+def bytes_of_each(count: int) -> int:
+    """How many a picture may have, of as many as a page is to have, for the page to be sent about."""
+    return max(_LEAST_BYTES, min(_MOST_BYTES, _PAGE_BYTES // max(count, 1)))
 
-    Colours keep their full resolution.
-    """
-    image = Image.fromarray(pixels)
-    image.thumbnail((_PICTURE_WIDTH, image.height))
+
+def compressed(pixels: np.ndarray, most: int = _MOST_BYTES) -> bytes:
+    """A rendered picture, uint8 (height, width, 3), for a page of many: so wide and good as `most` bytes allow."""
+    image, at = Image.fromarray(pixels), 0
+    made = _encoded(image, at)
+    while len(made) > most and at + 1 < len(_SIZES):
+        fitting = [i for i, (*_, share) in enumerate(_SIZES) if share / _SIZES[at][2] * len(made) <= most]
+        at = max(at + 1, min(fitting, default=len(_SIZES) - 1))
+        made = _encoded(image, at)
+    return made
+
+
+def _encoded(image: Image.Image, size: int) -> bytes:
+    width, quality, _ = _SIZES[size]
+    scaled = image.resize((width, max(1, round(image.height * width / image.width)))) if image.width > width else image
     with io.BytesIO() as out:
-        image.save(out, "JPEG", quality=90, subsampling=0)
+        scaled.save(out, "WEBP", quality=quality, method=3)
+        return out.getvalue()
+
+
+def _film(strip: Strip) -> list[tuple[float, bytes]]:
+    """Frames over all the shot, and what each looks like: the last column of the first view, small."""
+    shown = np.unique(np.linspace(0, len(strip.patch.frames) - 1, _FILM).round().astype(int))
+    pictures = next(iter(strip.pictures.values()), ())
+    frames = [(i, frame) for i in shown for frame in [strip.patch.frames[i]] if frame is not None]
+    return [(frame, _small(pictures[i], len(strip.columns))) for i, frame in frames if pictures and len(frames) > 1]
+
+
+def _small(picture: bytes, columns: int) -> bytes:
+    with Image.open(io.BytesIO(picture)) as image, io.BytesIO() as out:
+        last = image.convert("RGB").crop((image.width - image.width // columns, 0, image.width, image.height))
+        last.thumbnail((_FILM_WIDTH, _FILM_WIDTH))
+        last.save(out, "WEBP", quality=50)
         return out.getvalue()

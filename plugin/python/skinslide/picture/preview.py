@@ -23,9 +23,9 @@ from skinslide.arrays.canvas import Canvas
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import choose_lookup, version
 from skinslide.picture.canvases import Canvases
-from skinslide.picture.drawing import DrawnPictures, Easel, MeshPictures
+from skinslide.picture.drawing import Budget, DrawnPictures, Easel, MeshPictures
 from skinslide.picture.lettering import contact_sheets
-from skinslide.picture.page import page
+from skinslide.picture.page import bytes_of_each, page
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
@@ -177,7 +177,7 @@ class _Previewing(Making):
         self._stage, self._options, self._folder = stage, options, folder
         self._page = None if asked.html is None else Path(asked.html)
         self._drawn = DrawnPictures()
-        self._easel = Easel(asked, _canvases(asked, options.lookup), folder, self._page is not None, self._drawn)
+        self._easel = Easel(asked, _canvases(asked, options.lookup), folder, self._page, self._drawn, Budget())
         self._meshes: list[MeshPictures] = []
 
     def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking | None:
@@ -199,6 +199,7 @@ class _Previewing(Making):
         with self._easel.canvases.taken() as canvas:
             self._drawn.device = canvas.device.renderer
         report.made.append(self._drawn)
+        self._easel.budget.of_each = bytes_of_each(sum(mesh.total for mesh in self._meshes))
         start = time.monotonic()
         yield
         self._drawn.seconds = time.monotonic() - start

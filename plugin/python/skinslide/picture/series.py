@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.canvas import Camera, Canvas, Outline, Scale, Shape, Tessellation
+from skinslide.arrays.canvas import Camera, Canvas, Marks, Outline, Scale, Shape, Tessellation
 from skinslide.arrays.slider import Slider
 from skinslide.picture import lettering
 from skinslide.picture.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
+from skinslide.picture.material import base_colour
 from skinslide.problems import Fault, FrameProblem, SliderError, frame_text
 from skinslide.shot.checks import MOST
 from skinslide.shot.options import PictureOptions
@@ -23,6 +26,8 @@ from skinslide.stage.values import FIRST, primvar_source
 
 _ST = "st"
 _SQUARES = 16  # of the chequer, across a patch
+_MOST_DENSITY = 16.0  # and its inverse are the ends of the scale
+_MOST_SLIDE = 0.1  # of the patch's size at rest: the end of the scale
 
 
 class Column(NamedTuple):
@@ -32,6 +37,8 @@ class Column(NamedTuple):
     points: np.ndarray  # (V, 3)
     stretch: np.ndarray  # (V,)
     measure: float  # stretch of the patch
+    density: np.ndarray | None = None  # (V,) as painted
+    ways: np.ndarray | None = None  # (V, 3) by which vertices slid here
 
 
 class Moment(NamedTuple):
@@ -40,6 +47,7 @@ class Moment(NamedTuple):
     title: str  # "frame 1012", or nothing for the default time
     camera: Camera
     to_world: np.ndarray  # (4, 4)
+    pins: np.ndarray | None = None  # (V,) bool, points of the patch that its paint lets not slide
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +59,10 @@ class Skin:
     tessellation: Tessellation
     double_sided: bool
     left_handed: bool
+    texture: dict[int, np.ndarray] | None = None  # by tile; None: it is not wanted
 
     @classmethod
-    def of(cls, mesh: PatchedMesh, faces: np.ndarray, st: str | None) -> Skin:
+    def of(cls, mesh: PatchedMesh, faces: np.ndarray, st: str | None, *, textured: bool = False) -> Skin:
         """To be looked at closely at some faces. Raises Fault and SliderError for what cannot be drawn."""
         corners = _st_of(mesh, st)
         shape, subdivision = Shape(mesh.face_counts, mesh.face_indices), mesh.drawn_subdivision()
@@ -64,7 +73,10 @@ class Skin:
                 raise Fault(f"primvars:{st or _ST}: {error}") from error
             raise
         double_sided = bool(UsdGeom.Mesh(mesh.prim).GetDoubleSidedAttr().Get(FIRST))
-        return cls(mesh, corners, tessellation, double_sided, mesh.left_handed)
+        texture = base_colour(mesh.prim) if textured else None
+        if textured and corners is None:
+            raise Fault(f"there is no primvars:{_ST} to draw its texture on")
+        return cls(mesh, corners, tessellation, double_sided, mesh.left_handed, texture)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +89,9 @@ class Series:
     outline: Outline
     eye: Eye
     squares: float
+    faces: np.ndarray
+    setup: int  # among those of the mesh
+    wire: bool
 
     @classmethod
     def of(cls, skin: Skin, slider: Slider, index: int, options: PictureOptions, columns: int = 2) -> Series:
@@ -84,7 +99,14 @@ class Series:
         faces = slider.faces(index)
         label, outline = PatchReport(slider.patches[index]).label, Outline(skin.tessellation, faces)
         eye, squares = _eye(skin.mesh, faces, options, columns), options.squares or _suitable_squares(skin, faces)
-        return cls(skin, index, label, outline, eye, squares)
+        setup = slider.patches[index].setup
+        return cls(skin, index, label, outline, eye, squares, faces, setup, options.wire)
+
+    @cached_property
+    def most_slide(self) -> float:
+        """The end of the scale of slides."""
+        places = self.skin.mesh.rest_points[self.skin.mesh.topology.vertices_of(self.faces)]
+        return _MOST_SLIDE * float(np.linalg.norm(np.ptp(places.astype(np.float64), axis=0))) or 1.0
 
     def moment(self, time: Usd.TimeCode) -> Moment:
         """Raises FrameProblem where the patch cannot be seen."""
@@ -92,16 +114,23 @@ class Series:
         title = "" if frame is None else f"frame {frame_text(frame)}"
         to_the_world = to_world(self.skin.mesh, time)
         try:
-            return Moment(title, self.eye.camera(time), to_the_world)
+            return Moment(title, self.eye.camera(time), to_the_world, self._pins(time))
         except (Fault, SliderError) as fault:
             raise FrameProblem(self.skin.mesh.problem(str(fault), time, self.label)) from fault
+
+    def _pins(self, time: Usd.TimeCode) -> np.ndarray | None:
+        controls = self.skin.mesh.patch_controls_at(self.setup, time)
+        if controls.weight is None:
+            return None
+        return (controls.weight <= 0) & self.skin.mesh.topology.vertices_of(self.faces)
 
     def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
         """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
         canvas.clear(lettering.BACKGROUND)
         places = lettering.columns(canvas.width, canvas.height, len(columns))
         for column, place in zip(columns, places, strict=True):
-            scale = Scale(column.stretch, 0.0, most_stretch) if view == "stretch" else None
+            slides = view == "slide"
+            marks = Marks(self.wire, at.pins if view in ("density", "slide") else None, column.ways if slides else None)
             canvas.draw(
                 self.skin.tessellation,
                 column.points,
@@ -109,18 +138,40 @@ class Series:
                 place,
                 to_world=at.to_world,
                 squares=self.squares,
-                scale=scale,
+                scale=self._scale(view, column, most_stretch),
                 double_sided=self.skin.double_sided,
                 outline=self.outline,
                 left_handed=self.skin.left_handed,
+                ghosts=True,
+                marks=marks,
+                texture=self.skin.texture if view == "texture" else None,
             )
         pixels = canvas.read()
         for column, place in zip(columns, places, strict=True):
             lettering.write_text(pixels, [column.title, f"stretch {column.measure:.3f}"], place)
         lettering.write_text(pixels, [f"{self.label}   {at.title}".rstrip()], places[-1], at_foot=True)
-        if view == "stretch":
-            lettering.write_scale(pixels, most_stretch, places[0])
+        ticks = self._ticks(view, most_stretch)
+        if ticks:
+            lettering.write_scale(pixels, *ticks, places[0])
         return pixels
+
+    def _scale(self, view: str, column: Column, most_stretch: float) -> Scale | None:
+        if view == "stretch":
+            return Scale(column.stretch, 0.0, most_stretch)
+        if view == "density":
+            density = np.ones_like(column.stretch) if column.density is None else column.density
+            return Scale(np.log(density), -math.log(_MOST_DENSITY), math.log(_MOST_DENSITY))
+        if view == "slide":
+            ways = np.zeros_like(column.points) if column.ways is None else column.ways
+            return Scale(np.linalg.norm(ways, axis=1), 0.0, self.most_slide)
+        return None
+
+    def _ticks(self, view: str, most_stretch: float) -> tuple[str, tuple[str, str, str]] | None:
+        """What the scale of a view is of, and what its ends and its middle are."""
+        if view == "density":
+            return "force density", (f"1/{_MOST_DENSITY:g}", "1", f"{_MOST_DENSITY:g}")
+        most = {"stretch": most_stretch, "slide": self.most_slide}.get(view)
+        return None if most is None else (view, ("0", f"{most / 2:.3g}", f"{most:.3g}"))
 
 
 def _st_of(mesh: PatchedMesh, asked: str | None) -> np.ndarray | None:
@@ -137,8 +188,20 @@ def _suitable_squares(skin: Skin, faces: np.ndarray) -> float:
     mesh, st = skin.mesh, skin.st
     inside = np.repeat(np.isin(np.arange(mesh.topology.face_count), faces), mesh.face_counts)
     places = mesh.rest_points[mesh.face_indices[inside]] if st is None else st[inside]
-    extent = float(np.ptp(places.astype(np.float64), axis=0).max())
-    return min(_SQUARES / extent, MOST) if extent > 0 else 1.0
+    across = _root_of_area(skin, faces) or float(np.ptp(places.astype(np.float64), axis=0).max())
+    return min(_SQUARES / across, MOST) if across > 0 else 1.0
+
+
+def _root_of_area(skin: Skin, faces: np.ndarray) -> float:
+    """Of what faces have in the texture, which may lie in pieces far apart; 0 without a texture."""
+    if skin.st is None:
+        return 0.0
+    start = np.cumsum(skin.mesh.face_counts) - skin.mesh.face_counts
+    x, y = skin.st.astype(np.float64).T
+    following = np.arange(len(x)) + 1
+    following[start + skin.mesh.face_counts - 1] = start
+    doubled = np.abs(np.add.reduceat(x * y[following] - x[following] * y, start))
+    return math.sqrt(doubled[faces].sum() / 2)
 
 
 def _eye(mesh: PatchedMesh, faces: np.ndarray, options: PictureOptions, columns: int) -> Eye:

@@ -10,16 +10,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import Controls, Lookup
 from skinslide.arrays.records import PatchResult
 from skinslide.arrays.slider import Slider, version
-from skinslide.problems import FrameProblem, Problem, StageProblems, UsageError
+from skinslide.problems import FrameProblem, Problem, UsageError
 from skinslide.shot.advice import advice
 from skinslide.shot.derived import Derived
+from skinslide.shot.diagnostics import MeshDiagnostics, Primvar
 from skinslide.shot.frames import AUTHORED
 from skinslide.shot.loop import slide
 from skinslide.shot.options import ChunkOptions, Frames, LayerOptions, Prims, SlideOptions
@@ -30,14 +31,10 @@ from skinslide.shot.report import MEASURES, BakeReport, MeshReport, roughness_te
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh
-from skinslide.stage.schema import SLIDE, STRETCH
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
 from skinslide.write.place import check_not_input, check_output, given_output
 from skinslide.write.target import check_target, hidden_by, spec_path
-
-# Primvars, each with the field of skinslide.arrays.slider.Diagnostics that it holds.
-DIAGNOSTICS = {STRETCH: "stretch_after", SLIDE: "slide"}
 
 # What may be limited at each frame, in words.
 _LIMITED = {
@@ -217,8 +214,6 @@ class _Baking(Making):
         self.options, self._place, self._in_stage = options, place, in_stage
 
     def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking:
-        if self.options.diagnostics:
-            _check_primvars(planned.mesh.prim)
         if self._in_stage:
             spec_path(planned.mesh.stage, planned.mesh.prim.GetPath())
         return _MeshBake(planned, report, self)
@@ -255,6 +250,13 @@ def _given(options: SlideOptions | LayerOptions) -> dict[str, Any]:
     return {name: value for name, value in told.items() if value is not None and value is not False}
 
 
+class _Worked(NamedTuple):
+    """What the pool makes of a frame."""
+
+    least: list[tuple[float, ...]]  # stretch of each patch, where it was searched for
+    diagnostics: list[tuple[Primvar, Any]]
+
+
 class _MeshBake(MeshMaking):
     """Bakes one mesh."""
 
@@ -262,37 +264,35 @@ class _MeshBake(MeshMaking):
         self._mesh, self._patches, self._report, self._baking = planned.mesh, planned.slider.patches, report, baking
         self._slider, self._derived = planned.slider, Derived(planned.mesh, between=planned.between)
         self.turns = self._derived.carries
-        self._diagnostics = baking.options.diagnostics
+        self._diagnostics = MeshDiagnostics(planned.mesh) if baking.options.diagnostics else None
         self.sliders = [_least_slider(planned.mesh)] if baking.options.share else []
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return self._derived.times_needed(time)
 
-    def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], Sequence[tuple[float, ...]]]:
-        def work(frame: SlidFrame) -> Sequence[tuple[float, ...]]:
-            if self._diagnostics:
-                frame.measured()
-            return [slider.least_stretch(frame.cached) for slider in self.sliders]
+    def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], _Worked]:
+        def work(frame: SlidFrame) -> _Worked:
+            told = self._diagnostics.values(frame) if self._diagnostics else []
+            return _Worked([slider.least_stretch(frame.cached) for slider in self.sliders], told)
 
         return work
 
-    def take(self, time: Usd.TimeCode, frames: SlidFrames, made: Sequence[tuple[float, ...]]) -> None:
+    def take(self, time: Usd.TimeCode, frames: SlidFrames, made: _Worked) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim
         self._check_limits(time, frame)
-        for least in made:
+        for least in made.least:
             self._report.add_least(frame_of(time), least)
         geometry, points = UsdGeom.PointBased(prim), Vt.Vec3fArray.FromNumpy(frame.slid)
         overs.set(geometry.GetPointsAttr(), points, time)
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
-        for name, field in DIAGNOSTICS.items() if self._diagnostics else ():
-            values = Vt.FloatArray.FromNumpy(getattr(frame.measured(), field))
-            overs.set_primvar(prim.GetPath(), name, values, time)
+        for primvar, values in made.diagnostics:
+            overs.set_primvar(prim.GetPath(), primvar.name, (primvar.kind, primvar.interpolation), values, time)
         for attribute, sample, value in self._derived.values(time, frames):
             overs.set(attribute, value, sample)
 
     def end(self) -> list[Problem]:
         self._check_roughness()
-        indices = _indices(self._mesh.prim) if self._diagnostics else []
+        indices = self._diagnostics.indices() if self._diagnostics else []
         for attribute in [*self._derived.blocked, *indices]:
             self._baking.overs.block(attribute)
         if self._mesh.skinning:
@@ -331,12 +331,6 @@ def _least_slider(mesh: PatchedMesh) -> Slider:
     )
 
 
-def _indices(prim: Usd.Prim) -> list[Usd.Attribute]:
-    """Those of primvars that the stage has under these names: they would choose among the values that are written."""
-    primvars = [UsdGeom.Primvar(prim.GetAttribute(name)) for name in DIAGNOSTICS if prim.HasAttribute(name)]
-    return [primvar.GetIndicesAttr() for primvar in primvars if primvar.IsIndexed()]
-
-
 def _hidden(stage: Usd.Stage, meshes: Iterable[str]) -> Iterator[Problem]:
     """Warns of meshes whose points a stronger opinion than the edit target's hides."""
     for path in meshes:
@@ -344,25 +338,3 @@ def _hidden(stage: Usd.Stage, meshes: Iterable[str]) -> Iterator[Problem]:
         if stronger:
             message = f"the slid points are hidden by those in {stronger}, which is stronger"
             yield Problem("warning", path, None, None, message)
-
-
-def _check_primvars(prim: Usd.Prim) -> None:
-    """Raises StageProblems where the stage has something else under the names of the diagnostics."""
-    found = []
-    for name in DIAGNOSTICS:
-        other = _what_else(prim.GetProperty(name)) if prim.HasProperty(name) else None
-        if other:
-            message = f"{name} is {other}; a bake with diagnostics writes float[] there, one a vertex"
-            found.append(Problem("error", str(prim.GetPath()), None, None, message))
-    if found:
-        raise StageProblems(found)
-
-
-def _what_else(found: Usd.Property) -> str | None:
-    """What a property is, other than a primvar of a float for each element."""
-    if not isinstance(found, Usd.Attribute):
-        return "a relationship"
-    if found.GetTypeName() != Sdf.ValueTypeNames.FloatArray:
-        return str(found.GetTypeName())
-    size = UsdGeom.Primvar(found).GetElementSize()
-    return None if size == 1 else f"of elementSize {size}"

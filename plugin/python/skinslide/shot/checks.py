@@ -56,6 +56,13 @@ def documented(table: T) -> T:
     return table
 
 
+# ---- What stands on a command line ----
+
+
+def words_text(text: str) -> list[str]:
+    return text.split(",")
+
+
 # ---- What a function is given ----
 
 

@@ -61,7 +61,8 @@ def slide(
                     if progress:
                         progress(report.frame_count, total)
                 report.warnings.extend(first_of(mesh.told))
-                report.warnings.extend(problem for made in mesh.makings for problem in made.end())
+                ended = [problem for made in mesh.makings for problem in made.end()]
+                report.warnings.extend(each for each in dict.fromkeys(ended) if each not in report.warnings)
     return report
 
 

@@ -22,7 +22,8 @@ Names: TypeAlias = Sequence[str] | str | None
 Prims: TypeAlias = "PrimsLike | None"
 Frames: TypeAlias = "FramesLike | None"
 
-VIEWS = ("chequer", "stretch")
+VIEWS = ("chequer", "stretch", "density", "slide", "texture")
+RULES = ("unit", "fast", "relaxed", "even")
 QUEUES = ("openjd", "slurm")
 FORMATS = ("png", "exr")
 
@@ -139,8 +140,10 @@ class LayerOptions(Options):
         checks.truth,
         "--diagnostics",
         action="store_true",
-        help="write two primvars by vertex beside the points: primvars:skinSlide:stretch, the RMS of log(length / rest "
-        "length) over the edges of patches at the vertex, slid; and primvars:skinSlide:slide, how far it slid",
+        help="write primvars beside the points: by vertex primvars:skinSlide:stretch, the RMS of log(length / rest "
+        "length) over the edges of patches, slid; primvars:skinSlide:slide, how far it slid; largestStretch and "
+        "smallestStretch, the principal stretches as lengths by lengths at rest, and areaRatio, their product; by "
+        "corner stretchDirection, that of the largest in st, as the cosine and sine of twice its angle",
     )
 
 
@@ -201,14 +204,24 @@ class PictureOptions(Options):
         help="only this patch; may be given again (default: all)",
     )
     views: Sequence[str] | str = option(
-        VIEWS,
+        VIEWS[:2],
         checks.some_of("view", VIEWS),
         "--view",
         action="append",
         choices=VIEWS,
         help="chequer: on the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
-        "false colours; may be given again (default: both)",
+        "false colours; density: the force density that is painted; slide: how far each point slid, and from where; "
+        "texture: the base colour texture of the mesh's material; may be given again (default: chequer and stretch)",
     )
+    compare: Names = option(
+        None,
+        or_none(checks.some_of("rule", RULES)),
+        "--compare",
+        type=checks.words_text,
+        metavar="RULE[,RULE]",
+        help="beside the cache, what each of these rules makes of every patch, in the place of its own",
+    )
+    wire: bool = option(False, checks.truth, "--wire", action="store_true", help="draw the sides of the patch's faces")
     camera: PrimLike | None = option(
         None,
         or_none(checks.prim),
@@ -269,6 +282,8 @@ class PictureKeywords(TypedDict, total=False):
 
     patches: Names
     views: Sequence[str] | str
+    compare: Names
+    wire: bool
     camera: PrimLike | None
     follow: bool
     size: tuple[int, int]
@@ -306,11 +321,21 @@ class MapOptions(Options):
         help="the primvar with texture coordinates, in which the maps are drawn and carried on for 4 texels beyond; "
         "where faces overlap in it, as with mirrored halves, the later in the mesh is seen (default: %(default)s)",
     )
+    strain: bool = option(
+        False,
+        checks.truth,
+        "--strain",
+        action="store_true",
+        help="MESH.strain.FRAME.exr too, of the slid skin, for wrinkles: channels largest and smallest, the principal "
+        "stretches as lengths by lengths at rest, area, their product, and direction.x and direction.y, the cosine and "
+        "sine of twice the angle of the largest from s towards t",
+    )
 
 
 class MapKeywords(TypedDict, total=False):
     """The same as keywords of a function."""
 
+    strain: bool
     patches: Names
     size: int
     st: str

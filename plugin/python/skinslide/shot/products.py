@@ -54,6 +54,10 @@ class SlidFrame:
         self._slider, self._controls = slider, controls
         self._measured: dict[tuple[bool, ...], Diagnostics] = {}
 
+    def by(self, slider: Slider) -> SlidFrame:
+        """The same time slid by another slider of the mesh."""
+        return SlidFrame(slider, self.cached, self._controls, turns=False)
+
     def measured(self, chosen: Sequence[bool] | None = None) -> Diagnostics:
         """What was done to each vertex by the set-ups chosen, None by all: measured once, by one thread at a time."""
         key = () if chosen is None or all(chosen) else tuple(chosen)

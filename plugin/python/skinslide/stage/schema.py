@@ -15,6 +15,9 @@ CACHED = f"{NAMESPACE}:cached"
 
 # Primvars that a bake writes when it is asked for diagnostics.
 STRETCH, SLIDE = f"primvars:{NAMESPACE}:stretch", f"primvars:{NAMESPACE}:slide"
+LARGEST, SMALLEST = f"primvars:{NAMESPACE}:largestStretch", f"primvars:{NAMESPACE}:smallestStretch"
+AREA, DIRECTION = f"primvars:{NAMESPACE}:areaRatio", f"primvars:{NAMESPACE}:stretchDirection"
+DIAGNOSTICS = (STRETCH, SLIDE, LARGEST, SMALLEST, AREA, DIRECTION)
 
 
 def applied_schemas(prim: Usd.Prim) -> list[str]:

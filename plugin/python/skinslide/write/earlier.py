@@ -93,7 +93,7 @@ class EarlierBake:
             self._before.keep(_cached(path))
             Sdf.CopySpec(self._layer, _cached(path), self._layer, path)
             return
-        _clear(spec, (*VALUES, "interpolation") if spec.name in (schema.STRETCH, schema.SLIDE) else VALUES)
+        _clear(spec, (*VALUES, "interpolation") if spec.name in schema.DIAGNOSTICS else VALUES)
         data = dict(spec.GetInfo("customData"))
         del data[MARK]
         if data:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
+from pxr import Sdf, Usd, UsdGeom, UsdSkel
 
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
@@ -39,12 +39,14 @@ class OverLayer:
         """Authors a sample, or the default value where time is the default time."""
         self._set(self._spec(attribute), value, time)
 
-    def set_primvar(self, prim: Sdf.Path, name: str, values: Vt.FloatArray, time: Usd.TimeCode) -> None:
-        """Authors a float primvar by vertex, which the stage need not have."""
+    def set_primvar(
+        self, prim: Sdf.Path, name: str, kind: tuple[Sdf.ValueTypeName, str], values: Any, time: Usd.TimeCode
+    ) -> None:
+        """Authors a primvar of a type and an interpolation, which the stage need not have."""
         spec = self.layer.GetAttributeAtPath(prim.AppendProperty(name))
         if not spec:
-            spec = self._new_spec(prim, name, Sdf.ValueTypeNames.FloatArray, Sdf.VariabilityVarying)
-            spec.SetInfo("interpolation", UsdGeom.Tokens.vertex)
+            spec = self._new_spec(prim, name, kind[0], Sdf.VariabilityVarying)
+            spec.SetInfo("interpolation", kind[1])
         self._set(spec, values, time)
 
     def block(self, attribute: Usd.Attribute) -> None:

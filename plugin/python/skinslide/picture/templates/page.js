@@ -5,7 +5,11 @@ const slider = document.getElementById("frame");
 const shown = document.getElementById("number");
 const play = document.getElementById("play");
 const last = data.labels.length - 1;
-let current = 0; // index of the frame that the slider is at
+const wipe = document.getElementById("wipe");
+const place = document.getElementById("place");
+const flicker = document.getElementById("flicker");
+let current = data.start; // index of the frame that the slider is at
+let flickering = null; // the timer that changes before and after
 let due = null; // when the next frame is to come, while playing
 
 /* ---- A patch: its pictures, its curves, its table. A sample is one of its own frames. ---- */
@@ -18,6 +22,7 @@ function readStrip(section, i) {
     positions: data.positions[i], // of its samples among all frames; none where it has but a default value
     held: section.querySelector(".held"),
     rows,
+    film: [...section.querySelectorAll(".still")],
     pictures,
     charts: charts.map((chart) => readChart(chart, rows)),
   };
@@ -25,20 +30,44 @@ function readStrip(section, i) {
   return strip;
 }
 
-/* The first picture is in the page; the others are text until their view is first looked at. */
+/* The picture of the frame at which the page opens is in it; the others are text until their view is first looked at. Over the
+ * picture, whose last column is seen, lies another whose first is. */
 function readPicture(figure) {
   const image = figure.querySelector("img");
-  const first = image.src;
+  const columns = JSON.parse(figure.dataset.columns);
+  const own = image.src;
+  const over = new Image();
+  over.className = "over";
+  over.alt = "";
+  over.draggable = image.draggable = false;
+  figure.querySelector(".pair").append(over);
+  figure.style.setProperty("--columns", columns.length);
+  const names = columns.map((name) => figure.querySelector("figcaption").appendChild(named(name)));
   let sources = null;
+  let files = null;
+  drag(figure.querySelector(".pair"));
   return {
     figure,
     show(sample, moment) {
-      sources ??= [first, ...JSON.parse(figure.querySelector("script").textContent)];
-      if (image.src !== sources[sample]) image.src = sources[sample];
+      sources ??= JSON.parse(figure.querySelector(".sources").textContent).map((source) => source ?? own);
+      files ??= JSON.parse(figure.querySelector(".files")?.textContent ?? "[]");
+      for (const each of [image, over]) if (each.src !== sources[sample]) each.src = sources[sample];
+      if (files.length) figure.querySelector(".full").href = files[sample];
       image.alt = `${image.dataset.alt}, ${moment}`;
       figure.querySelector(".at").textContent = moment;
+      const asked = columns.indexOf(document.querySelector(".columns :checked")?.value);
+      const shown = asked > 0 ? asked : columns.length - 1;
+      figure.style.setProperty("--column", shown);
+      names.forEach((name, i) => (name.hidden = inOnePlace() && i > 0 && i !== shown));
     },
   };
+}
+
+function named(column) {
+  const name = document.createElement("span");
+  name.className = "name";
+  name.textContent = column;
+  return name;
 }
 
 function readChart(figure, rows) {
@@ -72,13 +101,16 @@ function sampleAt(strip, index) {
 function showStrip(strip) {
   const sample = sampleAt(strip, current);
   const view = document.querySelector(".views :checked")?.value;
-  const chosen = strip.pictures.find(({ figure }) => figure.dataset.view === view) ?? strip.pictures[0];
-  for (const picture of strip.pictures) picture.figure.hidden = picture !== chosen;
-  chosen?.show(sample, strip.rows[sample].cells[0].dataset.moment);
+  const one = strip.pictures.find(({ figure }) => figure.dataset.view === view) ?? strip.pictures[0];
+  for (const picture of strip.pictures) {
+    picture.figure.hidden = view !== "" && picture !== one;
+    if (!picture.figure.hidden) picture.show(sample, strip.rows[sample].cells[0].dataset.moment);
+  }
   for (const chart of strip.charts) if (!chart.figure.classList.contains("hovered")) chart.show(sample);
   const missing = strip.positions.length > 0 && strip.positions[sample] !== current;
   strip.held.textContent = missing ? `has no frame ${data.labels[current]}` : "";
   for (const row of strip.rows) row.classList.toggle("current", row === strip.rows[sample]);
+  for (const still of strip.film) still.classList.toggle("current", Number(still.dataset.jump) === current);
 }
 
 /* ---- Over a curve, its values are those under the pointer; a click, or a drag, goes there. ---- */
@@ -100,6 +132,47 @@ function listen(chart, strip) {
     chart.figure.classList.remove("hovered");
     chart.show(sampleAt(strip, current));
   });
+}
+
+/* ---- Before and after in one place: wiped over each other, or by turns ---- */
+
+const inOnePlace = () => place?.getAttribute("aria-pressed") === "true";
+
+function setWipe(share) {
+  wipe.value = share;
+  document.documentElement.style.setProperty("--wipe", share / 100);
+}
+
+function setPlace(one) {
+  place.setAttribute("aria-pressed", one);
+  document.body.classList.toggle("once", one);
+  wipe.disabled = flicker.disabled = !one;
+  if (!one) setFlickering(false);
+  strips.forEach(showStrip);
+}
+
+function setFlickering(on) {
+  clearInterval(flickering);
+  flickering = on ? setInterval(() => setWipe(Number(wipe.value) > 50 ? 0 : 100), 450) : null;
+  flicker.setAttribute("aria-pressed", on);
+}
+
+/* Only before, or only after. */
+function alone(before) {
+  if (!inOnePlace()) setPlace(true);
+  setFlickering(false);
+  setWipe(before ? 100 : 0);
+}
+
+function drag(pair) {
+  const follow = (event) => {
+    if (!inOnePlace() || !(event.buttons & 1)) return;
+    const box = pair.getBoundingClientRect();
+    setFlickering(false);
+    setWipe(Math.min(Math.max((100 * (event.clientX - box.left)) / box.width, 0), 100));
+  };
+  pair.addEventListener("pointerdown", follow);
+  pair.addEventListener("pointermove", follow);
 }
 
 /* ---- The player ---- */
@@ -134,10 +207,14 @@ function setPlaying(playing) {
 
 function pressed(event) {
   const { target, key } = event;
-  if (event.ctrlKey || event.altKey || event.metaKey || last < 1) return;
-  if (key === " " && !target.closest("button, summary, .views")) setPlaying(due === null);
-  else if (key === "ArrowLeft" && !target.closest(".views, #frame")) go(current - 1);
-  else if (key === "ArrowRight" && !target.closest(".views, #frame")) go(current + 1);
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  if (place && key === "w") setPlace(!inOnePlace());
+  else if (place && (key === "a" || key === "b")) alone(key === "a");
+  else if (place && key === "f") setFlickering(flickering === null && inOnePlace());
+  else if (last < 1 || target === wipe) return;
+  else if (key === " " && !target.closest("button, summary, .choice")) setPlaying(due === null);
+  else if (key === "ArrowLeft" && !target.closest(".choice, #frame")) go(current - 1);
+  else if (key === "ArrowRight" && !target.closest(".choice, #frame")) go(current + 1);
   else return;
   event.preventDefault();
 }
@@ -157,6 +234,13 @@ document.querySelector(".player").hidden = !document.querySelector(".player > :n
 slider.addEventListener("input", () => go(Number(slider.value)));
 play.addEventListener("click", () => setPlaying(due === null));
 document.addEventListener("keydown", pressed);
-document.querySelectorAll(".views input").forEach((view) => view.addEventListener("change", () => go(current)));
+document.querySelectorAll(".choice input").forEach((choice) => choice.addEventListener("change", () => go(current)));
+if (place) {
+  place.addEventListener("click", () => setPlace(!inOnePlace()));
+  flicker.addEventListener("click", () => setFlickering(flickering === null));
+  wipe.addEventListener("input", () => setFlickering(false) ?? setWipe(Number(wipe.value)));
+  setWipe(50);
+  setPlace(true);
+}
 if (last > 0) document.querySelectorAll("[data-jump]").forEach(makeJump);
-go(0);
+go(data.start);

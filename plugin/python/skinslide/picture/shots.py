@@ -1,0 +1,190 @@
+"""One page of many shots, from the records that bakes and previews print with `--json`.
+
+for each .json below a folder: what it says of its patches, and the page beside it
+    a row a patch, the shots with most stretch left first
+the page: every row, every problem, and the frames to look at
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from skinslide.picture.page import render
+from skinslide.problems import Problem, UsageError, lines_text
+from skinslide.shot.report import RECORD, roughness_text, stretch_text, time_text
+from skinslide.stage.given import StrPath
+from skinslide.write.place import check_output, given_output, replacing, writing
+
+_PAGE = "shots.html"
+
+
+@dataclass(frozen=True)
+class ShotPatch:
+    """A patch of a shot.
+
+    Attributes:
+        prim: The path of its mesh.
+        label: Its name, with its piece where it has several.
+        frames: How many were slid.
+        worst: The frame at which the cache has most stretch; None is the default time.
+        before: Stretch there.
+        after: And slid.
+        roughness: How many times as roughly as its cache it moves; None of fewer than three frames.
+        folded: The most faces turned over at a frame.
+    """
+
+    prim: str
+    label: str
+    frames: int
+    worst: float | None
+    before: float
+    after: float
+    roughness: float | None
+    folded: int
+
+    @property
+    def change(self) -> float | None:
+        """Of stretch by sliding, as a share of the cache's; None where there is none."""
+        return self.after / self.before - 1 if self.before > 0 else None
+
+
+@dataclass(frozen=True)
+class ShotRecord:
+    """A shot, as a record has it.
+
+    Attributes:
+        file: The record, from the folder on.
+        stage: The stage that was slid, as it was named.
+        page: The page of its pictures beside it, from the folder on; empty: there is none.
+        patches: Those that were slid.
+        problems: Warnings and notes of it, errors of one that failed.
+    """
+
+    file: str
+    stage: str
+    page: str
+    patches: list[ShotPatch]
+    problems: list[Problem]
+
+    @property
+    def left(self) -> float:
+        """The most stretch that is left, of its patches at their worst frames."""
+        return max((patch.after for patch in self.patches), default=0.0)
+
+
+@dataclass(frozen=True)
+class ShotsReport:
+    """Many shots, those with most stretch left first.
+
+    Attributes:
+        page: The page that was written.
+        shots: What is on it.
+    """
+
+    page: str
+    shots: list[ShotRecord]
+
+    @property
+    def problems(self) -> list[Problem]:
+        """Of every shot."""
+        return [problem for shot in self.shots for problem in shot.problems]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
+        shots = [
+            {
+                "file": shot.file,
+                "stage": shot.stage,
+                "page": shot.page,
+                "patches": [vars(patch) for patch in shot.patches],
+                "problems": [problem.as_dict() for problem in shot.problems],
+            }
+            for shot in self.shots
+        ]
+        return {"page": self.page, "shots": shots}
+
+    def text(self) -> str:
+        """A line for each shot."""
+        return lines_text([_line(shot) for shot in self.shots])
+
+
+def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
+    """Writes a page of all shots whose records are in a folder and below it.
+
+    Args:
+        folder: Where what `--json` printed was kept, in files of any name that end in .json. A page of pictures with
+            the name of a record, or called report.html beside it, is led to.
+        output: The page, .html; None: shots.html in the folder.
+
+    Returns:
+        What is on the page.
+
+    Raises:
+        UsageError: No such folder, one without records, or a page that cannot be written.
+        StageError: The page cannot be written.
+    """
+    top = given_output("folder", folder)
+    if not top.is_dir():
+        raise UsageError(f"{top} is no folder of records")
+    page = top / _PAGE if output is None else given_output("output", output)
+    check_output(page, (".html", ".htm"))
+    shots = sorted(_records(top, page), key=lambda shot: (-shot.left, shot.file))
+    if not shots:
+        raise UsageError(f"{top}: there is no record in it or below, such as bake --json prints")
+    total = sum(len(shot.patches) for shot in shots)
+    text = render("shots.html", shots=shots, top=str(top), total=total, worst_first=_worst_first)
+    with replacing(page) as partial, writing(page):
+        partial.write_text(text, "utf-8")
+    return ShotsReport(str(page), shots)
+
+
+def _line(shot: ShotRecord) -> str:
+    worst = max(shot.patches, key=lambda patch: patch.after, default=None)
+    told = f"{len(shot.problems)} problem{'s' * (len(shot.problems) != 1)}"
+    if worst is None:
+        return f"{shot.file}: {shot.stage}: no patches, {told}"
+    stretch = f"stretch {stretch_text(worst.before)}, slid {stretch_text(worst.after)}"
+    where = f"{worst.label} at frame {time_text(worst.worst)}"
+    return f"{shot.file}: {shot.stage}: {stretch}, {where}, rough {roughness_text(worst.roughness)}, {told}"
+
+
+# ---- Records ----
+
+
+def _records(top: Path, page: Path) -> Iterator[ShotRecord]:
+    """Those of its files that are records of this version."""
+    for file in sorted(top.rglob("*.json")):
+        try:
+            found = json.loads(file.read_text("utf-8"))
+        except (OSError, ValueError):  # of something else, or still being written
+            continue
+        if isinstance(found, dict) and found.get("record") == RECORD:
+            yield _record(found, file, top, page)
+
+
+def _record(found: dict[str, Any], file: Path, top: Path, page: Path) -> ShotRecord:
+    pages = (path for path in (file.with_suffix(".html"), file.with_name("report.html")) if path.is_file())
+    beside = next((each for each in pages if each.resolve() != page.resolve()), None)
+    address = quote(Path(os.path.relpath(beside, page.absolute().parent)).as_posix()) if beside else ""
+    patches = [_patch(mesh["prim"], patch) for mesh in found["meshes"] for patch in mesh["patches"] if patch["frames"]]
+    problems = [Problem(**problem) for problem in found["problems"]]
+    return ShotRecord(str(file.relative_to(top)), str(found.get("stage", "")), address, patches, problems)
+
+
+def _patch(prim: str, patch: dict[str, Any]) -> ShotPatch:
+    pieces = patch["piece_count"]
+    label = patch["name"] if pieces == 1 else f"{patch['name']} ({patch['piece'] + 1} of {pieces})"
+    before, after = (patch[f"worst_frame_stretch_{when}"] or 0.0 for when in ("before", "after"))
+    folded = patch["max"]["folded_faces"]
+    return ShotPatch(prim, label, len(patch["frames"]), patch["worst_frame"], before, after, patch["roughness"], folded)
+
+
+def _worst_first(patches: Sequence[ShotPatch]) -> list[ShotPatch]:
+    """Those with most stretch left first."""
+    return sorted(patches, key=lambda patch: -patch.after)

@@ -1,0 +1,82 @@
+"""The summary of many shots: which records it finds, and what it says of them."""
+
+import json
+
+import pytest
+
+import skinslide
+import stages
+from skinslide.command.cli import main
+from skinslide.shot.report import RECORD
+from stages import MESH, PATCH
+
+
+@pytest.fixture
+def baked(tmp_path, capsys):
+    """Two shots baked, of which the second stretches more, with a page beside it; and other files."""
+    top = tmp_path / "shots"
+    for name, frames in (("a", "1001:1002"), ("b", "1001:1003")):
+        folder = top / name
+        folder.mkdir(parents=True)
+        path = stages.save(stages.patched_stage()[0], folder / "shot.usda")
+        words = ["--json", "--quiet", "--frames", frames, "--html", str(folder / "report.html"), "--size", "32x16"]
+        assert main(["bake", str(path), "-o", str(folder / "slid.usda"), *(words if name == "b" else words[:4])]) == 0
+        (folder / "bake.json").write_text(capsys.readouterr().out)
+    (top / "other.json").write_text("[1, 2]")
+    (top / "half.json").write_text('{"record": 1, "mes')
+    (top / "later.json").write_text(json.dumps({"record": RECORD + 1}))
+    return top
+
+
+def test_shots_with_most_stretch_left_come_first(baked):
+    report = skinslide.report(baked)
+    assert [shot.file for shot in report.shots] == ["b/bake.json", "a/bake.json"]
+    assert [shot.page for shot in report.shots] == ["b/report.html", ""]
+    record = json.loads((baked / "b/bake.json").read_text())
+    (patch,) = record["meshes"][0]["patches"]
+    (found,) = report.shots[0].patches
+    assert (found.prim, found.label, found.frames, found.worst) == (MESH, PATCH, 3, patch["worst_frame"])
+    assert (found.before, found.after) == (patch["worst_frame_stretch_before"], patch["worst_frame_stretch_after"])
+    assert report.shots[0].left == found.after > report.shots[1].left
+    assert [problem.as_dict() for problem in report.shots[0].problems] == record["problems"]
+
+
+def test_the_command(baked, capsys):
+    assert main(["report", str(baked)]) == 0
+    said = capsys.readouterr().out
+    assert f"{baked / 'shots.html'}: written" in said and said.count("bake.json") == 2
+    text = (baked / "shots.html").read_text()
+    assert 'href="b/report.html"' in text and "a/bake.json" in text
+    assert main(["report", str(baked), "-o", str(baked / "b" / "all.html"), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["page"] == str(baked / "b" / "all.html") and len(told["shots"]) == 2
+    assert told["shots"][0]["page"] == "report.html"
+
+
+def test_a_page_is_not_led_to_from_itself(baked):
+    assert skinslide.report(baked, baked / "b" / "report.html").shots[0].page == ""
+
+
+def test_a_shot_that_failed_is_told_of(baked):
+    failed = {"record": RECORD, "stage": "c.usda", "meshes": [], "problems": [
+        {"severity": "error", "prim": "", "patch": None, "frame": None, "message": "it failed"}
+    ]}  # fmt: skip
+    (baked / "c.json").write_text(json.dumps(failed))
+    report = skinslide.report(baked)
+    assert report.shots[-1].stage == "c.usda" and "it failed" in (baked / "shots.html").read_text()
+    assert "no patches, 1 problem" in report.text()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["nowhere"], "nowhere is no folder of records"),
+        (["empty"], "there is no record in it or below"),
+        (["shots", "-o", "page.txt"], "the name must end in .html, .htm"),
+    ],
+)
+def test_folders_and_pages_that_cannot_be(words, message, baked, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    assert main(["report", *words]) == 2
+    assert message in capsys.readouterr().err
