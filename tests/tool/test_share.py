@@ -7,7 +7,7 @@ import pytest
 
 from repository import load
 from shots import COUNTS, FACES, INDICES, OFFSET, REST, pose
-from skinslide import PatchSetup, Slider, bake_to_file
+from skinslide import PatchSetup, Slider, bake_to_file, check
 from skinslide.command.cli import main
 
 
@@ -30,6 +30,16 @@ def test_nothing_is_searched_for_unasked(shot, out):
     assert patch["least_share"] is patch["median_share"] is patch["frames"][0]["share"] is None
     assert "can be removed" not in report.text()
     assert "of the stretch that can be removed" in bake_to_file(shot.path, out, share=True).text()
+
+
+def test_a_check_says_the_same_of_shares(shot, out, capsys):
+    baked = bake_to_file(shot.save().path, out, share=True).meshes[0].patches[0]
+    assert main(["check", str(shot.path), "--share", "--json", "--jobs", "2"]) == 0
+    (found,) = json.loads(capsys.readouterr().out)["shares"]
+    assert found["patch"] == baked.label
+    assert (found["least"], found["median"]) == (min(baked.shares), np.median(baked.shares))
+    assert "of the stretch that can be removed, 0." in check(shot.path, share=True).text()
+    assert check(shot.path).shares == []
 
 
 def test_points_and_jobs_do_not_depend_on_it(shot, out):

@@ -44,7 +44,15 @@ if TYPE_CHECKING:
     from skinslide.shot.bake import bake, bake_to_file
     from skinslide.shot.cache import CachedMesh, CacheReport, cache
     from skinslide.shot.candidates import Candidate
-    from skinslide.shot.check import CheckedLookup, CheckedMap, CheckedMesh, CheckedPatch, CheckReport, check
+    from skinslide.shot.check import (
+        CheckedLookup,
+        CheckedMap,
+        CheckedMesh,
+        CheckedPatch,
+        CheckedShare,
+        CheckReport,
+        check,
+    )
     from skinslide.shot.frames import parse_frames
     from skinslide.shot.report import BakeReport, MeshReport, PatchReport
     from skinslide.shot.stitch import StitchReport, stitch
@@ -62,6 +70,7 @@ __all__ = [
     "CheckedMap",
     "CheckedMesh",
     "CheckedPatch",
+    "CheckedShare",
     "Controls",
     "Diagnostics",
     "DrawnMaps",
@@ -150,7 +159,15 @@ _HOMES = {
     "shot.bake": ("bake", "bake_to_file"),
     "shot.cache": ("CachedMesh", "CacheReport", "cache"),
     "shot.candidates": ("Candidate",),
-    "shot.check": ("CheckedLookup", "CheckedMap", "CheckedMesh", "CheckedPatch", "CheckReport", "check"),
+    "shot.check": (
+        "CheckReport",
+        "CheckedLookup",
+        "CheckedMap",
+        "CheckedMesh",
+        "CheckedPatch",
+        "CheckedShare",
+        "check",
+    ),
     "shot.frames": ("parse_frames",),
     "shot.report": ("BakeReport", "MeshReport", "PatchReport"),
     "shot.stitch": ("StitchReport", "stitch"),

@@ -184,7 +184,8 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
 
 def _add_check(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    _add_options(command, SlideOptions, "prims", "lookup")
+    _add_options(command, SlideOptions, "prims", "lookup", "jobs")
+    _add_options(command, LayerOptions, "share")
     _add_json(command)
 
 

@@ -132,7 +132,7 @@ def _also(pictures: str | None, html: str | None, maps: str | None, options: dic
 
 
 def _check(check: Callable[..., Any], stage: str, *, json: bool = False, **options: Any) -> Result:
-    report = check(stage, **_with_lookup(options))
+    report = _followed(check, not options.get("share"), stage, **options)
     return as_json(report.as_dict()) if json else report.text(), PROBLEMS if report.failed else DONE
 
 

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.native import Controls, Lookup
+from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchResult
-from skinslide.arrays.slider import Slider, version
+from skinslide.arrays.slider import version
 from skinslide.problems import FrameProblem, Problem, UsageError
 from skinslide.shot.advice import advice
 from skinslide.shot.derived import Derived
@@ -28,9 +28,9 @@ from skinslide.shot.origins import is_whole, record_of
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
 from skinslide.shot.report import MEASURES, BakeReport, MeshReport, roughness_text, stretch_text
+from skinslide.shot.shares import Shares
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
-from skinslide.stage.mesh import PatchedMesh
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
 from skinslide.write.place import check_not_input, check_output, given_output
@@ -112,7 +112,7 @@ def bake_to_file(
     if others and part.resume:
         raise UsageError("resume is for a layer alone, without pictures and maps")
     layer = _Layer(LayerOptions(*limits, share, diagnostics), part, given_output("output", output))
-    return slide(Shot.of(stage), options, [layer, *others], progress, part.chunk)
+    return slide(Shot.of(stage), options, [layer, *_searches(layer.options), *others], progress, part.chunk)
 
 
 def bake(
@@ -168,9 +168,13 @@ def bake(
     limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)
     wanted, others = LayerOptions(*limits, share, diagnostics), given_products("also", also)
     with replacing_earlier_bake(stage, options.prims) as earlier:
-        report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *others], progress)
+        report = slide(Shot(stage, None), options, [_Opinions(wanted, earlier), *_searches(wanted), *others], progress)
     report.warnings.extend(_hidden(stage, (mesh.path for mesh in report.meshes)))
     return report
+
+
+def _searches(options: LayerOptions) -> list[Shares]:
+    return [Shares()] if options.share else []
 
 
 @dataclass(frozen=True)
@@ -250,13 +254,6 @@ def _given(options: SlideOptions | LayerOptions) -> dict[str, Any]:
     return {name: value for name, value in told.items() if value is not None and value is not False}
 
 
-class _Worked(NamedTuple):
-    """What the pool makes of a frame."""
-
-    least: list[tuple[float, ...]]  # stretch of each patch, where it was searched for
-    diagnostics: list[tuple[Primvar, Any]]
-
-
 class _MeshBake(MeshMaking):
     """Bakes one mesh."""
 
@@ -265,27 +262,21 @@ class _MeshBake(MeshMaking):
         self._slider, self._derived = planned.slider, Derived(planned.mesh, between=planned.between)
         self.turns = self._derived.carries
         self._diagnostics = MeshDiagnostics(planned.mesh) if baking.options.diagnostics else None
-        self.sliders = [_least_slider(planned.mesh)] if baking.options.share else []
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
         return self._derived.times_needed(time)
 
-    def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], _Worked]:
-        def work(frame: SlidFrame) -> _Worked:
-            told = self._diagnostics.values(frame) if self._diagnostics else []
-            return _Worked([slider.least_stretch(frame.cached) for slider in self.sliders], told)
+    def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], list[tuple[Primvar, Any]]]:
+        told = self._diagnostics
+        return lambda frame: told.values(frame) if told else []
 
-        return work
-
-    def take(self, time: Usd.TimeCode, frames: SlidFrames, made: _Worked) -> None:
+    def take(self, time: Usd.TimeCode, frames: SlidFrames, made: list[tuple[Primvar, Any]]) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim
         self._check_limits(time, frame)
-        for least in made.least:
-            self._report.add_least(frame_of(time), least)
         geometry, points = UsdGeom.PointBased(prim), Vt.Vec3fArray.FromNumpy(frame.slid)
         overs.set(geometry.GetPointsAttr(), points, time)
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
-        for primvar, values in made.diagnostics:
+        for primvar, values in made:
             overs.set_primvar(prim.GetPath(), primvar.name, (primvar.kind, primvar.interpolation), values, time)
         for attribute, sample, value in self._derived.values(time, frames):
             overs.set(attribute, value, sample)
@@ -322,13 +313,6 @@ def _exceeded(result: PatchResult, options: LayerOptions) -> Iterator[str]:
         if most is not None and found > most:
             number = str(found) if isinstance(found, int) else stretch_text(found)
             yield f"{words.format(number)}, where at most {most:g} {verb} allowed"
-
-
-def _least_slider(mesh: PatchedMesh) -> Slider:
-    """Of the rule that leaves least stretch, unpainted: the search begins there."""
-    return mesh.build(
-        [replace(patch, rule="relaxed", interpolation="linear", controls=Controls()) for patch in mesh.patches]
-    )
 
 
 def _hidden(stage: Usd.Stage, meshes: Iterable[str]) -> Iterator[Problem]:

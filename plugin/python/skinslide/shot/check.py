@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
+import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.meaning import Texture
@@ -26,8 +27,14 @@ from skinslide.problems import (
 from skinslide.shot.advice import advice
 from skinslide.shot.candidates import Candidate, find_candidates
 from skinslide.shot.derived import Derived
+from skinslide.shot.loop import slide
+from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import read_sliders
+from skinslide.shot.products import Shot
+from skinslide.shot.report import PatchReport, share_text
 from skinslide.shot.samples import sample_problems
+from skinslide.shot.shares import Shares
+from skinslide.shot.workers import Progress
 from skinslide.stage.finding import patched_prims
 from skinslide.stage.given import PrimsLike, StageLike, given_paths, given_stage
 from skinslide.stage.mesh import PatchedMesh
@@ -170,6 +177,23 @@ class CheckedLookup:
 
 
 @dataclass(frozen=True)
+class CheckedShare:
+    """Of the stretch of a patch that can be removed, what sliding removes, over the frames at which any can.
+
+    Attributes:
+        prim: The path of the mesh.
+        patch: The patch, with its piece where it has several.
+        least: The least of the frames: 1 leaves nothing to gain, below 0 sliding adds stretch.
+        median: And their median.
+    """
+
+    prim: str
+    patch: str
+    least: float
+    median: float
+
+
+@dataclass(frozen=True)
 class CheckReport:
     """What a bake would slide, and all there is to say about it.
 
@@ -179,6 +203,7 @@ class CheckReport:
         problems: Errors, then warnings, then notes.
         lookup: What would be looked up with.
         candidates: Where nothing is set up, the meshes on which a patch could be.
+        shares: Of each patch, where they are asked for, and a bake would not fail.
     """
 
     stage: str
@@ -186,6 +211,7 @@ class CheckReport:
     problems: list[Problem]
     lookup: CheckedLookup
     candidates: list[Candidate]
+    shares: list[CheckedShare] = field(default_factory=list)
 
     @property
     def failed(self) -> bool:
@@ -200,6 +226,7 @@ class CheckReport:
         """A line for each mesh, patch and problem, and the verdict."""
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
         lines += [line for mesh in self.candidates for line in mesh.lines()]
+        lines += [f"{each.prim}: {each.patch}: {share_text(each.least, each.median)}" for each in self.shares]
         return lines_text([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
 
     def _verdict(self) -> str:
@@ -240,13 +267,24 @@ def _patch_lines(name: str, pieces: Sequence[CheckedPatch]) -> Iterator[str]:
         yield f"  {label}: " + ", ".join(f"{count} {getattr(piece, count)}" for count in counts)
 
 
-def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Lookup = "auto") -> CheckReport:
+def check(
+    stage: StageLike,
+    prims: PrimsLike | None = None,
+    *,
+    lookup: str | Lookup = "auto",
+    share: bool = False,
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> CheckReport:
     """Says what a bake would slide, patch by patch, and every problem. Reads every sample, and changes nothing.
 
     Args:
         stage: The stage, or its path.
         prims: Prims to look at with everything below them; None: the whole stage.
         lookup: What a bake would be asked for: auto, egl, exact, or a Lookup.
+        share: Slides every frame, and searches for the least stretch that its pose allows. Slow.
+        jobs: Frames slid at once for that.
+        progress: Called after each of these frames with the frames done and in all.
 
     Returns:
         The meshes, and the problems, of which errors would stop a bake.
@@ -255,6 +293,7 @@ def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Loo
         TypeError: Something else than a stage or prims.
         UsageError: The lookup cannot be had.
         StageError: The stage cannot be opened.
+        FrameProblem: With share: a frame cannot be slid.
     """
     try:
         chosen = CheckedLookup.choose(Lookup.of(lookup))
@@ -268,7 +307,15 @@ def check(stage: StageLike, prims: PrimsLike | None = None, *, lookup: str | Loo
     severities = ("error", "warning", "note")
     problems.sort(key=lambda problem: severities.index(problem.severity))
     candidates = [] if patched_prims(opened) else find_candidates(opened, paths)
-    return CheckReport(name, checked, problems, chosen, candidates)
+    shares = []
+    if share and not errors(problems):
+        slid = slide(Shot(opened, None), SlideOptions.of(prims, None, lookup, jobs), [Shares()], progress)
+        shares = [_share(mesh.path, patch) for mesh in slid.meshes for patch in mesh.patches if patch.shares]
+    return CheckReport(name, checked, problems, chosen, candidates, shares)
+
+
+def _share(prim: str, patch: PatchReport) -> CheckedShare:
+    return CheckedShare(prim, patch.label, min(patch.shares), float(np.median(patch.shares)))
 
 
 def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem]) -> CheckedMesh:

@@ -433,9 +433,12 @@ def _row(patch: PatchReport) -> list[str]:
     ]
 
 
+def share_text(least: float, median: float) -> str:
+    return f"of the stretch that can be removed, {least:.2f} at least, {median:.2f} in the median frame"
+
+
 def _share_line(patch: PatchReport) -> str:
-    shares = f"{min(patch.shares):.2f} at least, {np.median(patch.shares):.2f} in the median frame"
-    return f"  {patch.label}: of the stretch that can be removed, {shares}"
+    return f"  {patch.label}: {share_text(min(patch.shares), float(np.median(patch.shares)))}"
 
 
 def _line(cells: list[str], widths: list[int]) -> str:
