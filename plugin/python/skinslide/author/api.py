@@ -12,10 +12,13 @@ from skinslide.author.applied import AppliedPatch, AppliedSchema
 
 
 class SkinSlideAPI(AppliedPatch):
-    """A patch of a mesh, up to a whole character, whose skin slides so that texture keeps its rest spacing.
+    """Skin of a mesh that slides, so that texture keeps its rest spacing.
 
-    The instance name is the patch's name: SkinSlideAPI:elbow_L. A mesh may carry many patches, and patches may
-    overlap.
+    Of a whole character that nobody painted, or a patch that somebody chose..
+
+    A character needs nothing painted: skinslide setup --whole applies this once to each mesh, as SkinSlideAPI:skin,
+    to where its edges ever stretch and around that, with the rule even. The instance name is the patch's name:
+    SkinSlideAPI:elbow_L. A mesh may carry many patches, and patches may overlap.
 
     What is painted on patch NAME lives in primvars, which the schema of a patch cannot declare:
     - primvars:skinSlide:NAME:patch: the faces. bool[], int[] or numbers; uniform: faces of value above 0; vertex:
@@ -37,9 +40,13 @@ class SkinSlideAPI(AppliedPatch):
     as primvars:skinSlide_NAME_weight, with underscores for all colons of the name but the first. check says what it
     took.
 
-    A bake with --diagnostics writes what it did to each point of the mesh beside the points:
-    primvars:skinSlide:stretch, the RMS of log(length / rest length) over the edges of patches at the point, and
-    primvars:skinSlide:slide, how far it slid, in the mesh's units. Both are float, vertex, and read by nothing here.
+    A bake with --diagnostics writes what it did to the skin beside the points. By vertex, float:
+    primvars:skinSlide:stretch, the RMS of log(length / rest length) over the edges of patches at the point;
+    primvars:skinSlide:slide, how far it slid, in the mesh's units; primvars:skinSlide:largestStretch and
+    primvars:skinSlide:smallestStretch, the principal stretches as lengths by lengths at rest, and
+    primvars:skinSlide:areaRatio, their product. By corner, float2, on meshes with primvars:st:
+    primvars:skinSlide:stretchDirection, that of the largest in st, as the cosine and sine of twice its angle from s
+    towards t, so that values blend. They are read by nothing here.
 
     The rest pose, in which nothing slides, is the mesh's. First found: skinSlide:restPoints (point3f[]),
     primvars:rest, primvars:pref, primvars:Pref, primvars:__Pref, the default value of points.
