@@ -217,6 +217,17 @@ def test_the_picture_of_what_is_gained_is_as_made(example_stage, tmp_path):
         assert even < 0.85 * cache and even < 0.9 * unit and unit < cache
 
 
+def test_the_picture_of_wrinkles_is_as_made(example_stage, tmp_path):
+    """And differs from the smooth one where skin is pressed together, alone."""
+    stage = tmp_path / "stage.usda"
+    skinslide.setup_to_file(example_stage("fingers"), stage, whole=True)
+    drawn = load("measure/wrinkles.py").draw(stage)
+    assert_kept("wrinkles", drawn)
+    smooth, wrinkled = (half[80:].astype(int) for half in np.split(drawn, 2, axis=1))
+    changed = np.abs(smooth - wrinkled).sum(axis=2) > 20
+    assert 0.005 < changed.mean() < 0.2
+
+
 # ---- Other views, and other rules ----
 
 
