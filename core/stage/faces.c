@@ -67,16 +67,19 @@ static skinslide_status choose(const skinslide_stage_patch *patch, const ss_reco
         status = check_finite(record, error);
     if (status)
         return status;
-    int32_t *chosen = SS_NEW(memory, int32_t, face_count_of(patch)), count = 0;
-    if (!chosen)
-        return ss_out_of_memory(error);
+    int32_t count = 0;
     for (int32_t face = 0; face < face_count_of(patch); face++)
-        if (is_chosen(patch->mesh, record, by_face, face))
-            chosen[count++] = face;
-    *faces = (ss_array){chosen, count};
+        count += is_chosen(patch->mesh, record, by_face, face);
     if (!count)
         return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is above 0 %s", SS_NAME(record->value.name),
                        by_face ? "on no face" : "on all points of no face");
+    int32_t *chosen = SS_NEW(memory, int32_t, count);
+    if (!chosen)
+        return ss_out_of_memory(error);
+    for (int32_t face = 0, i = 0; i < count; face++)
+        if (is_chosen(patch->mesh, record, by_face, face))
+            chosen[i++] = face;
+    *faces = (ss_array){chosen, count};
     return SKINSLIDE_OK;
 }
 

@@ -76,14 +76,21 @@ static skinslide_status take_scale(skinslide_stage_mesh *mesh, double scale, ski
     return SKINSLIDE_OK;
 }
 
+static int32_t corners_of(const skinslide_stage_mesh *mesh, int32_t face) {
+    return mesh->face_start[face + 1] - mesh->face_start[face];
+}
+
 /* Compares the faces chosen, or all of a mesh for NULL. */
 static skinslide_status compare_faces(const skinslide_stage_mesh *mesh, const ss_array *faces, likeness *out,
                                       skinslide_error *error) {
     ss_memory scratch = {0};
-    ratios own = {mesh, SS_NEW(&scratch, double, mesh->taken[SS_ROW_FACE_INDICES].array.count), 0};
+    int32_t count = faces ? faces->count : mesh->taken[SS_ROW_FACE_COUNTS].array.count;
+    int64_t corners = 0;
+    for (int32_t i = 0; i < count; i++)
+        corners += corners_of(mesh, faces ? ((const int32_t *)faces->values)[i] : i);
+    ratios own = {mesh, SS_NEW(&scratch, double, corners), 0};
     if (!own.values)
         return ss_out_of_memory(error);
-    int32_t count = faces ? faces->count : mesh->taken[SS_ROW_FACE_COUNTS].array.count;
     for (int32_t i = 0; i < count; i++)
         add_face(&own, faces ? ((const int32_t *)faces->values)[i] : i);
     *out = compare(&own);

@@ -41,8 +41,7 @@ class Animation:
     def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Sequence[Input] = inputs("controls")):
         self._meaning, self._lock = meaning, threading.Lock()
         self._base, self._idle = ControlsMeaning(meaning), list[ControlsMeaning]()
-        self._faces = paint_source(prim, input_of("patch", "patch"), meaning)
-        self._controls = [paint_source(prim, each, meaning) for each in wanted]
+        self._faces, *self._controls = paint_sources(prim, [input_of("patch", "patch"), *wanted], meaning)
         self.faults = take(self._base, self._controls)
         self._coordinates = [Source(prim, each) for each in self._base.coordinates()]
         self.faults += take(self._base, self._coordinates)
@@ -183,18 +182,24 @@ def subset_faces(child: Usd.Prim, mesh: MeshMeaning) -> np.ndarray:
 
 def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Sequence[Input]) -> list[str]:
     """Hands over settings, with the faces of the child of the patch's name. Returns what is wrong."""
-    faults = take(meaning, [paint_source(prim, each, meaning) for each in wanted])
+    faults = take(meaning, paint_sources(prim, wanted, meaning))
     child = schema.child(prim, meaning.name)
     return faults + take_subset(meaning, child if child and child.IsActive() else None)
 
 
-def paint_source(prim: Usd.Prim, wanted: Input, meaning: PatchMeaning) -> Source:
-    """The source of an input of a patch, under the name by which the prim, or what it is below, has paint."""
+def paint_sources(prim: Usd.Prim, wanted: Sequence[Input], meaning: PatchMeaning) -> list[Source]:
+    """The sources of inputs of a patch, under the names by which the prim, or what it is below, has paint."""
     above = [prim]
-    while wanted.is_inherited and above[-1].GetParent():
+    while above[-1].GetParent():
         above.append(above[-1].GetParent())
-    for each in above if wanted.is_primvar else ():
-        found = meaning.property_of(wanted, list(_primvars(each)))
+    known = [list(_primvars(each)) for each in above]
+    return [_paint_source(prim, each, meaning, known) for each in wanted]
+
+
+def _paint_source(prim: Usd.Prim, wanted: Input, meaning: PatchMeaning, known: Sequence[Sequence[str]]) -> Source:
+    """known: primvars of the prim, of its parent, and so on."""
+    for names in (known if wanted.is_inherited else known[:1]) if wanted.is_primvar else ():
+        found = meaning.property_of(wanted, names)
         if found:
             return Source(prim, wanted, name=found)
     return Source(prim, wanted, meaning.name)

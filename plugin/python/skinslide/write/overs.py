@@ -21,7 +21,7 @@ _INFLUENCES = (
     UsdSkel.Tokens.primvarsSkelJointWeights,
     UsdSkel.Tokens.skelBlendShapes,
 )
-_UNSAVED_BYTES = 256 << 20  # a crate file takes what is saved out of memory
+_UNSAVED_BYTES = 64 << 20  # a crate file takes what is saved out of memory
 
 
 class OverLayer:
