@@ -26,8 +26,8 @@ KINDS = {
     "FLOAT": ("value", 1, np.float32, "float[]"),
     "INT": ("value", 1, np.int32, "int[]"),
     "BOOLEAN": ("value", 1, np.bool_, "bool[]"),
-    "FLOAT2": ("vector", 2, np.float32, "texCoord2f[]"),
-    "FLOAT_VECTOR": ("vector", 3, np.float32, "point3f[]"),
+    "FLOAT2": ("vector", 2, np.float32, "float2[]"),
+    "FLOAT_VECTOR": ("vector", 3, np.float32, "float3[]"),
     "FLOAT_COLOR": ("color", 4, np.float32, "color4f[]"),
     "BYTE_COLOR": ("color", 4, np.float32, "color4f[]"),
 }

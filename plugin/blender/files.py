@@ -66,7 +66,7 @@ def take(thing: bpy.types.Object, read: Read) -> None:
         own.property_unset(source.name)
     for value in read.values:
         if value.name != REST:
-            setattr(own, value.name.removeprefix("skinSlide:"), value.value)
+            setattr(own, value.name.removeprefix("skinSlide:"), _held(value.value))
     write_attribute(mesh, REST, "POINT", ("FLOAT_VECTOR", "vector"), read.rest)
     for value in read.primvars:
         _take_primvar(thing, value)
@@ -92,7 +92,7 @@ def _take_primvar(thing: bpy.types.Object, value: Value) -> None:
 
 def _held(value: Any) -> Any:
     """A value as Blender's properties take it."""
-    return str(value) if isinstance(value, str) else value.tolist() if isinstance(value, np.ndarray) else value
+    return str(value) if isinstance(value, str) else np.asarray(value).tolist()
 
 
 def _take_edges(mesh: bpy.types.Mesh, patch: str, values: dict[str, Value]) -> None:

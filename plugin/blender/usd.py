@@ -9,11 +9,23 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from skinslide.arrays.meaning import NOTHING, SCHEMA, Input, MeshMeaning, Other, PatchMeaning, Value, input_of, inputs
+from skinslide.arrays.meaning import (
+    NOTHING,
+    SCHEMA,
+    Asset,
+    Input,
+    MeshMeaning,
+    Other,
+    PatchMeaning,
+    Value,
+    input_of,
+    inputs,
+)
 from skinslide.problems import Fault, StageError, StageProblems, UsageError
 
 from .reading import Fetched, FetchedPatch
@@ -34,7 +46,6 @@ class Read:
 
     prim: str
     rest: np.ndarray  # (V, 3)
-    rest_name: str
     values: list[Value] = field(default_factory=list)  # of the mesh
     primvars: list[Value] = field(default_factory=list)  # under the schema's names
     patches: list[FetchedPatch] = field(default_factory=list)
@@ -50,11 +61,12 @@ def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarra
     _import_usd()
     from skinslide.stage.finding import patched_prims
     from skinslide.stage.mesh import take_mesh
-    from skinslide.stage.opening import open_stage
+    from skinslide.stage.opening import open_stage, read_text_layer
     from skinslide.stage.schema import patch_names
 
     try:
         stage = open_stage(path)
+        text = read_text_layer(Path(path)) if path.endswith(".skinslide") else stage.GetRootLayer()
     except StageError as error:
         raise Fault(str(error)) from error
     found = [each for each in patched_prims(stage) if prim_path in ("", str(each.GetPath()))]
@@ -62,12 +74,12 @@ def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarra
     if len(matching) != 1:
         raise Fault(_none_or_many(path, found, matching))
     ((prim, mesh),) = matching
-    read = Read(str(prim.GetPath()), mesh.rest_points(), mesh.rest_source)
+    read = Read(str(prim.GetPath()), mesh.rest_points())
     read.values = [
         value for value in map(_first(prim), inputs("mesh")) if value and value.name.startswith("skinSlide:")
     ]
     for name in patch_names(prim):
-        _read_patch(prim, mesh, name, read)
+        _read_patch(prim, mesh, name, read, text)
     return read
 
 
@@ -94,16 +106,26 @@ def _authored(value: Value) -> Value | None:
     return None if value.value is NOTHING or value.value is None else value
 
 
-def _read_patch(prim: Any, mesh: MeshMeaning, name: str, read: Read) -> None:
-    from skinslide.stage.patch import paint_sources, read_chosen
+def _written(text: Any, path: Any, asset: Asset) -> Asset:
+    """A path as it is written in the file itself; as USD finds it from weaker layers."""
+    attribute = text.GetAttributeAtPath(path)
+    return Asset(attribute.default.path) if attribute and attribute.HasInfo("default") else asset
 
+
+def _read_patch(prim: Any, mesh: MeshMeaning, name: str, read: Read, text: Any) -> None:
+    from pxr import Usd
+
+    from skinslide.stage.patch import paint_sources, read_chosen, read_patch
+
+    for fault in read_patch(prim, name, mesh)[1]:
+        raise Fault(f"patch {name}: {fault}")
     meaning, patch = PatchMeaning(mesh, name), FetchedPatch(name, {})
     wanted = (*inputs("patch"), *inputs("controls"))
     for source, held in zip(wanted, paint_sources(prim, wanted, meaning), strict=True):
         value = _authored(held.first())
         times = held.times()
         if times and source.type_name == "float":
-            samples = [(time, held.at(_time(time))) for time in times]
+            samples = [(time, held.at(Usd.TimeCode(time))) for time in times]
             read.keys[name, source.name] = [(time, float(sample.value)) for time, sample in samples if sample]
         elif times:
             read.left.append(f"{held.name} varies over time: its first value is taken")
@@ -111,19 +133,15 @@ def _read_patch(prim: Any, mesh: MeshMeaning, name: str, read: Read) -> None:
             read.left.append(f"{held.name} is {value.type_name}, which is left out")
         elif value and source.is_primvar:
             read.primvars.append(_expanded(value._replace(name=source.property(name)), mesh))
-        elif value:
+        elif value and isinstance(value.value, Asset):
+            patch.values[source.name] = value._replace(value=_written(text, held.attribute.GetPath(), value.value))
+        elif value and np.size(value.value):
             patch.values[source.name] = value
     faces = input_of("patch", "patch").property(name)
     if not any(value.name == faces for value in read.primvars):
         chosen = np.isin(np.arange(len(mesh.face_counts)), read_chosen(prim, name, mesh))
         read.primvars.append(Value(faces, chosen, "bool[]", "uniform"))
     read.patches.append(patch)
-
-
-def _time(time: float) -> Any:
-    from pxr import Usd
-
-    return Usd.TimeCode(time)
 
 
 def _expanded(value: Value, mesh: MeshMeaning) -> Value:

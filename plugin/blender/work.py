@@ -40,10 +40,6 @@ def stop() -> None:
         _pool.pop().shutdown(wait=True, cancel_futures=True)
 
 
-class Refused(Exception):
-    """What an operator says in Blender's report area, having changed nothing."""
-
-
 @contextmanager
 def in_object_mode(context: bpy.types.Context) -> Any:
     """Where attributes can be written, and are evaluated; the mode is then as it was before."""

@@ -123,7 +123,10 @@ def _give(path: Path) -> None:
     cache = stages.save(stage, path.with_name("given.usda"))
     own, prim = stages.Usd.Stage.Open(str(cache)), stages.MESH
     patch = skinslide.SkinSlideAPI.Apply(own.GetPrimAtPath(prim), "tool")
+    skinslide.SkinSlideMeshAPI(own.GetPrimAtPath(prim)).CreateWeldAttr(False)
+    own.GetPrimAtPath(prim).CreateAttribute("skinSlide:tool:envelope", stages.Sdf.ValueTypeNames.Double).Set(0.5)
     patch.CreateForceDensityRuleAttr("relaxed")
+    patch.CreateCornersAttr([])
     patch.CreateHoldPrimvar("constant", [2.5])
     density = patch.CreateForceDensityPrimvar("uniform", np.array([1.5, 5.0], np.float32))
     density.SetIndices(stages.Vt.IntArray([0, 1] * (SIDE * SIDE // 2)))

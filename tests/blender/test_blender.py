@@ -37,7 +37,7 @@ def test_inside(name, results):
     assert not any(own.values()), "\n".join(own.values())
 
 
-@pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world"])
+@pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world", "map"])
 def test_what_is_shown_is_what_is_baked(rule, results, blender, tmp_path):
     """The same bytes, at each frame: the live object in Blender, and a bake of the stage that it exports."""
     setup = blender.out / f"{rule}.skinslide"

@@ -8,6 +8,7 @@ import pytest
 from bl_ext.user_default.skinslide.fetch import fetch
 
 from sheets import SIDE, make_patch, points, select, sheet, values
+from skinslide.arrays.images import encode_exr
 
 
 def painted(thing, rule: str = "even") -> None:
@@ -156,4 +157,46 @@ def test_a_file_of_the_tool(out):
     assert np.array_equal(np.flatnonzero(chosen), np.arange(40, 80))
     assert np.all(values(thing, "skinSlide:tool:hold") == 2.5)
     assert np.array_equal(values(thing, "skinSlide:tool:forceDensity"), np.where(np.arange(SIDE * SIDE) % 2, 5.0, 1.5))
-    assert thing.skinslide.patches["tool"].forceDensityRule == "relaxed"
+    patch = thing.skinslide.patches["tool"]
+    assert (patch.forceDensityRule, patch.envelope) == ("relaxed", 0.5)
+    assert not thing.skinslide.weld and not patch.is_property_set("corners")
+
+
+def test_a_map_for_the_bake(scene, out):
+    """The weight is an image beside the file, by its relative path, at texture coordinates that Blender exports."""
+    thing = sheet()
+    coordinates = thing.data.uv_layers.new(name="st")
+    flat = np.array([thing.data.vertices[loop.vertex_index].co[:2] for loop in thing.data.loops], np.float32) + 0.5
+    coordinates.uv.foreach_set("vector", flat.ravel())
+    patch = make_patch(thing)
+    pixels = np.random.default_rng(2).random((16, 16), np.float32)
+    (out / "weight.exr").write_bytes(encode_exr({"R": pixels}))
+    patch.weightMap, thing.skinslide.file = "./weight.exr", str(out / "map.skinslide")
+    assert bpy.ops.skinslide.live() == {"FINISHED"}
+    for frame in (1001, 1002, 1003):
+        scene.frame_set(frame)
+        np.save(out / f"map.{frame}.npy", points(thing.skinslide.slid))
+    bpy.context.view_layer.objects.active = thing
+    assert bpy.ops.skinslide.export_setup(filepath=str(out / "map.skinslide")) == {"FINISHED"}
+    other = sheet(name="other")
+    assert bpy.ops.skinslide.import_setup(filepath=str(out / "map.skinslide")) == {"FINISHED"}
+    assert other.skinslide.patches["patch"].weightMap == "./weight.exr"
+
+
+@pytest.mark.parametrize("setting", ['uniform token skinSlide:patch:boundary = "x"', "float skinSlide:patch:grow = -1"])
+def test_settings_that_cannot_be_are_not_imported(setting, tmp_path):
+    thing = sheet()
+    make_patch(thing, "patch")
+    path = tmp_path / "x.skinslide"
+    bpy.ops.skinslide.export_setup(filepath=str(path))
+    text = path.read_text()
+    path.write_text(
+        text.replace(
+            "uniform token skinSlide:patch:forceDensityRule",
+            f"{setting}\n uniform token skinSlide:patch:forceDensityRule",
+        )
+    )
+    other = sheet(name="other")
+    with pytest.raises(RuntimeError, match=f"patch patch: {setting.split()[-3]}.*"):
+        bpy.ops.skinslide.import_setup(filepath=str(path))
+    assert not other.skinslide.patches and "skinSlide:restPoints" not in other.data.attributes
