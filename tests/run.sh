@@ -3,7 +3,7 @@
 # Arguments go to pytest: ./tests/run.sh -k bake
 set -euo pipefail
 # The last four are what bpy, Blender as a Python module, is linked to.
-EXTRA_PACKAGES=(libcmocka-dev pkg-config chromium chromium-driver slurm-wlm munge libgl1 libsm6 libxi6 libxrender1)
+EXTRA_PACKAGES=(libcmocka-dev pkg-config chromium chromium-driver slurm-wlm munge libgl1 libsm6 libxi6 libxrender1 fonts-vlgothic)
 . "$(dirname "$0")/../examples/setup.sh"
 cd "$root"
 

@@ -278,8 +278,10 @@ static skinslide_status copy_coordinates(skinslide_stage_controls *controls, con
     if (!status && record.value.type == SKINSLIDE_VALUE_NONE) {
         char setting[256];
         ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_ST, controls->patch->name, setting);
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL, "has a map, but the mesh has no " SS_NAMED "; name one in %s",
-                       SS_NAME(controls->patch->st), setting);
+        const char *there = skinslide_stage_mesh_coordinates(mesh);
+        return ss_fail(error, SKINSLIDE_BAD_CONTROL,
+                       "has a map, but the mesh has no " SS_NAMED "; name one in %s: there %s" SS_NAMED,
+                       SS_NAME(controls->patch->st), setting, *there ? "are " : "are none", SS_NAME(there));
     }
     if (!status && !controls->own_st)
         controls->own_st = SS_NEW(&controls->memory, float, 2 * (int64_t)ss_faces_of(mesh).index_count);

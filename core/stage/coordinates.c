@@ -1,6 +1,7 @@
-/* Texture coordinates of a mesh's corners. */
+/* Texture coordinates of a mesh's corners, and which primvars have some. */
 #include "stage.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static skinslide_status check(const skinslide_stage_mesh *mesh, const ss_record *record, bool *by_corner,
@@ -40,4 +41,34 @@ skinslide_status skinslide_stage_coordinates(const skinslide_stage_mesh *mesh, c
         for (int32_t k = 0; k < 2; k++)
             st[2 * (int64_t)c + k] = (float)ss_number(&record, by_corner ? c : faces.face_indices[c], k);
     return SKINSLIDE_OK;
+}
+
+/* ---- Those that there are ---- */
+
+static bool is_pairs(const char *type_name) {
+    static const char *const types[] = {"texCoord2f[]", "texCoord2h[]", "texCoord2d[]", "float2[]", "half2[]", "double2[]"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        found = found || strcmp(type_name, types[i]) == 0;
+    return found;
+}
+
+skinslide_status skinslide_stage_mesh_offer(skinslide_stage_mesh *mesh, const char *name, const char *type_name,
+                                            const char *interpolation, skinslide_error *error) {
+    if (!mesh || !name || !type_name)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no mesh, or no name or type of what it has");
+    const char *by = interpolation ? interpolation : "constant", *before = mesh->coordinates ? mesh->coordinates : "";
+    if (!is_pairs(type_name) || !(ss_is_by_vertex(by) || strcmp(by, "faceVarying") == 0))
+        return SKINSLIDE_OK;
+    size_t size = strlen(before) + sizeof ", " + strlen(name);
+    char *names = SS_NEW(&mesh->memory, char, (int64_t)size);
+    if (!names)
+        return ss_out_of_memory(error);
+    snprintf(names, size, "%s%s%s", before, *before ? ", " : "", name);
+    mesh->coordinates = names;
+    return SKINSLIDE_OK;
+}
+
+const char *skinslide_stage_mesh_coordinates(const skinslide_stage_mesh *mesh) {
+    return mesh && mesh->coordinates ? mesh->coordinates : "";
 }

@@ -249,6 +249,7 @@ struct skinslide_stage_mesh {
     double compare_rest;         /* whether rest is to be compared with the cache */
     float *first;                /* [vertex_count][3] points of the first time */
     const char *warning;         /* NULL: none */
+    const char *coordinates;     /* primvars that could be texture coordinates, with commas; NULL: none */
     bool has_space;              /* the way to the world is known at first */
     double gram[9], space[9];    /* of that, if lengths are taken there, and the map that does it */
     double unevenness;           /* the most that was warned of; 0: none */

@@ -172,6 +172,18 @@ std::vector<Patch> readPatches(Composition &composition, const Prim &prim, const
     return patches;
 }
 
+// Its own primvars, of which errors list those that may be texture coordinates.
+void offerPrimvars(const Prim &prim, skinslide_stage_mesh *mesh) {
+    TfTokenVector properties = prim.propertyNames();
+    std::sort(properties.begin(), properties.end());
+    for (const TfToken &name : properties) {
+        Attribute attribute = prim.attribute(name);
+        if (TfStringStartsWith(name.GetString(), "primvars:") && attribute.authored())
+            call(skinslide_stage_mesh_offer, mesh, name.GetText(), attribute.typeName().GetText(),
+                 attribute.token(names().interpolation, names().constant).GetText());
+    }
+}
+
 // How the transforms above a mesh scale it, at each time at which they were authored.
 void takeSpace(Composition &composition, const SdfPath &path, skinslide_stage_mesh *mesh) {
     call(skinslide_stage_mesh_space, mesh, toWorld(composition, path, Attribute::first).data(), 0.0);
@@ -317,6 +329,7 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Foun
     mesh->points = Property(composition, prim, skinslide_stage_next_input(SKINSLIDE_STAGE_MESH, nullptr));
     mesh->mesh = make<MeshHandle>(skinslide_stage_mesh_create);
     readGroup(composition, prim, SKINSLIDE_STAGE_MESH, mesh->mesh.get());
+    offerPrimvars(prim, mesh->mesh.get());
     takeSpace(composition, prim.path(), mesh->mesh.get());
     mesh->patches = readPatches(composition, prim, finding, mesh->mesh.get(), params, problems);
     if (mesh->patches.size() != static_cast<size_t>(finding.patch_count))

@@ -1,5 +1,5 @@
 /* A mesh, a patch and frames of any bytes: set up or refused, and slid to finite points or refused; by rules without a plane never
- * because of the matrix. */
+ * because of the matrix. What is not finite off the patch passes. Then the same with points put in one place, and welded. */
 #include "skinslide/skinslide.h"
 #include "stream.h"
 
@@ -86,7 +86,7 @@ static void slide(const skinslide_slider *slider, int32_t vertex_count, skinslid
         controls.hold = held ? held : hold, controls.vertex_density = density;
         skinslide_status status = skinslide_slide(workspace, points, &controls, slid, NULL, &error);
         for (int32_t i = 0; !status && i < 3 * vertex_count; i++)
-            require(isfinite(slid[i]));
+            require(isfinite(slid[i]) || !isfinite(points[i]));
         require(!status || (error.message[0] && !strchr(error.message, '\n')));
         require(status != SKINSLIDE_SINGULAR || rule == SKINSLIDE_RULE_UNIT || rule == SKINSLIDE_RULE_FAST);
         free(points), free(slid), free(hold), free(held), free(density);
@@ -94,20 +94,59 @@ static void slide(const skinslide_slider *slider, int32_t vertex_count, skinslid
     skinslide_workspace_destroy(workspace);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static const input none;
-    stream s = {data, size};
-    input in = none;
+static void try_to_slide(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, stream *s) {
     skinslide_slider *slider = NULL;
     skinslide_error error;
-    take_mesh(&in, &s);
-    skinslide_patch_setup setup = take_setup(&in, &s);
-    skinslide_status status = skinslide_slider_create(&in.mesh, &setup, 1, &slider, &error);
+    skinslide_status status = skinslide_slider_create(mesh, setup, 1, &slider, &error);
     if (status)
         require(!slider && error.message[0] && !strchr(error.message, '\n'));
     else
-        slide(slider, in.mesh.vertex_count, setup.rule, &s);
+        slide(slider, mesh->vertex_count, setup->rule, s);
     skinslide_slider_destroy(slider);
+}
+
+/* Each point in the place of another, by the bytes from the first on; and in a pose in that of a third. */
+static void put_together(const skinslide_mesh *mesh, const float *points, stream s, float *out) {
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        memcpy(out + 3 * v, points + 3 * (take_below(&s, 2) ? v : take_below(&s, 255) % mesh->vertex_count), sizeof(float[3]));
+}
+
+/* What is one is one with itself, and lowest. */
+static void require_weld(const skinslide_mesh *mesh, const int32_t *weld) {
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        require(weld[v] >= 0 && weld[v] < mesh->vertex_count && weld[weld[v]] == weld[v]);
+}
+
+static void weld_and_slide(input *in, const skinslide_patch_setup *setup, stream all, stream *s) {
+    size_t size = (size_t)in->mesh.vertex_count * sizeof(float[3]);
+    float *rest = malloc(size), *pose = malloc(size);
+    int32_t *vertices = malloc((size_t)in->mesh.vertex_count * sizeof *vertices);
+    skinslide_weld *weld = NULL;
+    skinslide_error error;
+    put_together(&in->mesh, in->rest, all, rest);
+    put_together(&in->mesh, rest, *s, pose);
+    in->mesh.rest_points = rest;
+    if (!skinslide_weld_create(&in->mesh, setup, 1, 0, &weld, &error)) {
+        skinslide_status status = skinslide_weld_show(weld, 1, pose, &error);
+        require(!status || (error.message[0] && !strchr(error.message, '\n')));
+        require(!skinslide_weld_get(weld, vertices, NULL, &error));
+        require_weld(&in->mesh, vertices);
+        in->mesh.weld = vertices;
+        try_to_slide(&in->mesh, setup, s);
+    }
+    skinslide_weld_destroy(weld);
+    free(rest), free(pose), free(vertices);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static const input none;
+    stream s = {data, size}, all = s;
+    input in = none;
+    take_mesh(&in, &s);
+    skinslide_patch_setup setup = take_setup(&in, &s);
+    stream after = s;
+    try_to_slide(&in.mesh, &setup, &s);
+    weld_and_slide(&in, &setup, all, &after);
     free(in.rest);
     return 0;
 }

@@ -246,3 +246,19 @@ def test_no_egl(shot, tmp_path):
     assert done.returncode == 2
     assert "no EGL device with OpenGL ES 3" in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_a_chequer_that_is_on_no_st_says_so_and_what_there_is(tmp_path):
+    stage, mesh = sheet(st=False)
+    add_st(mesh, stages.grid(24, 24), "map1")
+    (note,) = draw(stage, tmp_path / "out").problems
+    assert note.severity == "note" and note.message == (
+        "there is no primvars:st, so the chequer is on places at rest; of other texture coordinates there are "
+        "primvars:map1"
+    )
+    assert not draw(stage, tmp_path / "there", st="map1").problems
+    assert not draw(stage, tmp_path / "stretch", views="stretch").problems
+    with pytest.raises(skinslide.StageProblems, match=r"no primvars:uv to draw a chequer on; there are primvars:map1"):
+        draw(stage, tmp_path / "none", st="uv")
+    with pytest.raises(skinslide.StageProblems, match=r"in which its maps would be drawn; there are primvars:map1"):
+        skinslide.maps(stage, tmp_path / "maps", size=8)

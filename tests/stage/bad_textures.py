@@ -120,12 +120,12 @@ TEXTURES = [
     Bad(
         "texture: no st",
         with_good_map(removed("primvars:st")),
-        f"has a map, but the mesh has no primvars:st; name one in {PLACE}:mapSt",
+        f"has a map, but the mesh has no primvars:st; name one in {PLACE}:mapSt: there are none",
     ),
     Bad(
         "texture: no st of that name",
         with_good_map(setting("mapSt", "uv")),
-        f"has a map, but the mesh has no primvars:uv; name one in {PLACE}:mapSt",
+        f"has a map, but the mesh has no primvars:uv; name one in {PLACE}:mapSt: there are primvars:st",
     ),
     Bad(
         "texture: st length",

@@ -1,5 +1,7 @@
 """Small mistakes end in one line that names the option, or the argument, and says what it must be."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -82,3 +84,19 @@ def test_one_is_no_several():
     mesh.GetPointsAttr().Set(stages.vectors(rest))
     said = [problem.message for problem in skinslide.check(stage, MESH).problems]
     assert "1 edge has no length at rest" in said
+
+
+def test_a_long_list_is_summed_up(tmp_path, capfd):
+    """Of 40 patches none has faces: 20 lines, and how many more there are; JSON has all."""
+    stage, mesh = stages.patched_stage()
+    for number in range(40):
+        stages.add_patch(mesh, None, f"patch_{number}")
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    assert main(["bake", str(shot), "-o", str(tmp_path / "out.usdc")]) == 3
+    said = capfd.readouterr().err.splitlines()
+    assert len(said) == 21 and said[-1] == "error: and 20 more like these; --json has all"
+    assert main(["check", str(shot)]) == 3
+    printed = capfd.readouterr().out.splitlines()
+    assert sum(line.startswith("error: ") for line in printed) == 21 and ": 40 errors" in printed[-1]
+    assert main(["check", str(shot), "--json"]) == 3
+    assert len(json.loads(capfd.readouterr().out)["problems"]) >= 40

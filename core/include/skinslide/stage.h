@@ -310,6 +310,18 @@ SKINSLIDE_API skinslide_status skinslide_stage_check_points(const skinslide_stag
 SKINSLIDE_API skinslide_status skinslide_stage_coordinates(const skinslide_stage_mesh *mesh, const skinslide_value *value,
                                                            float *st, skinslide_error *error);
 
+/* Offers a primvar of the mesh itself, so that errors can list those that may be texture coordinates: of each that has a value,
+ * in the order of their names, before patches are read.
+ *   name           in  "primvars:map1"
+ *   type_name      in  as the scene declares it: "texCoord2f[]"
+ *   interpolation  in  as authored; NULL: it is not
+ * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_stage_mesh_offer(skinslide_stage_mesh *mesh, const char *name, const char *type_name,
+                                                          const char *interpolation, skinslide_error *error);
+
+/* Those that may be: "primvars:map1, primvars:uv"; "" where there are none. Lives as long as the mesh. */
+SKINSLIDE_API const char *skinslide_stage_mesh_coordinates(const skinslide_stage_mesh *mesh);
+
 /* What any primvar says of the points: bools, ints or floats by vertex, as an artist chooses points by.
  *   numbers  out [vertex_count]
  * Fails with BAD_PATCH (another type, interpolation or length, an index out of range, a number that is not finite),

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from pxr import Tf
 
 MOST_FRAMES = 10_000_000
+_MOST_TOLD = 20  # problems of a severity, with a line each
 # Said of what several parts look for.
 NO_SUCH_PRIM = "there is no such prim"
 PATH_TOO_LONG = "its path from the root is too long"
@@ -139,6 +140,18 @@ def lines_text(lines: Iterable[str]) -> str:
 def counted(count: int, one: str, many: str | None = None) -> str:
     """A number of things: 1 point, 3 points."""
     return f"{count} {one if count == 1 else many or f'{one}s'}"
+
+
+def told(problems: Iterable[Problem]) -> Iterator[str]:
+    """A line for each problem; of each severity no more than anyone reads, and how many there are beyond."""
+    counts: dict[str, int] = {}
+    for problem in problems:
+        counts[problem.severity] = counts.get(problem.severity, 0) + 1
+        if counts[problem.severity] <= _MOST_TOLD:
+            yield str(problem)
+    for severity, count in counts.items():
+        if count > _MOST_TOLD:
+            yield f"{severity}: and {count - _MOST_TOLD} more like these; --json has all"
 
 
 def errors(problems: Sequence[Problem]) -> list[Problem]:

@@ -346,7 +346,7 @@ static void expect_no_coordinates(skinslide_value st, const char *asset, const c
 static void no_coordinates(void **state) {
     (void)state;
     expect_no_coordinates(nothing_of("primvars:st"), "w.exr",
-                          "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt");
+                          "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt: there are none");
     expect_no_coordinates(painted_as(st_of(1), "uniform"), "w.exr",
                           "primvars:st has interpolation uniform; a map needs faceVarying, vertex or varying");
     expect_no_coordinates(st_of(-1), "w.<UDIM>.exr", MAP ": w.<UDIM>.exr: face 0 has st (-0, -0), which is in no UDIM tile");
@@ -365,7 +365,7 @@ static void coordinates_matter_where_there_is_a_map(void **state) {
     assert_ok(skinslide_stage_controls_create(s.patch, s.controls, &frame, &error), &error);
     assert_ok(controls_take(frame, "weightMap", asset_of(MAP, "w.exr"), &error), &error);
     assert_fails(skinslide_stage_controls_need(frame, &need, &error), &error, SKINSLIDE_BAD_CONTROL,
-                 "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt");
+                 "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt: there are none");
     skinslide_stage_controls_destroy(frame);
     tear_down(&s);
 }
@@ -437,6 +437,27 @@ static void products_that_cannot_be(void **state) {
     tear_down(&s);
 }
 
+/* Of what could be, and of nothing else, in the order in which it is offered. */
+static void coordinates_that_there_are_are_listed(void **state) {
+    (void)state;
+    static const char *const offers[][3] = {{"primvars:map1", "texCoord2f[]", "faceVarying"},
+                                            {"primvars:width", "float[]", "vertex"},
+                                            {"primvars:flow", "float2[]", "varying"},
+                                            {"primvars:one", "texCoord2f[]", "uniform"},
+                                            {"primvars:none", "texCoord2f[]", NULL}};
+    test_mesh grid = quad_grid(1, 1);
+    skinslide_stage_mesh *mesh = scene_mesh(&grid);
+    assert_string_equal(skinslide_stage_mesh_coordinates(mesh), "");
+    for (size_t i = 0; i < sizeof offers / sizeof *offers; i++)
+        assert_ok(skinslide_stage_mesh_offer(mesh, offers[i][0], offers[i][1], offers[i][2], &error), &error);
+    assert_string_equal(skinslide_stage_mesh_coordinates(mesh), "primvars:map1, primvars:flow");
+    assert_fails(skinslide_stage_mesh_offer(NULL, "primvars:st", "texCoord2f[]", NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "no mesh, or no name or type of what it has");
+    assert_string_equal(skinslide_stage_mesh_coordinates(NULL), "");
+    skinslide_stage_mesh_destroy(mesh);
+    free_mesh(&grid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_texture_asks_for_nothing),
@@ -456,6 +477,7 @@ int main(void) {
         cmocka_unit_test(no_such_file),
         cmocka_unit_test(files_that_cannot_be_read),
         cmocka_unit_test(values_that_cannot_be),
+        cmocka_unit_test(coordinates_that_there_are_are_listed),
         cmocka_unit_test(products_that_cannot_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -303,6 +303,15 @@ class MeshMeaning(Taker):
         """What to warn of in the transforms above, or nothing."""
         return _said(lib.skinslide_stage_mesh_space_warning(self.handle.pointer))
 
+    def offer(self, name: str, type_name: str, interpolation: str | None) -> None:
+        """Offers a primvar, so that errors can list those that may be texture coordinates."""
+        _call(lib.skinslide_stage_mesh_offer, self.handle, name, type_name, interpolation)
+
+    @property
+    def coordinates_there(self) -> str:
+        """What could be named as texture coordinates, in words."""
+        return f"there are {text(lib.skinslide_stage_mesh_coordinates(self.handle.pointer)) or 'none'}"
+
     def take_space(self, to_world: np.ndarray, frame: float) -> None:
         """Takes the way to the world (4, 4), of rows, at a time; the first first. Raises Fault."""
         matrix = np.ascontiguousarray(to_world, np.float64)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, TextIO
 
-from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, UsageError, one_line, usd_message
+from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, UsageError, one_line, told, usd_message
 
 DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
 INTERRUPTED = 130
@@ -99,8 +99,8 @@ def failed(error: BaseException, json: bool, done: str = "") -> int:
     done  what became of the output, for where that is in question
     """
     code, problems = _verdict(error, done)
-    for problem in problems:
-        tell(str(problem))
+    for line in told(problems):
+        tell(line)
     if json:
         say(as_json({"problems": [problem.as_dict() for problem in problems]}), code)
     return code

@@ -156,6 +156,8 @@ class MeshPictures(MeshMaking):
         if flat:
             message = f"{flat} faces are drawn flat: their limit surfaces cannot be made"
             self._problems.append(Problem("warning", self._mesh.path, None, None, message))
+        if skin.told and "chequer" in self._options.views:
+            self._problems.append(Problem("note", self._mesh.path, None, None, skin.told))
         made = (self._make_series(skin, i) for i in chosen)
         return [series for series in made if series]
 

@@ -197,5 +197,5 @@ def _find_st(mesh: PatchedMesh, name: str) -> Source:
     """Where the texture coordinates of the corners come from. Raises Fault."""
     source = primvar_source(mesh.prim, f"primvars:{name}")
     if source.at(FIRST) is None:
-        raise Fault(f"has no primvars:{name}, in which its maps would be drawn; name another primvar")
+        raise Fault(f"has no primvars:{name}, in which its maps would be drawn; {mesh.meaning.coordinates_there}")
     return source

@@ -61,6 +61,14 @@ class Skin:
     left_handed: bool
     texture: dict[int, np.ndarray] | None = None  # by tile; None: it is not wanted
 
+    @property
+    def told(self) -> str:
+        """What to say of the chequer, or nothing."""
+        if self.st is not None:
+            return ""
+        there = self.mesh.meaning.coordinates_there
+        return f"there is no primvars:{_ST}, so the chequer is on places at rest; of other texture coordinates {there}"
+
     @classmethod
     def of(cls, mesh: PatchedMesh, faces: np.ndarray, st: str | None, *, textured: bool = False) -> Skin:
         """To be looked at closely at some faces. Raises Fault and SliderError for what cannot be drawn."""
@@ -180,7 +188,7 @@ def _st_of(mesh: PatchedMesh, asked: str | None) -> np.ndarray | None:
     if value is not None:
         return mesh.meaning.coordinates(value)
     if asked:
-        raise Fault(f"there is no primvars:{asked} to draw a chequer on")
+        raise Fault(f"there is no primvars:{asked} to draw a chequer on; {mesh.meaning.coordinates_there}")
     return None
 
 

@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from skinslide.problems import Problem, StageProblems, errors, frame_text, lines_text
+from skinslide.problems import Problem, StageProblems, errors, frame_text, lines_text, told
 from skinslide.queues.openjd import template
 from skinslide.queues.slurm import script
 from skinslide.queues.steps import Job
@@ -63,7 +63,7 @@ class FarmReport:
         """What it will do, and every problem, for a terminal."""
         tasks = f"{len(self.chunks)} task{'s' * (len(self.chunks) != 1)}"
         span = f"{frame_text(self.frames[0])} to {frame_text(self.frames[-1])}"
-        return lines_text([f"{len(self.frames)} frames, {span}, in {tasks}", *map(str, self.problems)])
+        return lines_text([f"{len(self.frames)} frames, {span}, in {tasks}", *told(self.problems)])
 
 
 def farm(

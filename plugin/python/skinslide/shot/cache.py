@@ -19,7 +19,7 @@ import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.slider import version
-from skinslide.problems import Problem, StageProblems, errors, lines_text
+from skinslide.problems import Problem, StageProblems, errors, lines_text, told
 from skinslide.shot.frames import AskedFrames
 from skinslide.shot.options import Frames, Prims, SlideOptions
 from skinslide.shot.plan import times_of
@@ -76,7 +76,7 @@ class CacheReport:
 
     def text(self) -> str:
         """A line for each mesh, and every problem."""
-        return lines_text([*(mesh.text() for mesh in self.meshes), *map(str, self.problems)])
+        return lines_text([*(mesh.text() for mesh in self.meshes), *told(self.problems)])
 
 
 def cache(

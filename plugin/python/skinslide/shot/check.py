@@ -23,6 +23,7 @@ from skinslide.problems import (
     errors,
     frame_text,
     lines_text,
+    told,
 )
 from skinslide.shot.advice import advice
 from skinslide.shot.candidates import Candidate, find_candidates
@@ -227,7 +228,7 @@ class CheckReport:
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
         lines += [line for mesh in self.candidates for line in mesh.lines()]
         lines += [f"{each.prim}: {each.patch}: {share_text(each.least, each.median)}" for each in self.shares]
-        return lines_text([*lines, *self.lookup.lines(), *map(str, self.problems), self._verdict()])
+        return lines_text([*lines, *self.lookup.lines(), *told(self.problems), self._verdict()])
 
     def _verdict(self) -> str:
         counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}

@@ -10,7 +10,7 @@ import numpy as np
 
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
 from skinslide.arrays.slider import version
-from skinslide.problems import Problem, counted, frame_text, lines_text
+from skinslide.problems import Problem, counted, frame_text, lines_text, told
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
@@ -192,12 +192,12 @@ class PatchReport:
         """
         at_rest = [(None, getattr(self.info, name), words, text) for name, (words, text) in _AT_REST.items()]
         at_frames = [self._most(name, words, text) for name, (words, text) in _AT_FRAMES.items()]
-        told = [
+        warned = [
             Problem("warning", prim, self.label, frame, f"{counted(count, *words)} {text}")
             for frame, count, words, text in [*at_rest, *at_frames]
             if count
         ]
-        return told + self._stretched(prim)
+        return warned + self._stretched(prim)
 
     def _stretched(self, prim: str) -> list[Problem]:
         """A warning where sliding adds stretch, as on a smile, or a closed tube embedded from its open end."""
@@ -388,7 +388,7 @@ class BakeReport:
     def text(self) -> str:
         """The table for a terminal, every problem, and what was made."""
         if self.resumed:
-            return lines_text(map(str, self.problems))
+            return lines_text(told(self.problems))
         rows = [_HEADINGS, *(_row(patch) for mesh in self.meshes for patch in mesh.patches)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [_line(_HEADINGS, widths)]
@@ -398,7 +398,7 @@ class BakeReport:
             lines.extend(_line(_row(patch), widths) for patch in mesh.patches)
             lines.extend(_share_line(patch) for patch in mesh.patches if patch.shares)
         made = [line for made in self.made for line in made.lines(self.meshes)]
-        return lines_text([*lines, *map(str, self.problems), *made])
+        return lines_text([*lines, *told(self.problems), *made])
 
 
 _HEADINGS = [

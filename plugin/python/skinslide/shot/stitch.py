@@ -18,7 +18,7 @@ from typing import Any
 
 from pxr import Sdf, Tf, UsdUtils
 
-from skinslide.problems import Fault, Problem, StageError, StageProblems, UsageError, frame_text, lines_text
+from skinslide.problems import Fault, Problem, StageError, StageProblems, UsageError, frame_text, lines_text, told
 from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
@@ -58,7 +58,7 @@ class StitchReport:
         """What it holds, and every problem, for a terminal."""
         first_to_last = f", {frame_text(self.frames[0])} to {frame_text(self.frames[-1])}" if self.frames else ""
         meshes = f"{len(self.prims)} mesh{'es' * (len(self.prims) != 1)}"
-        return lines_text([f"{meshes}, {len(self.frames)} frames{first_to_last}", *map(str, self.problems)])
+        return lines_text([f"{meshes}, {len(self.frames)} frames{first_to_last}", *told(self.problems)])
 
 
 def stitch(

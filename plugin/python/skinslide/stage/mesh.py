@@ -350,7 +350,11 @@ def take_mesh(prim: Usd.Prim, skinning: Skinning | None = None) -> tuple[MeshMea
     meaning, faults = MeshMeaning(), []
     points, *others = (_source(prim, each, skinning) for each in inputs("mesh"))
     faults += take(meaning, [points])
-    return meaning, faults or take(meaning, others)
+    faults = faults or take(meaning, others)
+    for each in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
+        interpolation = each.GetAttr().GetMetadata("interpolation")
+        meaning.offer(each.GetName(), str(each.GetTypeName()), interpolation)
+    return meaning, faults
 
 
 def take_space(prim: Usd.Prim, meaning: MeshMeaning) -> list[str]:
