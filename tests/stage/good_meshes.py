@@ -59,6 +59,13 @@ def clip_of_points(prim: Usd.Prim) -> None:
         attribute.Set(stages.vectors(stages.grid().moved(frame)), frame)
 
 
+def clip_of_split_points(prim: Usd.Prim) -> None:
+    whole = np.sort(stages.grid().indices)
+    attribute = prim.CreateAttribute("points", Types.Point3fArray, False)
+    for frame in FRAMES:
+        attribute.Set(stages.vectors(stages.grid().moved(frame)[whole]), frame)
+
+
 def points_are_unsampled(scene: Scene) -> None:
     for frame in FRAMES:
         scene.points.ClearAtTime(frame)
@@ -596,6 +603,16 @@ TIMES = [
     ),
     Good("times: controls far apart over still points", all_of(still, sampled("envelope", {1001: 0.0, 1004: 1.0}))),
     Good("weld: a point for each corner", shape=split_grid),
+    Good(
+        "weld: a point for each corner, by value clips",
+        all_of(
+            points_are_unsampled,
+            clips(clip_of_split_points, lambda prim: prim.CreateAttribute("points", Types.Point3fArray, False)),
+        ),
+        shape=split_grid,
+        rest="rest",
+        refuses=f"points come from value clips, {CANNOT_READ}",
+    ),
     Good("weld: off", retyped("skinSlide:weld", Types.Bool, False), shape=split_grid, slides=False),
     Good("weld: a tolerance", all_of(apart, retyped("skinSlide:weldTolerance", Types.Float, 1e-4)), shape=split_grid),
     Good("weld: points that part", parting, shape=split_grid),

@@ -240,3 +240,23 @@ def test_what_is_one_can_be_found_without_usd(split):
     assert np.array_equal(skinslide.find_weld(shape.counts, shape.indices, near, patches, tolerance=1e-4), weld)
     with pytest.raises(skinslide.SliderError, match="the tolerance is 1;"):
         skinslide.find_weld(*mesh, tolerance=1)
+
+
+def test_edges_by_a_curve_are_those_of_the_whole(split, tmp_path):
+    """All copies of an edge are near the curve, and count as one."""
+    found = []
+    for stage, mesh in (split_stage(split), stages.patched_stage(stages.grid())):
+        curve = UsdGeom.BasisCurves.Define(stage, "/World/char/line")
+        curve.CreateTypeAttr("linear")
+        curve.CreateCurveVertexCountsAttr([7])
+        curve.CreatePointsAttr(stages.vectors(stages.grid().points[14:21]))
+        report = skinslide.paint(
+            stage, mesh.GetPrim(), PATCH, 8, curve=curve.GetPrim(), distance=1e-3, direction="along"
+        )
+        found.append((report.painted, slid(stage, tmp_path)))
+    (copies, own), (edges, whole) = found
+    assert edges == 6 and copies == 12
+    for frame, points in own.items():
+        assert points.tobytes() == whole[frame][split[1]].tobytes()
+    plain = slid(stages.patched_stage(stages.grid())[0], tmp_path)
+    assert not np.array_equal(plain[FRAMES[-1]], whole[FRAMES[-1]])
