@@ -1,5 +1,5 @@
-/* A canvas from inside: canvas.c makes, clears and reads it; figure.c draws figures on it, surface.c their surfaces and strokes.c
- * what is drawn on these, with what shading.c makes. */
+/* A canvas from inside: canvas.c makes, clears and reads it; figure.c draws figures on it, surface.c their surfaces, of which
+ * hiding.c finds what is in the way, and strokes.c what is drawn on these, with what shading.c makes. */
 #ifndef SKINSLIDE_CANVAS_H
 #define SKINSLIDE_CANVAS_H
 
@@ -53,12 +53,16 @@ typedef struct ss_drawing {
     ss_tessellation_work work;
     double origin[3];
     uint8_t *in_sight;        /* [mesh->grid_count] */
-    uint32_t (*triangles)[3]; /* [triangle_count] of grids in sight, of room for all; with ghosts the patch's first */
-    int32_t triangle_count, inside_count;
+    uint8_t *hides;           /* [mesh->grid_count] it may hide some of the patch; with ghosts */
+    uint32_t (*triangles)[3]; /* [triangle_count] of grids in sight, of room for all; with ghosts those of the patch come
+                                 first, then what hides nothing */
+    int32_t triangle_count, inside_count, hiding_first;
     ss_stroke strokes[SS_STROKES]; /* drawn in order */
     float line;                    /* pixels that the outline is wide */
 } ss_drawing;
 
+/* Marks what hides, once vertices are posed. */
+void ss_find_hiding(ss_drawing *drawn);
 /* In the work's memory, from its vertices. False where memory is short. */
 bool ss_list_strokes(ss_drawing *drawn);
 void ss_draw_strokes(const ss_drawing *drawn);

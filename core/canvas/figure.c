@@ -61,12 +61,18 @@ static void skip_out_of_sight(ss_drawing *drawn) {
     }
 }
 
-/* Of the grids in sight whose faces are inside, or are not; or of both. */
-static void list_triangles(ss_drawing *drawn, bool inside, bool outside) {
+/* Parts of what is in sight, in the order in which figures with ghosts draw them. */
+typedef enum part { INSIDE, OUTSIDE, HIDING, PARTS } part;
+
+static part part_of(const ss_drawing *drawn, int32_t grid) {
+    return drawn->outline->inside[drawn->mesh->grids[grid].face] ? INSIDE : drawn->hides[grid] ? HIDING : OUTSIDE;
+}
+
+/* Of a part, or of all. */
+static void list_triangles(ss_drawing *drawn, part wanted) {
     for (int32_t p = 0, first = 0; p < drawn->mesh->grid_count; p++) {
-        const ss_grid *grid = &drawn->mesh->grids[p];
-        int32_t own = ss_grid_triangles(drawn->mesh, grid);
-        if (drawn->in_sight[p] && (drawn->outline->inside[grid->face] ? inside : outside)) {
+        int32_t own = ss_grid_triangles(drawn->mesh, &drawn->mesh->grids[p]);
+        if (drawn->in_sight[p] && (wanted == PARTS || part_of(drawn, p) == wanted)) {
             memcpy(drawn->triangles + drawn->triangle_count, drawn->mesh->triangles + first,
                    (size_t)own * sizeof *drawn->triangles);
             drawn->triangle_count += own;
@@ -76,11 +82,16 @@ static void list_triangles(ss_drawing *drawn, bool inside, bool outside) {
 }
 
 static void order_triangles(ss_drawing *drawn) {
-    bool apart = drawn->figure->ghosts;
-    list_triangles(drawn, true, !apart);
+    if (!drawn->figure->ghosts) {
+        list_triangles(drawn, PARTS);
+        return;
+    }
+    ss_find_hiding(drawn);
+    list_triangles(drawn, INSIDE);
     drawn->inside_count = drawn->triangle_count;
-    if (apart)
-        list_triangles(drawn, false, true);
+    list_triangles(drawn, OUTSIDE);
+    drawn->hiding_first = drawn->triangle_count;
+    list_triangles(drawn, HIDING);
 }
 
 static void mark_inside(ss_drawing *drawn) {
@@ -166,6 +177,7 @@ static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camer
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
     drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
+    drawn->hides = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
     drawn->triangles = ss_new(&work->memory, mesh->triangle_count, sizeof *drawn->triangles);
     drawn->textures = SS_NEW(&work->memory, GLuint, figure->tile_count);
     if (!ss_tessellation_work_allocate(mesh, work))

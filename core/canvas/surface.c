@@ -92,7 +92,7 @@ static void clear_marks(const ss_drawing *drawn) {
 
 static void draw_shadows(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
-    int32_t first = drawn->inside_count, count = drawn->triangle_count - drawn->inside_count;
+    int32_t first = drawn->hiding_first, count = drawn->triangle_count - drawn->hiding_first;
     gl->glStencilFunc(GL_EQUAL, 1, 1);
     gl->glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     use(drawn, &drawn->canvas->objects.false_colours);
