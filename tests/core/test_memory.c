@@ -174,7 +174,9 @@ static skinslide_status run_all(void *subject, skinslide_error *error) {
     const skinslide_limit_place place = {5, 0.5f, 0.5f};
     float point[3];
     const skinslide_diagnostics diagnostics = {.size = sizeof(skinslide_diagnostics), .slide = s->slide};
+    static const double space[9] = {2, 0, 0, 0, 1, 0, 0, 0, 1};
     skinslide_mesh view = view_of_scene(s);
+    view.space = space;
     skinslide_status status = skinslide_slider_create(&view, s->setups, SETUPS, &slider, error);
     if (!status)
         status = skinslide_workspace_create(slider, &options, &workspace, error);
@@ -201,6 +203,33 @@ static void each_allocation_fails_in_turn(void **state) {
     fail_in_turn(run_weld, &s, 20);
     assert_true(memcmp(s.slid, s.points, POINT_BYTES(&s.mesh)) != 0);
     free_scene(&s);
+}
+
+/* What artists paint with asks of geometry. */
+static skinslide_status run_geometry(void *subject, skinslide_error *error) {
+    const test_mesh *grid = subject;
+    static const float line[6] = {0, 0, 0, 2, 2, 0};
+    static const int32_t faces[2] = {0, 2}, edges[2] = {0, 1}, two = 2;
+    const skinslide_curves curves = {
+        .size = sizeof curves, .curve_count = 1, .vertex_counts = &two, .point_count = 2, .points = line};
+    skinslide_mesh view = view_of(grid);
+    int32_t across[4], vertices[9];
+    uint8_t near;
+    double distance;
+    skinslide_status status = skinslide_mirror(&view, 0, 1, -1, faces, 2, across, vertices, error);
+    if (!status)
+        status = skinslide_mirror_nearest(&view, 0, 1, -1, faces, 2, across, vertices, &distance, error);
+    if (!status)
+        status = skinslide_edges_near(grid->points, 9, edges, 1, &curves, 1, SKINSLIDE_DIRECTION_ANY, &near, error);
+    return status ? status
+                  : skinslide_nearest_edge(grid->points, 9, edges, 1, &curves, SKINSLIDE_DIRECTION_ANY, &distance, error);
+}
+
+static void each_allocation_for_geometry_fails_in_turn(void **state) {
+    (void)state;
+    test_mesh grid = quad_grid(2, 2);
+    fail_in_turn(run_geometry, &grid, 15);
+    free_mesh(&grid);
 }
 
 static skinslide_status run_images(void *subject, skinslide_error *error) {
@@ -327,7 +356,10 @@ static skinslide_status run_stage_mesh(const stage_scene *s, skinslide_stage_mes
         status = mesh_takes(*mesh, "restPoints", points, error);
     while (!status && (input = skinslide_stage_next_input(SKINSLIDE_STAGE_SUBDIVISION, input)) != NULL)
         status = skinslide_stage_mesh_take(*mesh, input, NULL, error);
-    return status;
+    static const double uneven[16] = {2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    if (!status)
+        status = skinslide_stage_mesh_offer(*mesh, "primvars:map1", "texCoord2f[]", "faceVarying", error);
+    return status ? status : skinslide_stage_mesh_space(*mesh, uneven, 1, error);
 }
 
 static skinslide_status run_stage_patch(const skinslide_stage_mesh *mesh, skinslide_stage_patch **patch,
@@ -345,6 +377,8 @@ static skinslide_status run_stage_patch(const skinslide_stage_mesh *mesh, skinsl
         status = skinslide_stage_patch_check(*patch, indices, &faces, 1, error);
     if (!status)
         status = patch_takes(*patch, "edges", INTS("edges", 0, 1), error);
+    if (!status)
+        status = skinslide_stage_patch_meet(*patch, (const float[3]){0, 0, 0}, 1, error);
     return status ? status : patch_takes(*patch, "mapSt", text_of("mapSt", "uv"), error);
 }
 
@@ -536,6 +570,7 @@ int main(void) {
         cmocka_unit_test(counts_that_are_too_large_fail),
         cmocka_unit_test(memory_is_zero_and_aligned),
         cmocka_unit_test(each_allocation_fails_in_turn),
+        cmocka_unit_test(each_allocation_for_geometry_fails_in_turn),
         cmocka_unit_test(each_allocation_for_images_fails_in_turn),
         cmocka_unit_test(each_allocation_for_pictures_fails_in_turn),
         cmocka_unit_test(each_allocation_for_a_stage_fails_in_turn),

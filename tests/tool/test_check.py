@@ -246,5 +246,6 @@ def test_what_the_rule_does_not_read_is_told(rule, names):
 def test_frames_beyond_the_samples_are_told(frames, outside):
     stage, _mesh = stages.patched_stage()
     told = [problem.message for problem in skinslide.bake(stage, frames=frames).problems]
-    expected = f"{outside} frames are beyond the samples, which go from 1001 to 1003; the nearest is held there"
+    are = "1 frame is" if outside == 1 else f"{outside} frames are"
+    expected = f"{are} beyond the samples, which go from 1001 to 1003; the nearest is held there"
     assert [message for message in told if "beyond" in message] == [expected] * bool(outside)

@@ -7,10 +7,12 @@
  * How a reader uses it, in order
  *     1. A prim that mentions the schema: its facts to skinslide_stage_find, which gives the patches it carries, why they
  *        cannot be slid, and what to warn of.
- *     2. skinslide_stage_mesh_create, and each input of the group MESH to skinslide_stage_mesh_take.
+ *     2. skinslide_stage_mesh_create, and each input of the group MESH to skinslide_stage_mesh_take; its primvars to
+ *        skinslide_stage_mesh_offer, its way to the world to skinslide_stage_mesh_space.
  *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, the child
  *        prim of the patch's name to skinslide_stage_patch_take_subset and, where there is one, each input of the group SUBSET
  *        to skinslide_stage_patch_take. Paint, here and in 4, is found by skinslide_stage_patch_property.
+ *        Where skinslide_stage_patch_wants_neighbours says so, the meshes beside it to skinslide_stage_patch_meet.
  *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
  *        skinslide_stage_controls_take; then, for textures, the input that skinslide_stage_controls_coordinates gives, and the
  *        files that skinslide_stage_controls_need asks for.

@@ -19,7 +19,7 @@ from skinslide.picture.canvases import Canvases
 from skinslide.picture.page import Strip, compressed
 from skinslide.picture.series import Column, Moment, Series, Skin
 from skinslide.picture.settings import settings_of
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, errors
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, counted, errors
 from skinslide.shot.advice import advice
 from skinslide.shot.options import PictureOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
@@ -154,7 +154,7 @@ class MeshPictures(MeshMaking):
             return []
         flat = skin.tessellation.flat_faces
         if flat:
-            message = f"{flat} faces are drawn flat: their limit surfaces cannot be made"
+            message = f"{counted(flat, 'face is', 'faces are')} drawn flat, of no limit surface that can be made"
             self._problems.append(Problem("warning", self._mesh.path, None, None, message))
         if skin.told and "chequer" in self._options.views:
             self._problems.append(Problem("note", self._mesh.path, None, None, skin.told))

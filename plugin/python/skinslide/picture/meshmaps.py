@@ -13,7 +13,7 @@ from pxr import Usd
 from skinslide.arrays.images import FIRST_TILE, Corners, draw_corner_map, draw_map, encode_exr, map_tiles
 from skinslide.arrays.native import PatchSetup
 from skinslide.arrays.strain import Strain
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, counted
 from skinslide.shot.diagnostics import MeshStrain
 from skinslide.shot.options import MapOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
@@ -130,7 +130,8 @@ class MeshMaps(MeshMaking):
     def end(self) -> list[Problem]:
         """What is missing in the maps."""
         most, frame = max(self._missed, key=lambda each: each[0])
-        message = f"{most} faces are so small or thin that no texel's centre is in them; a larger size draws more"
+        thin = counted(most, "face is", "faces are")
+        message = f"{thin} so small or thin that no texel's centre is in them; a larger size draws more"
         return [Problem("warning", self._mesh.path, None, frame, message)] if most else []
 
     def _drawn_patches(self) -> list[PatchSetup]:

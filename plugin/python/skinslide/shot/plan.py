@@ -11,7 +11,7 @@ from pxr import Usd
 
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import Slider
-from skinslide.problems import Problem, StageProblems, UsageError, errors, frame_text
+from skinslide.problems import Problem, StageProblems, UsageError, counted, errors, frame_text
 from skinslide.shot.frames import AUTHORED, AskedFrames, Chunk
 from skinslide.shot.options import SlideOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
@@ -108,7 +108,8 @@ def _outside(meshes: list[PlannedMesh], named: list[float]) -> Iterator[Problem]
         if frames:
             samples = mesh.sample_times()
             span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
-            message = f"{len(frames)} frames are beyond the samples, which go {span}; the nearest is held there"
+            beyond = counted(len(frames), "frame is", "frames are")
+            message = f"{beyond} beyond the samples, which go {span}; the nearest is held there"
             yield Problem("warning", mesh.path, None, frames[0], message)
 
 
