@@ -45,8 +45,8 @@ echo
 
 say "Drawing pictures"
 step "body"
-"$venv/bin/skinslide" preview "$(stage body)" -o "$out/body/pictures" --html "$out/body/report.html" --json --quiet \
-    >"$out/body/preview.json"
+"$venv/bin/skinslide" preview "$(stage body)" -o "$out/body/pictures" --html "$out/body/report.html" >"$out/body/preview.txt" 2>&1
+"$venv/bin/skinslide" report "$out" >"$out/shots.txt"
 "$python" examples/measure/gain.py "$out/gain.jpg" "$(stage body)" "$(stage elbow),$(stage face)" >/dev/null
 "$python" examples/measure/wrinkles.py "$out/wrinkles.jpg" "$(stage fingers)" >/dev/null
 for example in sleeve face; do
@@ -74,6 +74,7 @@ cat <<SUMMARY
 
 Look at these in $out:
   body/report.html               a body that nobody painted, in a browser, from the frame at which it gains most
+  shots.html                     all of them on one page, those with most stretch left first
   gain.jpg                       an elbow and a face there: the cache, a patch that somebody painted, nothing painted
   sleeve.jpg face.jpg character.jpg  the cache, and what the rules make of it
   wrinkles.jpg                   a hand that closes, wrinkled where its skin is pressed together
