@@ -143,6 +143,12 @@ def kill_at_a_call(attack: Attack) -> list[str]:
     return _strike(attack, _file_calls(attack), [-number for number in _SIGNALS])
 
 
+def killed_job(attack: Attack) -> list[str]:
+    """Tasks of a job, killed and tried again until each has ended: then there is the bake of one machine."""
+    with attack.ground.folder(attack.name) as folder:
+        return races.killed_job(folder, attack.chance)
+
+
 # ---- Calls that fail ----
 
 
@@ -245,6 +251,7 @@ KINDS: dict[str, Callable[[Attack], list[str]]] = {
     for each in (
         kill,
         kill_at_a_call,
+        killed_job,
         failing_call,
         failing_allocation,
         failing_allocation_of_anybody,

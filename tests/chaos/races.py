@@ -3,6 +3,7 @@
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -16,6 +17,7 @@ from stages import MESH, PATCH
 
 _LIVE = (sys.executable, ROOT / "tests" / "format" / "read_live.py")
 _THREADS = (sys.executable, ROOT / "tests" / "format" / "open_and_drop.py")
+_CHUNKS = 3
 _ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tests" / "support"), str(ROOT / "tests")])}
 
 
@@ -37,6 +39,35 @@ def _baked(folder: Path, frames: str) -> str | bytes:
         return content(folder / "whole.usdc")
     finally:
         (folder / "whole.usdc").unlink()
+
+
+def killed_job(folder: Path, chance: random.Random) -> list[str]:
+    """Each task is killed at a moment of its own, and tried again as a queue does, at most so often."""
+    skinslide.bake_to_file(folder / "shot.usda", folder / "whole.usdc")
+    chunks = [f"job.chunk{number}.usdc" for number in range(1, _CHUNKS + 1)]
+    tasks = [
+        ("bake", "shot.usda", "-o", chunk, "--chunk", f"{number}/{_CHUNKS}", "--resume", "--quiet")
+        for number, chunk in enumerate(chunks, 1)
+    ]
+    for task in (*tasks, ("stitch", *chunks, "-o", "job.usdc")):
+        left = chance.randint(1, 2)
+        while (ended := _killed(folder, task, chance.random() if left else None)).code != 0:
+            if ended.code != -signal.SIGKILL:
+                return [f"{task[0]} ended with {ended.code}: {ended.err[-300:]}"]
+            left -= 1
+    same = content(folder / "job.usdc") == content(folder / "whole.usdc")
+    return [] if same else ["job.usdc is not the bake of one machine"]
+
+
+def _killed(folder: Path, task: tuple[str, ...], moment: float | None) -> Ended:
+    """A task that is killed at a moment; None: it is left alone."""
+
+    def strike(process: subprocess.Popen[str]) -> None:
+        if moment is not None:
+            time.sleep(moment)
+            process.send_signal(signal.SIGKILL)
+
+    return Run(Command(task, ()), folder).ended(strike)
 
 
 def three_edits(folder: Path) -> list[str]:

@@ -44,6 +44,10 @@ COMMANDS = [
     Command(
         ("preview", "shot.usda", "-o", "pictures", "--html", "page.html", *_SMALL, *_QUICK), ("pictures", "page.html")
     ),
+    Command(
+        ("stitch", "a.usdc", "b.usdc", "-o", "clips.usda", "--clips", "--quiet"), ("clips.usda", "clips.manifest.usda")
+    ),
+    Command(("farm", "shot.usda", "-o", "job.usdc", "--chunk", "3", "--quiet"), ("job.openjd.json",)),
 ]
 
 
