@@ -35,7 +35,7 @@ class Shot(NamedTuple):
 
 SHOTS = [
     *(Shot(points, 1, 8) for points in (1_000, 10_000, 100_000)),
-    *(Shot(100_000, patches, 8) for patches in (10, 100, 1_000)),
+    *(Shot(100_000, patches, 8) for patches in (10, 100, 400)),
     *(Shot(10_000, 1, frames) for frames in (32, 128, 512)),
 ]
 LARGE = [Shot(250_000, 100, frames) for frames in (10, 40, 160)]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -412,6 +412,16 @@ class Subset(NamedTuple):
     is_subset: bool
 
 
+class Names(tuple[str, ...]):
+    """Names of properties, to be looked through for many inputs."""
+
+    @cached_property
+    def native(self) -> Any:
+        """As the core has them, as long as this lives."""
+        self._held = _Native()
+        return self._held.of(list(self))
+
+
 class PatchMeaning(Taker):
     """One patch: its faces and its settings."""
 
@@ -444,9 +454,9 @@ class PatchMeaning(Taker):
 
     def property_of(self, source: Input, names: Sequence[str]) -> str | None:
         """Which of the properties of a prim that have values or are blocked is an input; None: none of them."""
-        native, given = _Native(), list(names)
-        found = lib.skinslide_stage_patch_property(self.handle.pointer, source.pointer, native.of(given), len(given))
-        return None if found < 0 else names[found]
+        given = names if isinstance(names, Names) else Names(names)
+        found = lib.skinslide_stage_patch_property(self.handle.pointer, source.pointer, given.native, len(given))
+        return None if found < 0 else given[found]
 
     def describe(self, source: Input, value: Value) -> str:
         """What there is to say of paint that is not as the schema has it, or nothing."""

@@ -27,7 +27,7 @@ from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem, counted
 from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.following import carried, offered
-from skinslide.stage.patch import Animation, read_patch
+from skinslide.stage.patch import Animation, Painted, read_patch
 from skinslide.stage.skinning import SkinnedPoints, SkinnedVectors, Skinning
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
@@ -330,7 +330,8 @@ def _read_mesh(found: FoundMesh, problems: list[Problem]) -> PatchedMesh | None:
     say(faults)
     if not meaning.has_faces:
         return None
-    read = {name: read_patch(prim, name, meaning) for name in found.patches}
+    painted = Painted(prim)
+    read = {name: read_patch(prim, name, meaning, painted) for name in found.patches}
     for name, (_, wrong) in read.items():
         say(wrong, name)
     animation = [good for good, _ in read.values() if good]

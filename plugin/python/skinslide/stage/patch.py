@@ -13,6 +13,7 @@ from skinslide.arrays.meaning import (
     ControlsMeaning,
     Input,
     MeshMeaning,
+    Names,
     PatchMeaning,
     Subset,
     Value,
@@ -38,10 +39,16 @@ class Animation:
         textures: Those of the first time.
     """
 
-    def __init__(self, prim: Usd.Prim, meaning: PatchMeaning, wanted: Sequence[Input] = inputs("controls")):
+    def __init__(
+        self,
+        prim: Usd.Prim,
+        meaning: PatchMeaning,
+        wanted: Sequence[Input] = inputs("controls"),
+        painted: Painted | None = None,
+    ):
         self._meaning, self._lock = meaning, threading.Lock()
         self._base, self._idle = ControlsMeaning(meaning), list[ControlsMeaning]()
-        self._faces, *self._controls = paint_sources(prim, [input_of("patch", "patch"), *wanted], meaning)
+        self._faces, *self._controls = paint_sources(prim, [input_of("patch", "patch"), *wanted], meaning, painted)
         self.faults = take(self._base, self._controls)
         self._coordinates = [Source(prim, each) for each in self._base.coordinates()]
         self.faults += take(self._base, self._coordinates)
@@ -114,14 +121,16 @@ class Animation:
         return own.get()
 
 
-def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation | None, list[str]]:
+def read_patch(
+    prim: Usd.Prim, name: str, mesh: MeshMeaning, painted: Painted | None = None
+) -> tuple[Animation | None, list[str]]:
     """The patch, or everything that is wrong with it."""
     meaning = PatchMeaning(mesh, name)
-    faults = take_settings(meaning, prim, inputs("patch"))
+    faults = take_settings(meaning, prim, inputs("patch"), painted)
     with noting(faults):
         for other in find_neighbours(prim) if meaning.wants_neighbours else ():
             meaning.meet(other.points)
-    animation = Animation(prim, meaning)
+    animation = Animation(prim, meaning, painted=painted)
     faults += animation.faults
     with noting(faults):
         if not faults:
@@ -180,29 +189,43 @@ def subset_faces(child: Usd.Prim, mesh: MeshMeaning) -> np.ndarray:
     return meaning.faces
 
 
-def take_settings(meaning: PatchMeaning, prim: Usd.Prim, wanted: Sequence[Input]) -> list[str]:
+def take_settings(
+    meaning: PatchMeaning, prim: Usd.Prim, wanted: Sequence[Input], painted: Painted | None = None
+) -> list[str]:
     """Hands over settings, with the faces of the child of the patch's name. Returns what is wrong."""
-    faults = take(meaning, paint_sources(prim, wanted, meaning))
+    faults = take(meaning, paint_sources(prim, wanted, meaning, painted))
     child = schema.child(prim, meaning.name)
     return faults + take_subset(meaning, child if child and child.IsActive() else None)
 
 
-def paint_sources(prim: Usd.Prim, wanted: Sequence[Input], meaning: PatchMeaning) -> list[Source]:
+class Painted:
+    """The primvars of a prim, of its parent, and so on: listed once for all patches."""
+
+    def __init__(self, prim: Usd.Prim):
+        above = [prim]
+        while above[-1].GetParent():
+            above.append(above[-1].GetParent())
+        self._names = [Names(_primvars(each)) for each in above]
+
+    def name_of(self, wanted: Input, meaning: PatchMeaning) -> str | None:
+        """That of the nearest which is an input of a patch."""
+        for names in (self._names if wanted.is_inherited else self._names[:1]) if wanted.is_primvar else ():
+            found = meaning.property_of(wanted, names)
+            if found:
+                return found
+        return None
+
+
+def paint_sources(
+    prim: Usd.Prim, wanted: Sequence[Input], meaning: PatchMeaning, painted: Painted | None = None
+) -> list[Source]:
     """The sources of inputs of a patch, under the names by which the prim, or what it is below, has paint."""
-    above = [prim]
-    while above[-1].GetParent():
-        above.append(above[-1].GetParent())
-    known = [list(_primvars(each)) for each in above]
-    return [_paint_source(prim, each, meaning, known) for each in wanted]
-
-
-def _paint_source(prim: Usd.Prim, wanted: Input, meaning: PatchMeaning, known: Sequence[Sequence[str]]) -> Source:
-    """known: primvars of the prim, of its parent, and so on."""
-    for names in (known if wanted.is_inherited else known[:1]) if wanted.is_primvar else ():
-        found = meaning.property_of(wanted, names)
-        if found:
-            return Source(prim, wanted, name=found)
-    return Source(prim, wanted, meaning.name)
+    there = painted or Painted(prim)
+    names = [there.name_of(each, meaning) for each in wanted]
+    return [
+        Source(prim, each, name=name) if name else Source(prim, each, meaning.name)
+        for each, name in zip(wanted, names, strict=True)
+    ]
 
 
 def _primvars(prim: Usd.Prim) -> Iterator[str]:
