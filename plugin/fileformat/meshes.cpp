@@ -186,9 +186,10 @@ void offerPrimvars(const Prim &prim, skinslide_stage_mesh *mesh) {
 
 // How the transforms above a mesh scale it, at each time at which they were authored.
 void takeSpace(Composition &composition, const SdfPath &path, skinslide_stage_mesh *mesh) {
-    call(skinslide_stage_mesh_space, mesh, toWorld(composition, path, Attribute::first).data(), 0.0);
-    for (double time : toWorldTimes(composition, path))
-        call(skinslide_stage_mesh_space, mesh, toWorld(composition, path, time).data(), time);
+    ToWorld way(composition, path);
+    call(skinslide_stage_mesh_space, mesh, way.at(Attribute::first).data(), 0.0);
+    for (double time : way.times())
+        call(skinslide_stage_mesh_space, mesh, way.at(time).data(), time);
 }
 
 // ---- Meshes beside it ----
@@ -203,12 +204,12 @@ VtVec3fArray pointsOf(const Prim &prim) {
 // Meshes in the space of another, as a stage is traversed: without what is inside instances.
 std::vector<Prim> beside(Composition &composition, const Prim &prim) {
     std::vector<Prim> found;
-    GfMatrix4d own = toWorld(composition, prim.path(), Attribute::first);
+    GfMatrix4d own = ToWorld(composition, prim.path()).at(Attribute::first);
     composition.traverse([&](const Prim &other) {
         if (!other.active() || other.specifier() != SdfSpecifierDef)
             return false;
         if (other.typeName() == names().mesh && other.path() != prim.path() &&
-            toWorld(composition, other.path(), Attribute::first) == own)
+            ToWorld(composition, other.path()).at(Attribute::first) == own)
             found.push_back(other);
         return !other.instanceable();
     });

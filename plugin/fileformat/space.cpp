@@ -84,16 +84,15 @@ GfMatrix4d operation(const std::string &type, const VtValue &value) {
     return stem == "rotate" ? turnedInOrder(axes, vectorOf(value, 0)) : GfMatrix4d(1);
 }
 
-// ---- A prim ----
+GfMatrix4d operation(const std::string &type, const VtValue &value, bool inverted) {
+    GfMatrix4d own = value.IsEmpty() ? GfMatrix4d(1) : operation(type, value);
+    return inverted ? own.GetInverse() : own;
+}
 
-struct Step {
-    Attribute attribute;
-    std::string type;
-    bool inverted;
-};
+} // namespace
 
 // Those that count, and whether they begin in the world.
-std::vector<Step> steps(const Prim &prim, bool *resets) {
+std::vector<ToWorld::Step> ToWorld::steps(const Prim &prim, bool *resets) {
     VtValue order = prim.attribute(names().xformOpOrder).at(Attribute::first);
     std::vector<Step> found;
     if (!order.IsHolding<VtTokenArray>())
@@ -108,42 +107,40 @@ std::vector<Step> steps(const Prim &prim, bool *resets) {
         bool inverted = TfStringStartsWith(name, inverse);
         name = inverted ? name.substr(sizeof inverse - 1) : name;
         std::string type = TfStringStartsWith(name, prefix) ? TfStringSplit(name, ":")[1] : "";
+        if (!SdfPath::IsValidNamespacedIdentifier(name))
+            continue;
         found.push_back({prim.attribute(TfToken(name)), type, inverted});
     }
     return found;
 }
 
-GfMatrix4d localOf(const Prim &prim, double time, bool *resets) {
-    GfMatrix4d local(1);
-    for (const Step &step : steps(prim, resets)) {
-        VtValue value = step.attribute.at(time);
-        if (value.IsEmpty())
-            continue;
-        GfMatrix4d own = operation(step.type, value);
-        local = (step.inverted ? own.GetInverse() : own) * local;
-    }
-    return local;
-}
-
-} // namespace
-
-GfMatrix4d toWorld(Composition &composition, const SdfPath &path, double time) {
-    GfMatrix4d matrix(1);
+ToWorld::ToWorld(Composition &composition, const SdfPath &path) {
     for (const SdfPath &each : path.GetPrefixes()) {
         bool resets = false;
-        GfMatrix4d local = localOf(composition.prim(each), time, &resets);
-        matrix = resets ? local : local * matrix;
+        std::vector<Step> own = steps(composition.prim(each), &resets);
+        if (resets)
+            _locals.clear();
+        _locals.push_back(own);
+    }
+}
+
+GfMatrix4d ToWorld::at(double time) const {
+    GfMatrix4d matrix(1);
+    for (const std::vector<Step> &own : _locals) {
+        GfMatrix4d local(1);
+        for (const Step &step : own)
+            local = operation(step.type, step.attribute.at(time), step.inverted) * local;
+        matrix = local * matrix;
     }
     return matrix;
 }
 
-std::vector<double> toWorldTimes(Composition &composition, const SdfPath &path) {
+std::vector<double> ToWorld::times() const {
     std::vector<double> times;
-    for (const SdfPath &each : path.GetPrefixes()) {
-        bool resets = false;
-        for (const Step &step : steps(composition.prim(each), &resets)) {
-            std::vector<double> own = step.attribute.times();
-            times.insert(times.end(), own.begin(), own.end());
+    for (const std::vector<Step> &own : _locals) {
+        for (const Step &step : own) {
+            std::vector<double> authored = step.attribute.times();
+            times.insert(times.end(), authored.begin(), authored.end());
         }
     }
     std::sort(times.begin(), times.end());
