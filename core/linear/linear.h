@@ -18,6 +18,20 @@ typedef struct ss_net {
     const uint8_t *fixed; /* [vertex_count] */
 } ss_net;
 
+/* Columns of a factor that have the same rows below them. */
+typedef struct ss_front {
+    int32_t first, count;             /* columns, which are unknowns */
+    int32_t row_start, row_count;     /* the rows below them, in rows */
+    int32_t entry_start, entry_count; /* entries of the matrix in the columns, in entries */
+    int32_t parent, child, next;      /* what its update is for; the last child, and the one before of the same parent; -1 */
+} ss_front;
+
+/* An entry of the matrix in a front. */
+typedef struct ss_entry {
+    int32_t edge;
+    int32_t column, row; /* of the front: rows are those of its columns, then those below */
+} ss_entry;
+
 /* A symmetric system with an unknown a free vertex of a net and an entry an edge: immutable. */
 typedef struct ss_system {
     ss_memory memory;
@@ -25,38 +39,115 @@ typedef struct ss_system {
     int32_t vertex_count, edge_count, n; /* n unknowns */
     int32_t (*edge_vertex)[2];
     int32_t *unknown; /* [vertex_count] place in the ordered system, -1 where fixed */
-    int32_t *entry;   /* [edge_count] place of the edge in Lx, -1 where an end is fixed */
-    int *Ap, *Ai;     /* upper triangle of the ordered matrix, by columns, without the diagonal */
-    int *Lp, *Li;     /* L by columns, rows ascending, without its diagonal of ones */
-    int *parent;      /* [n] elimination tree */
-    int *block;       /* [block_count + 1] first columns of runs whose rows below the run are the same */
-    int block_count;
+    int32_t front_count;
+    ss_front *fronts; /* children before parents */
+    int32_t *rows;    /* unknowns below each front, ascending ... */
+    int32_t *place;   /* ... and where each is among the rows of the parent */
+    ss_entry *entries;
 } ss_system;
 
 skinslide_status ss_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error);
 void ss_system_destroy(ss_system *system);
+
+/* The unknowns that share an entry with each. */
+typedef struct ss_graph {
+    int32_t n;
+    int32_t *start; /* [n + 1] */
+    int32_t *neighbour;
+} ss_graph;
+
+/* Of unknowns as they are numbered now. */
+void ss_fill_graph(const ss_system *system, ss_graph *graph);
+/* Gives each unknown the number at its own in place [n]. */
+void ss_renumber(ss_system *system, const int32_t *place);
+
+/* ---- dissect.c ---- */
+
+/* Parts a graph: set [n] is the place of each unknown's part in an order that fills little, separators after what they part. */
+skinslide_status ss_dissect(const ss_graph *graph, int32_t *set, skinslide_error *error);
+
+/* ---- fronts.c ---- */
+
+/* Finds the fronts of a system, and renumbers it. graph is that of its unknowns, before and after. */
+skinslide_status ss_find_fronts(ss_system *system, ss_graph *graph, skinslide_error *error);
+
+/* ---- kernels.c ---- */
+
+/* A front as it is stored: in tiles of four rows. */
+typedef struct ss_shape {
+    int32_t used, columns;                 /* its columns, and with those that pad them */
+    int32_t below;                         /* rows below */
+    int32_t own_tiles, below_tiles, tiles; /* of the columns' own rows, of those below; all */
+    size_t height;                         /* of its update */
+} ss_shape;
+
+typedef struct ss_kernels {
+    /* Factors a panel; force, of its size, keeps what it was before it was divided by its pivots. False where one is not a number
+     * to divide by. */
+    bool (*factor)(const ss_shape *s, bool dominant, double *panel, double *force);
+    /* Adds to an update, by columns, what a factored panel leaves there. */
+    void (*update)(const ss_shape *s, const double *panel, const double *force, double *update);
+    /* Of 1, 2 or 3 right sides. Eliminates x [count][columns]; below [count][rows below] is out what that leaves there. */
+    void (*forward[3])(const ss_shape *s, const double *panel, double *x, double *below);
+    /* x [count][columns]: in what forward made, over the pivots; out the solution, which is given below. */
+    void (*backward[3])(const ss_shape *s, const double *panel, double *x, const double *below);
+} ss_kernels;
+
+/* The fastest that the processor has, or those that all have. */
+const ss_kernels *ss_kernels_of(bool fastest);
+
+/* ---- frontal.c, substitute.c: L D L' ---- */
+
+/* One a thread. */
+typedef struct ss_frontal {
+    ss_memory memory;
+    const ss_system *system;
+    int32_t block; /* rows of an entry: 1 or 2 */
+    bool dominant; /* pivots are sums, and right sides are carried along: see factor.c */
+    const ss_kernels *kernels;
+    int64_t *panel, *update; /* [front_count] where the columns of each front are in L, and its update is in a stack */
+    uint8_t *odd;            /* [front_count] in which of the two */
+    double *L, *stack[2];
+    double *force;      /* [largest panel] a panel before it was divided by its pivots */
+    size_t *at;         /* [edge_count] where the entries of the matrix are in the panels of their fronts */
+    size_t *to_panel;   /* [most rows below] where rows of a child go, in a panel ... */
+    int32_t *to_update; /* ... and in an update, below 0 where they are columns */
+    double *x, *below;  /* [3][most columns], [3][most rows below] */
+} ss_frontal;
+
+skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, ss_frontal **out,
+                                   skinslide_error *error);
+void ss_frontal_destroy(ss_frontal *frontal);
+ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front);
+/* False where a pivot is not a number to divide by. entries is [edge_count]; slack [n], right [n] is carried along. */
+bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double *slack, const double (*right)[2]);
+/* False also where work is left because of the flag. own [n], between [edge_count]: its rows are those of the higher unknown. */
+bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], const int *stop);
+/* The two halves of solving for right [n][block][count]. carried: the first has been done with right sides carried along. */
+void ss_eliminate_right(ss_frontal *frontal, int count, double *right);
+void ss_substitute_back(ss_frontal *frontal, int count, bool carried, double *right);
 
 /* ---- factor.c: entries of one number, none positive off the diagonal ---- */
 
 /* One a thread. */
 typedef struct ss_factor {
     ss_memory memory;
-    double *Lx;                  /* the entries off the diagonal, then of L, with their signs turned: all >= 0 */
-    double *pivot, *slack;       /* [n] D, and what of each pivot pulls towards fixed vertices */
-    double *work;                /* [n] zero between columns */
-    double *force;               /* [n] of the columns of a block */
-    double (*right)[2];          /* [n] right sides, then solutions */
-    int *first, *next, *reached; /* [n] blocks by the row they are to be used in next, and how far each was */
+    ss_frontal *frontal;
+    double *entry;      /* [edge_count] those off the diagonal with their signs turned: all >= 0 */
+    double *slack;      /* [n] what of each pivot pulls towards fixed vertices */
+    double (*right)[2]; /* [n] right sides, then solutions */
 } ss_factor;
 
 skinslide_status ss_factor_create(const ss_system *system, ss_factor **out, skinslide_error *error);
 void ss_factor_destroy(ss_factor *factor);
-/* Empties Lx, slack and right, to be filled with the matrix and the right sides. */
-void ss_factor_clear(const ss_system *system, ss_factor *factor);
+/* Empties slack and right, to be filled as entry is. */
+void ss_factor_clear(ss_factor *factor);
 /* False where a pivot is not a number to divide by. */
-bool ss_factorise(const ss_system *system, ss_factor *factor);
+bool ss_factorise(ss_factor *factor);
 /* right becomes the solutions. */
-void ss_solve(const ss_system *system, ss_factor *factor);
+void ss_solve(ss_factor *factor);
+/* Both. */
+bool ss_factorise_and_solve(ss_factor *factor);
 
 /* ---- blocks.c: entries of two by two ---- */
 
@@ -64,13 +155,10 @@ void ss_solve(const ss_system *system, ss_factor *factor);
 typedef struct ss_blocks {
     ss_memory memory;
     const ss_system *system;
-    double (*Lx)[4];             /* the matrix below its diagonal, then L */
-    double (*own)[4];            /* [unknowns] its diagonal */
-    double (*right)[2];          /* [unknowns] right side, then the solution */
-    double (*pivot)[2];          /* [unknowns] D */
-    double *lean;                /* [unknowns] of L, the one entry in a diagonal block that is neither 0 nor 1 */
-    double (*work)[4];           /* [unknowns] zero between columns */
-    int *first, *next, *reached; /* [unknowns] runs of columns by the row they are to be used in next, and how far each was */
+    ss_frontal *frontal;
+    double (*own)[4];     /* [n] */
+    double (*between)[4]; /* [edge_count] rows are those of the higher unknown */
+    double (*right)[2];   /* [n] right side, then the solution */
 } ss_blocks;
 
 skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skinslide_error *error);

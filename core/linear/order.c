@@ -1,123 +1,101 @@
-/* The pattern of a symmetric system whose off-diagonal entries are the edges of a net: its unknowns in the order that fills its
- * factor least (SuiteSparse's AMD), where the factor has entries, and which of its columns go together. Found once a net. */
+/* The pattern of a symmetric system whose off-diagonal entries are the edges of a net: its unknowns in an order that fills its
+ * factor little, and the fronts of that factor. Found once a net. Small systems are ordered by approximate minimum degree alone,
+ * large ones so within the parts of a nested dissection (SuiteSparse's CAMD). */
 #include "linear.h"
 
-#include <amd.h>
+#include <camd.h>
 #include <limits.h>
 #include <stdlib.h>
-#include <string.h>
 
-static bool joins_free(const ss_system *system, int32_t edge) {
-    return system->unknown[system->edge_vertex[edge][0]] >= 0 && system->unknown[system->edge_vertex[edge][1]] >= 0;
+#define LARGE 2000 /* unknowns from which on a dissection fills less */
+
+/* ---- The graph of the unknowns ---- */
+
+static skinslide_status new_graph(const ss_system *system, ss_memory *memory, ss_graph *graph, skinslide_error *error) {
+    if (system->edge_count > INT32_MAX / 2)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label,
+                       2.0 * system->edge_count);
+    graph->n = system->n;
+    graph->start = SS_NEW(memory, int32_t, (int64_t)system->n + 1);
+    graph->neighbour = SS_NEW(memory, int32_t, 2 * (int64_t)system->edge_count);
+    return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
-/* The upper triangle in whatever order the unknowns have now. filled is scratch [n]. */
-static void fill_pattern(ss_system *system, int *filled) {
-    memset(system->Ap, 0, ((size_t)system->n + 1) * sizeof *system->Ap);
+void ss_fill_graph(const ss_system *system, ss_graph *graph) {
+    int32_t *start = graph->start;
+    for (int32_t k = 0; k <= graph->n; k++)
+        start[k] = 0;
     for (int pass = 0; pass < 2; pass++) {
-        memset(filled, 0, (size_t)system->n * sizeof *filled);
         for (int32_t e = 0; e < system->edge_count; e++) {
-            if (!joins_free(system, e))
-                continue;
             int32_t a = system->unknown[system->edge_vertex[e][0]], b = system->unknown[system->edge_vertex[e][1]];
-            int32_t column = a > b ? a : b;
+            if (a < 0 || b < 0)
+                continue;
             if (pass)
-                system->Ai[system->Ap[column] + filled[column]] = a < b ? a : b;
-            filled[column]++;
+                graph->neighbour[--start[a]] = b, graph->neighbour[--start[b]] = a;
+            else
+                start[a]++, start[b]++;
         }
-        for (int32_t k = 0; k < system->n && !pass; k++)
-            system->Ap[k + 1] = system->Ap[k] + filled[k];
+        for (int32_t k = 0; k < graph->n && !pass; k++)
+            start[k + 1] += start[k];
     }
 }
 
-/* Renumbers the unknowns by approximate minimum degree. scratch is [2 n]. */
-static skinslide_status order(ss_system *system, int *scratch, skinslide_error *error) {
-    double info[AMD_INFO];
-    int *permutation = scratch, *place = scratch + system->n;
-    fill_pattern(system, scratch);
-    int status = amd_order(system->n, system->Ap, system->Ai, permutation, NULL, info);
-    if (status == AMD_OUT_OF_MEMORY)
-        return ss_out_of_memory(error);
-    if (status < 0)
-        return ss_fail(error, SKINSLIDE_SINGULAR, "%s: its system cannot be ordered", system->label);
-    if (info[AMD_LNZ] > INT_MAX / 2)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label, info[AMD_LNZ]);
-    for (int32_t k = 0; k < system->n; k++)
-        place[permutation[k]] = k;
+void ss_renumber(ss_system *system, const int32_t *place) {
     for (int32_t v = 0; v < system->vertex_count; v++)
         if (system->unknown[v] >= 0)
             system->unknown[v] = place[system->unknown[v]];
-    return SKINSLIDE_OK;
 }
 
-/* Visits, for each row k of L, its columns i: along the elimination tree from the entries of row k of the matrix (Liu 1990). The
- * first time it makes the tree and counts entries in filled, the second time it lists them. seen is scratch [n]. */
-static void visit_rows(ss_system *system, int *filled, int *seen, bool list) {
-    memset(filled, 0, (size_t)system->n * sizeof *filled);
-    for (int k = 0; k < system->n; k++) {
-        seen[k] = k;
-        for (int p = system->Ap[k]; p < system->Ap[k + 1]; p++)
-            for (int i = system->Ai[p]; seen[i] != k; i = system->parent[i]) {
-                if (!list && system->parent[i] < 0)
-                    system->parent[i] = k;
-                if (list)
-                    system->Li[system->Lp[i] + filled[i]] = k;
-                filled[i]++;
-                seen[i] = k;
-            }
-    }
-}
+/* ---- The order ---- */
 
-static int find_entry(const ss_system *system, int column, int row) {
-    int low = system->Lp[column], high = system->Lp[column + 1] - 1;
-    while (low < high) {
-        int middle = low + (high - low) / 2;
-        if (system->Li[middle] < row)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-static void place_edges(ss_system *system) {
-    for (int32_t e = 0; e < system->edge_count; e++) {
-        int32_t a = system->unknown[system->edge_vertex[e][0]], b = system->unknown[system->edge_vertex[e][1]];
-        system->entry[e] = joins_free(system, e) ? find_entry(system, a < b ? a : b, a < b ? b : a) : -1;
-    }
-}
-
-/* A column goes on with the run before it where it is that column's parent and has its rows but itself. */
-static void find_blocks(ss_system *system) {
-    for (int k = 0; k < system->n; k++) {
-        int rows = system->Lp[k + 1] - system->Lp[k], before = k > 0 ? system->Lp[k] - system->Lp[k - 1] : 0;
-        if (k == 0 || system->parent[k - 1] != k || before != rows + 1)
-            system->block[system->block_count++] = k;
-    }
-    system->block[system->block_count] = system->n;
-}
-
-/* scratch is [2 n]. */
-static skinslide_status analyse(ss_system *system, int *scratch, skinslide_error *error) {
-    if (system->n > 0) {
-        skinslide_status status = order(system, scratch, error);
-        if (status)
-            return status;
-    }
-    int *filled = scratch, *seen = scratch + system->n;
-    fill_pattern(system, filled);
-    for (int k = 0; k < system->n; k++)
-        system->parent[k] = -1;
-    visit_rows(system, filled, seen, false);
-    for (int k = 0; k < system->n; k++)
-        system->Lp[k + 1] = system->Lp[k] + filled[k];
-    system->Li = SS_NEW(&system->memory, int, system->Lp[system->n]);
-    if (system->memory.failed)
+static skinslide_status minimum_degree(const ss_system *system, const ss_graph *graph, int32_t *set, int32_t *order,
+                                       skinslide_error *error) {
+    double info[CAMD_INFO];
+    int status = camd_order(graph->n, graph->start, graph->neighbour, order, NULL, info, set);
+    if (status == CAMD_OUT_OF_MEMORY)
         return ss_out_of_memory(error);
-    visit_rows(system, filled, seen, true);
-    place_edges(system);
-    find_blocks(system);
+    if (status < 0)
+        return ss_fail(error, SKINSLIDE_SINGULAR, "%s: its system cannot be ordered", system->label);
+    if (info[CAMD_LNZ] > INT_MAX / 2)
+        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label,
+                       info[CAMD_LNZ]);
     return SKINSLIDE_OK;
+}
+
+static skinslide_status order_unknowns(ss_system *system, const ss_graph *graph, skinslide_error *error) {
+    ss_memory scratch = {0};
+    int32_t n = system->n, *order = SS_NEW(&scratch, int32_t, n), *place = SS_NEW(&scratch, int32_t, n), *set = NULL;
+    if (n >= LARGE)
+        set = SS_NEW(&scratch, int32_t, n);
+    skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status && set)
+        status = ss_dissect(graph, set, error);
+    if (!status)
+        status = minimum_degree(system, graph, set, order, error);
+    for (int32_t k = 0; k < n && !status; k++)
+        place[order[k]] = k;
+    if (!status)
+        ss_renumber(system, place);
+    ss_free(&scratch);
+    return status;
+}
+
+static skinslide_status analyse(ss_system *system, skinslide_error *error) {
+    ss_memory scratch = {0};
+    ss_graph graph;
+    if (system->n == 0)
+        return SKINSLIDE_OK;
+    skinslide_status status = new_graph(system, &scratch, &graph, error);
+    if (!status) {
+        ss_fill_graph(system, &graph);
+        status = order_unknowns(system, &graph, error);
+    }
+    if (!status) {
+        ss_fill_graph(system, &graph);
+        status = ss_find_fronts(system, &graph, error);
+    }
+    ss_free(&scratch);
+    return status;
 }
 
 /* Copies the net and numbers its free vertices as they come. */
@@ -132,26 +110,16 @@ skinslide_status ss_system_create(const ss_net *net, const char *label, ss_syste
     ss_system *system = calloc(1, sizeof *system);
     if (!system)
         return ss_out_of_memory(error);
-    ss_memory scratch_memory = {0}, *memory = &system->memory;
-    int32_t vertices = net->vertex_count, edges = net->edge_count;
-    system->vertex_count = vertices, system->edge_count = edges;
+    system->vertex_count = net->vertex_count, system->edge_count = net->edge_count;
     for (size_t i = 0; i + 1 < sizeof system->label && label[i]; i++)
         system->label[i] = label[i];
-    system->edge_vertex = ss_new(memory, edges, sizeof *system->edge_vertex);
-    system->unknown = SS_NEW(memory, int32_t, vertices);
-    system->entry = SS_NEW(memory, int32_t, edges);
-    system->Ap = SS_NEW(memory, int, (int64_t)vertices + 1);
-    system->Ai = SS_NEW(memory, int, edges);
-    system->Lp = SS_NEW(memory, int, (int64_t)vertices + 1);
-    system->parent = SS_NEW(memory, int, vertices);
-    system->block = SS_NEW(memory, int, (int64_t)vertices + 1);
-    int *scratch = SS_NEW(&scratch_memory, int, 2 * (int64_t)vertices);
-    skinslide_status status = memory->failed || scratch_memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    system->edge_vertex = ss_new(&system->memory, net->edge_count, sizeof *system->edge_vertex);
+    system->unknown = SS_NEW(&system->memory, int32_t, net->vertex_count);
+    skinslide_status status = system->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
         copy_net(system, net);
-        status = analyse(system, scratch, error);
+        status = analyse(system, error);
     }
-    ss_free(&scratch_memory);
     if (status)
         ss_system_destroy(system);
     else

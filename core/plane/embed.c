@@ -24,12 +24,11 @@ static void hold(const ss_system *system, ss_factor *factor, int32_t vertex, con
 }
 
 static void assemble(const ss_system *system, ss_factor *factor, const double *density, const double (*uv)[2]) {
-    ss_factor_clear(system, factor);
+    ss_factor_clear(factor);
     for (int32_t e = 0; e < system->edge_count; e++) {
         int32_t a = system->edge_vertex[e][0], b = system->edge_vertex[e][1];
-        if (system->entry[e] >= 0) {
-            factor->Lx[system->entry[e]] = density[e];
-        } else {
+        factor->entry[e] = density[e];
+        if (system->unknown[a] < 0 || system->unknown[b] < 0) {
             hold(system, factor, a, uv[b], density[e]);
             hold(system, factor, b, uv[a], density[e]);
         }
@@ -39,10 +38,9 @@ static void assemble(const ss_system *system, ss_factor *factor, const double *d
 skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
                           skinslide_error *error) {
     assemble(system, factor, density, (const double(*)[2])uv);
-    if (!ss_factorise(system, factor))
+    if (!ss_factorise_and_solve(factor))
         return ss_fail(error, SKINSLIDE_SINGULAR,
                        "%s: its force densities differ too much in size for the embedding to be solved", system->label);
-    ss_solve(system, factor);
     for (int32_t v = 0; v < system->vertex_count; v++)
         if (system->unknown[v] >= 0)
             memcpy(uv[v], factor->right[system->unknown[v]], sizeof *uv);

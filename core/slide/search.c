@@ -142,7 +142,7 @@ static void precondition(search *s, int first, int count) {
     for (int32_t v = 0; v < s->patch->vertex_count; v++)
         for (int k = 0; k < 2 && s->system->unknown[v] >= 0; k++)
             s->factor->right[s->system->unknown[v]][k] = k < count ? s->pull[v][first + k] : 0;
-    ss_solve(s->system, s->factor);
+    ss_solve(s->factor);
     for (int32_t v = 0; v < s->patch->vertex_count; v++)
         for (int k = 0; k < count && s->system->unknown[v] >= 0; k++)
             s->pull[v][first + k] = s->factor->right[s->system->unknown[v]][k];
@@ -182,17 +182,14 @@ static double walk_down(search *s) {
 
 static void fill_springs(search *s) {
     const ss_patch *patch = s->patch;
-    ss_factor_clear(s->system, s->factor);
+    ss_factor_clear(s->factor);
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         double spring = 1 / (patch->rest_length[e] * patch->rest_length[e]);
-        int32_t entry = s->system->entry[e];
-        if (entry >= 0)
-            s->factor->Lx[entry] = spring;
-        for (int end = 0; end < 2; end++) {
-            int32_t unknown = s->system->unknown[patch->edge_vertex[e][end]];
-            if (unknown >= 0)
-                s->factor->slack[unknown] += entry >= 0 ? GROUNDING * spring : spring;
-        }
+        const int32_t *v = patch->edge_vertex[e], unknown[2] = {s->system->unknown[v[0]], s->system->unknown[v[1]]};
+        s->factor->entry[e] = spring;
+        for (int end = 0; end < 2; end++)
+            if (unknown[end] >= 0)
+                s->factor->slack[unknown[end]] += unknown[1 - end] >= 0 ? GROUNDING * spring : spring;
     }
 }
 
@@ -236,7 +233,7 @@ static skinslide_status search_patch(const skinslide_workspace *workspace, int32
     if (!status) {
         ss_posed_set(&s.pose, points);
         fill_springs(&s);
-        if (!ss_factorise(s.system, s.factor))
+        if (!ss_factorise(s.factor))
             status =
                 ss_fail(error, SKINSLIDE_SINGULAR, "%s: its edges differ too much in length for a search", s.system->label);
     }

@@ -127,7 +127,7 @@ bool opensToWrite(int flags) {
 
 // ---- Allocations ----
 
-const char *const ourLibraries[] = {"/libskinslide", "/skinslideFileFormat",  "/_core.",    "/libamd",    "/libklu",
+const char *const ourLibraries[] = {"/libskinslide", "/skinslideFileFormat",  "/_core.",    "/libcamd",   "/libklu",
                                     "/libbtf",       "/libsuitesparseconfig", "/libosdCPU", "/libOpenEXR"};
 
 bool lookUpWhetherOurs(const void *caller) {

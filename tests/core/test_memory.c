@@ -516,6 +516,33 @@ static void a_frame_allocates_nothing(void **state) {
 }
 
 /* Then nothing is written, and the workspace slides the next frame as one that never failed. */
+/* As many unknowns as are parted before they are ordered. */
+static void each_allocation_for_a_large_system_fails_in_turn(void **state) {
+    (void)state;
+    enum { COUNT = 2500 };
+    static int32_t edges[COUNT - 1][2];
+    static const uint8_t fixed[COUNT] = {1};
+    const ss_net net = {COUNT, COUNT - 1, (const int32_t(*)[2])edges, fixed};
+    for (int32_t i = 0; i + 1 < COUNT; i++)
+        edges[i][0] = i, edges[i][1] = i + 1;
+    skinslide_status status = SKINSLIDE_OUT_OF_MEMORY;
+    for (int32_t allowed = 0; status; allowed++) {
+        ss_system *system = NULL;
+        ss_factor *factor = NULL;
+        skinslide_error error;
+        live = 0, left_to_give = allowed, watching = true;
+        status = ss_system_create(&net, "path", &system, &error);
+        if (!status)
+            status = ss_factor_create(system, &factor, &error);
+        ss_factor_destroy(factor);
+        ss_system_destroy(system);
+        watching = false;
+        assert_int_equal(live, 0);
+        if (status)
+            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+    }
+}
+
 static void the_first_limit_may_find_no_memory(void **state) {
     (void)state;
     for (int32_t setup = 0; setup < 2; setup++) {
@@ -574,6 +601,7 @@ int main(void) {
         cmocka_unit_test(each_allocation_for_images_fails_in_turn),
         cmocka_unit_test(each_allocation_for_pictures_fails_in_turn),
         cmocka_unit_test(each_allocation_for_a_stage_fails_in_turn),
+        cmocka_unit_test(each_allocation_for_a_large_system_fails_in_turn),
         cmocka_unit_test(controls_of_a_frame_allocate_nothing),
         cmocka_unit_test(a_frame_allocates_nothing),
         cmocka_unit_test(the_first_limit_may_find_no_memory),

@@ -1,0 +1,235 @@
+/* L D L' front by front: the columns of a front are assembled from the matrix and from what its children left there, eliminated
+ * densely, and what that leaves to the rows below is passed on (multifrontal, Duff and Reid 1983). Where the matrix is dominant
+ * its slack and two right sides are eliminated with it, as rows below the others. */
+#include "linear.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Creation ---- */
+
+static int32_t tiles_of(int32_t count) {
+    return (count + 3) / 4;
+}
+
+ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front) {
+    int32_t used = frontal->block * front->count, below = frontal->block * front->row_count;
+    ss_shape s = {.used = used, .below = below, .own_tiles = tiles_of(used), .below_tiles = tiles_of(below)};
+    s.columns = 4 * s.own_tiles;
+    s.tiles = s.own_tiles + s.below_tiles + frontal->dominant;
+    s.height = 4 * ((size_t)s.below_tiles + frontal->dominant);
+    return s;
+}
+
+/* Where a row of a front begins in its panel: its columns come first, then those below. */
+static size_t place_in_panel(const ss_front *front, const ss_shape *s, int32_t block, int32_t row) {
+    uint32_t place = (uint32_t)(row < front->count ? block * row : s->columns + block * (row - front->count));
+    return 4 * (size_t)s->columns * (place / 4) + place % 4;
+}
+
+/* What memory is wanted: of all panels and of one, of both stacks, and of columns and rows below of one front. */
+typedef struct wanted {
+    int64_t panels, panel, stack[2];
+    int32_t columns, below;
+} wanted;
+
+static int64_t most(int64_t a, int64_t b) {
+    return a > b ? a : b;
+}
+
+/* The place of a front's panel among all, and of its update in its stack, of which end is so far. */
+static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2], wanted *room) {
+    ss_shape s = ss_shape_of(frontal, &frontal->system->fronts[f]);
+    int64_t size = 4 * (int64_t)s.columns * s.tiles, *own = &end[frontal->odd[f]];
+    frontal->panel[f] = room->panels, room->panels += size;
+    frontal->update[f] = *own, *own += 4 * (int64_t)s.below_tiles * (int64_t)s.height;
+    room->panel = most(size, room->panel);
+    room->stack[frontal->odd[f]] = most(*own, room->stack[frontal->odd[f]]);
+    room->columns = (int32_t)most(s.columns, room->columns);
+    room->below = (int32_t)most(4 * (int64_t)s.below_tiles, room->below);
+}
+
+/* Updates are in two stacks, those of fronts at even depths and those at odd ones: so a front's children are at the end of theirs
+ * when its own update is begun, and are taken off it. */
+static void place_fronts(ss_frontal *frontal, wanted *room) {
+    const ss_front *fronts = frontal->system->fronts;
+    int64_t end[2] = {0, 0};
+    for (int32_t f = frontal->system->front_count - 1; f >= 0; f--)
+        frontal->odd[f] = fronts[f].parent >= 0 && !frontal->odd[fronts[f].parent];
+    for (int32_t f = 0; f < frontal->system->front_count; f++) {
+        place_front(frontal, f, end, room);
+        for (int32_t child = fronts[f].child; child >= 0; child = fronts[child].next)
+            end[!frontal->odd[f]] = frontal->update[child];
+    }
+}
+
+static void place_entries(ss_frontal *frontal) {
+    for (int32_t f = 0; f < frontal->system->front_count; f++) {
+        const ss_front *front = &frontal->system->fronts[f];
+        ss_shape s = ss_shape_of(frontal, front);
+        for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++) {
+            const ss_entry *own = &frontal->system->entries[i];
+            frontal->at[i] = place_in_panel(front, &s, frontal->block, own->row) + (size_t)(4 * frontal->block * own->column);
+        }
+    }
+}
+
+static bool allocate_places(ss_frontal *frontal) {
+    ss_memory *memory = &frontal->memory;
+    int32_t count = frontal->system->front_count;
+    frontal->panel = SS_NEW(memory, int64_t, count);
+    frontal->update = SS_NEW(memory, int64_t, count);
+    frontal->odd = SS_NEW(memory, uint8_t, count);
+    frontal->at = SS_NEW(memory, size_t, frontal->system->edge_count);
+    return !memory->failed;
+}
+
+static bool allocate_room(ss_frontal *frontal, const wanted *room) {
+    ss_memory *memory = &frontal->memory;
+    frontal->L = SS_NEW(memory, double, room->panels);
+    frontal->force = SS_NEW(memory, double, room->panel);
+    for (int k = 0; k < 2; k++)
+        frontal->stack[k] = SS_NEW(memory, double, room->stack[k]);
+    frontal->to_panel = SS_NEW(memory, size_t, room->below);
+    frontal->to_update = SS_NEW(memory, int32_t, room->below);
+    frontal->x = SS_NEW(memory, double, 3 * (int64_t)room->columns);
+    frontal->below = SS_NEW(memory, double, 3 * (int64_t)room->below);
+    return !memory->failed;
+}
+
+skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, ss_frontal **out,
+                                   skinslide_error *error) {
+    ss_frontal *frontal = calloc(1, sizeof *frontal);
+    if (!frontal)
+        return ss_out_of_memory(error);
+    wanted room = {0};
+    frontal->system = system, frontal->block = block, frontal->dominant = dominant;
+    frontal->kernels = ss_kernels_of(true);
+    bool good = allocate_places(frontal);
+    if (good) {
+        place_fronts(frontal, &room);
+        place_entries(frontal);
+        good = allocate_room(frontal, &room);
+    }
+    if (!good) {
+        ss_frontal_destroy(frontal);
+        return ss_out_of_memory(error);
+    }
+    *out = frontal;
+    return SKINSLIDE_OK;
+}
+
+void ss_frontal_destroy(ss_frontal *frontal) {
+    if (!frontal)
+        return;
+    ss_free(&frontal->memory);
+    free(frontal);
+}
+
+/* ---- Assembly ---- */
+
+static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const double *entries, double *panel) {
+    for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++)
+        panel[frontal->at[i]] = entries[frontal->system->entries[i].edge];
+}
+
+static void assemble_extras(const ss_front *front, const ss_shape *s, const double *slack, const double (*right)[2],
+                            double *panel) {
+    double *extras = panel + 4 * (size_t)s->columns * (size_t)(s->tiles - 1);
+    for (int32_t k = 0; k < front->count; k++) {
+        int32_t unknown = front->first + k;
+        extras[4 * k] = slack[unknown], extras[4 * k + 1] = right[unknown][0], extras[4 * k + 2] = right[unknown][1];
+    }
+}
+
+/* Lists where the rows of a child are in its parent: those that are columns there come first. Returns how many those are. */
+static int32_t list_rows(ss_frontal *frontal, const ss_front *child, const ss_front *front, const ss_shape *s) {
+    const int32_t *place = frontal->system->place + child->row_start;
+    int32_t block = frontal->block, inside = 0;
+    for (int32_t i = 0; i < child->row_count; i++)
+        for (int32_t k = 0, to = block * i; k < block; k++, to++) {
+            frontal->to_panel[to] = place_in_panel(front, s, block, place[i]) + (size_t)k;
+            frontal->to_update[to] = block * (place[i] - front->count) + k;
+            inside += place[i] < front->count;
+        }
+    return inside;
+}
+
+/* Adds a child's update where its rows are, column by column. */
+static void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, double *panel,
+                   double *update) {
+    const ss_front *own = &frontal->system->fronts[child];
+    ss_shape from = ss_shape_of(frontal, own);
+    int32_t inside = list_rows(frontal, own, front, s), base = frontal->block * front->count;
+    const double *column = frontal->stack[frontal->odd[child]] + frontal->update[child];
+    for (int32_t j = 0; j < from.below; j++, column += from.height) {
+        bool is_inside = j < inside;
+        double *to = is_inside ? panel + 4 * (ptrdiff_t)(base + frontal->to_update[j])
+                               : update + frontal->to_update[j] * (ptrdiff_t)s->height;
+        if (is_inside)
+            for (int32_t i = j; i < from.below; i++)
+                to[frontal->to_panel[i]] += column[i];
+        else
+            for (int32_t i = j; i < from.below; i++)
+                to[frontal->to_update[i]] += column[i];
+        double *extras = is_inside ? to + 4 * (size_t)s->columns * (size_t)(s->tiles - 1) : to + s->height - 4;
+        for (int k = 0; k < 3 && frontal->dominant; k++)
+            extras[k] += column[from.height - 4 + (size_t)k];
+    }
+}
+
+static bool eliminate(ss_frontal *frontal, int32_t f, const ss_shape *s) {
+    const ss_front *front = &frontal->system->fronts[f];
+    double *panel = frontal->L + frontal->panel[f], *update = frontal->stack[frontal->odd[f]] + frontal->update[f];
+    memset(update, 0, 4 * (size_t)s->below_tiles * s->height * sizeof *update);
+    for (int32_t child = front->child; child >= 0; child = frontal->system->fronts[child].next)
+        extend(frontal, child, front, s, panel, update);
+    bool good = frontal->kernels->factor(s, frontal->dominant, panel, frontal->force);
+    if (s->below_tiles > 0)
+        frontal->kernels->update(s, panel, frontal->force, update);
+    return good;
+}
+
+bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double *slack, const double (*right)[2]) {
+    bool good = true;
+    for (int32_t f = 0; f < frontal->system->front_count; f++) {
+        const ss_front *front = &frontal->system->fronts[f];
+        ss_shape s = ss_shape_of(frontal, front);
+        double *panel = frontal->L + frontal->panel[f];
+        memset(panel, 0, 4 * (size_t)s.columns * (size_t)s.tiles * sizeof *panel);
+        assemble_numbers(frontal, front, entries, panel);
+        assemble_extras(front, &s, slack, right, panel);
+        good = eliminate(frontal, f, &s) && good;
+    }
+    return good;
+}
+
+/* Blocks have the rows of the higher unknown. */
+static void assemble_blocks(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, const double (*own)[4],
+                            const double (*between)[4], double *panel) {
+    for (int32_t k = 0; k < front->count; k++) {
+        double *at = panel + place_in_panel(front, s, 2, k) + 8 * (size_t)k;
+        const double *block = own[front->first + k];
+        at[0] = -block[0], at[1] = -block[2], at[5] = -block[3];
+    }
+    for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++) {
+        double *at = panel + frontal->at[i];
+        const double *block = between[frontal->system->entries[i].edge];
+        at[0] = -block[0], at[4] = -block[1], at[1] = -block[2], at[5] = -block[3];
+    }
+}
+
+bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], const int *stop) {
+    bool good = true;
+    for (int32_t f = 0; f < frontal->system->front_count; f++) {
+        if (ss_is_set(stop))
+            return false;
+        const ss_front *front = &frontal->system->fronts[f];
+        ss_shape s = ss_shape_of(frontal, front);
+        double *panel = frontal->L + frontal->panel[f];
+        memset(panel, 0, 4 * (size_t)s.columns * (size_t)s.tiles * sizeof *panel);
+        assemble_blocks(frontal, front, &s, own, between, panel);
+        good = eliminate(frontal, f, &s) && good;
+    }
+    return good;
+}

@@ -1,0 +1,94 @@
+/* The dense arithmetic of fronts, for processors with AVX2 and for those without: the same bytes.
+ *
+ * The columns of a front are a panel of tiles of four rows, [tile][column][4]: the rows of the columns themselves, then those
+ * below them, both padded, then one tile of extras: slack, two right sides and nothing. Of a column that has been eliminated its
+ * own row holds the pivot, inverted. Signs off the diagonal are turned, so that with p the pivots elimination
+ *
+ *     l_ik = f_ik / p_k,     f_ij += l_ik f_jk
+ *
+ * only adds. Where the matrix is dominant p_k is the sum of column k below its diagonal, slack included; else - f_kk. */
+#include "linear.h"
+
+#include <float.h>
+
+typedef ss_shape shape;
+typedef double vector __attribute__((vector_size(32)));
+typedef double loose __attribute__((vector_size(32), aligned(8), may_alias)); /* wherever it is */
+#define INLINE static inline __attribute__((always_inline))
+
+/* ---- Within a tile of four columns: their own rows ---- */
+
+/* Adds what pulls four columns towards fixed vertices. */
+INLINE void add_slack(const shape *s, const double *panel, int32_t tile, double sums[4]) {
+    const double *extras = panel + 4 * (size_t)s->columns * (s->own_tiles + s->below_tiles) + 16 * (size_t)tile;
+    for (int j = 0; j < 4; j++)
+        sums[j] += extras[4 * j];
+}
+
+/* own: [k][j] what column k had in the row of column j, and [k][k] what to divide column k by, inverted. sums are those of the
+ * columns over all rows below the tile. Columns from count on are none. */
+INLINE bool factor_tile(double *tile, int32_t count, bool dominant, double sums[4], double own[4][4]) {
+    bool good = true;
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++) {
+        double pivot = dominant ? sums[k] : -tile[5 * k];
+#pragma GCC unroll 4
+        for (int i = k + 1; i < 4; i++)
+            pivot += dominant ? tile[4 * k + i] : 0;
+        double inverse = k < count ? 1 / pivot : 0;
+        good = good && (k >= count || (pivot > 0 && pivot <= DBL_MAX && inverse <= DBL_MAX));
+#pragma GCC unroll 4
+        for (int j = k + 1; j < 4; j++) {
+            double share = tile[4 * k + j] * inverse;
+            own[k][j] = tile[4 * k + j];
+#pragma GCC unroll 4
+            for (int i = j; i < 4; i++)
+                tile[4 * j + i] += tile[4 * k + i] * share;
+            sums[j] += sums[k] * share;
+        }
+#pragma GCC unroll 4
+        for (int j = k + 1; j < 4; j++)
+            tile[4 * k + j] *= inverse;
+        own[k][k] = tile[5 * k] = inverse;
+    }
+    return good;
+}
+
+INLINE void eliminate_tile(const double *tile, double x[4]) {
+    for (int k = 0; k < 3; k++)
+        for (int i = k + 1; i < 4; i++)
+            x[i] += tile[4 * k + i] * x[k];
+}
+
+INLINE void solve_tile(const double *tile, double x[4]) {
+    for (int k = 2; k >= 0; k--)
+        for (int i = k + 1; i < 4; i++)
+            x[k] += tile[4 * k + i] * x[i];
+}
+
+#define TARGET
+#define TILES      1
+#define NAME(name) name##_plain
+#include "kernels.inc"
+#undef TARGET
+#undef TILES
+#undef NAME
+
+#ifdef __x86_64__
+#define TARGET     __attribute__((target("avx2")))
+#define TILES      2
+#define NAME(name) name##_avx2
+#include "kernels.inc"
+#undef TARGET
+#undef TILES
+#undef NAME
+#endif
+
+const ss_kernels *ss_kernels_of(bool fastest) {
+#ifdef __x86_64__
+    if (fastest && __builtin_cpu_supports("avx2"))
+        return &kernels_avx2;
+#endif
+    (void)fastest;
+    return &kernels_plain;
+}
