@@ -10,8 +10,8 @@
  * samples to t itself would slide them by exactly what was looked up, but rings where the slide changes within a few faces, and
  * bunches the texture up. L depends on the mesh alone, and what is factored of it is so once a shot.
  *
- * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near each sample,
- * so that where the mesh is does not matter. */
+ * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near where each
+ * sample is looked up, so that where the mesh is does not matter. */
 #include "limit.h"
 
 #include <math.h>
@@ -22,7 +22,6 @@
 typedef struct sample {
     int32_t face;       /* patch face */
     ss_parameter at;    /* in it */
-    int32_t origin;     /* a mesh vertex near by */
     int32_t free_index; /* of the vertex that it is the limit point of; -1 for the middle of the face */
 } sample;
 
@@ -44,6 +43,9 @@ struct ss_cage_work {
     const ss_cage *cage;
     ss_fit_work *fit;
     ss_middles *middles;
+    ss_place *place;       /* [sample_count] where each is looked up */
+    int32_t *face_start;   /* [face_count + 1] samples by the face that they are looked up in */
+    int32_t *by_face;      /* [sample_count] */
     double (*residual)[3]; /* [sample_count] t - L Md */
     double (*normal)[3];   /* [sample_count] n */
     double (*solution)[3]; /* [free_count] d */
@@ -62,12 +64,10 @@ static void list_samples(ss_cage *cage) {
         int32_t vertex = patch->free_vertex[i], corner = patch->vertex_corner[vertex], face = faces->corner_face[corner];
         ss_parameter at = ss_limit_parameter(cage->surfaces, face, corner - faces->face_start[face], 0, 0);
         cage->free_index[vertex] = i;
-        *next++ = (sample){face, at, patch->mesh_vertex[vertex], i};
+        *next++ = (sample){face, at, i};
     }
-    for (int32_t f = 0; f < faces->face_count; f++) {
-        int32_t origin = patch->mesh_vertex[faces->corner_vertex[faces->face_start[f]]];
-        *next++ = (sample){f, ss_limit_parameter(cage->surfaces, f, 0, 1, 1), origin, -1};
-    }
+    for (int32_t f = 0; f < faces->face_count; f++)
+        *next++ = (sample){f, ss_limit_parameter(cage->surfaces, f, 0, 1, 1), -1};
 }
 
 /* ---- The system ---- */
@@ -202,6 +202,9 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     if (!work)
         return ss_out_of_memory(error);
     work->cage = cage;
+    work->place = SS_NEW(&work->memory, ss_place, cage->sample_count);
+    work->face_start = SS_NEW(&work->memory, int32_t, (int64_t)cage->patch->faces.face_count + 1);
+    work->by_face = SS_NEW(&work->memory, int32_t, cage->sample_count);
     work->residual = ss_new(&work->memory, cage->sample_count, sizeof *work->residual);
     work->normal = ss_new(&work->memory, cage->sample_count, sizeof *work->normal);
     work->solution = ss_new(&work->memory, cage->patch->free_count, sizeof *work->solution);
@@ -229,36 +232,58 @@ void ss_cage_work_destroy(ss_cage_work *work) {
 
 /* ---- Targets of one frame ---- */
 
-/* Where a sample is looked up: t less the origin, and n. A sample that stays is looked up where it is. */
-static void find_target(const ss_cage_work *work, const float *points, const ss_flat *flat, const sample *own,
-                        const ss_place *place, const double origin[3], double target[3], double normal[3]) {
-    const ss_cage *cage = work->cage;
-    bool stays = place->triangle == SS_STAYS;
-    int32_t face = stays ? own->face : cage->patch->triangles.face[place->triangle];
-    ss_parameter at = stays ? own->at : ss_parametrise(cage->patch, cage->loop, flat, place);
-    ss_limit_prepare(cage->surfaces, face, points, origin, work->scratch);
-    ss_limit_normal(cage->surfaces, face, &at, work->scratch, target, normal);
+/* Where a sample is looked up. One that stays is looked up where it is. */
+static int32_t face_of(const ss_cage *cage, int32_t s, const ss_place *place) {
+    return place->triangle == SS_STAYS ? cage->samples[s].face : cage->patch->triangles.face[place->triangle];
 }
 
-/* residual = t - L Md, and n, of sample s. */
-static void list_target(const ss_cage_work *work, const float *points, const ss_slide *slide, int32_t s) {
-    const sample *own = &work->cage->samples[s];
-    const ss_rows *stencils = &work->cage->stencils;
-    ss_place place = own->free_index < 0 ? ss_middle(work->middles, own->face) : slide->places[own->free_index];
-    const float *near = points + 3 * (int64_t)own->origin;
-    double origin[3] = {near[0], near[1], near[2]}, *residual = work->residual[s];
-    find_target(work, points, &slide->flat, own, &place, origin, residual, work->normal[s]);
+/* Finds where samples are looked up, and sorts them by faces: what makes the surface of a face is gathered once for all of them. */
+static void sort_samples(ss_cage_work *work, const ss_slide *slide) {
+    const ss_cage *cage = work->cage;
+    int32_t *start = work->face_start, faces = cage->patch->faces.face_count;
+    memset(start, 0, ((size_t)faces + 1) * sizeof *start);
+    for (int32_t s = 0; s < cage->sample_count; s++) {
+        const sample *own = &cage->samples[s];
+        work->place[s] = own->free_index < 0 ? ss_middle(work->middles, own->face) : slide->places[own->free_index];
+        start[face_of(cage, s, &work->place[s])]++;
+    }
+    for (int32_t f = 0; f < faces; f++)
+        start[f + 1] += start[f];
+    for (int32_t s = cage->sample_count - 1; s >= 0; s--)
+        work->by_face[--start[face_of(cage, s, &work->place[s])]] = s;
+}
+
+/* residual = t - L Md, and n, of sample s, whose face is prepared in offsets from origin. */
+static void list_target(const ss_cage_work *work, const float *points, const ss_flat *flat, int32_t s, int32_t face,
+                        const double origin[3]) {
+    const ss_cage *cage = work->cage;
+    const ss_place *place = &work->place[s];
+    const ss_rows *stencils = &cage->stencils;
+    bool stays = place->triangle == SS_STAYS;
+    ss_parameter at = stays ? cage->samples[s].at : ss_parametrise(cage->patch, cage->loop, flat, place);
+    double *residual = work->residual[s];
+    ss_limit_normal(cage->surfaces, face, &at, work->scratch, residual, work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
             residual[axis] -= stencils->value[k] * (points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
-    for (int axis = 0; axis < 3 && place.triangle == SS_STAYS; axis++)
+    for (int axis = 0; axis < 3 && stays; axis++)
         residual[axis] = 0;
 }
 
-static void list_targets(const ss_cage_work *work, const ss_frame *frame, const ss_slide *slide) {
+static void list_targets(ss_cage_work *work, const ss_frame *frame, const ss_slide *slide) {
+    const ss_patch *patch = work->cage->patch;
+    const ss_faces *faces = &patch->faces;
     ss_middles_set(work->middles, slide);
-    for (int32_t s = 0; s < work->cage->sample_count && !ss_is_set(frame->stop); s++)
-        list_target(work, frame->points, slide, s);
+    sort_samples(work, slide);
+    for (int32_t f = 0; f < faces->face_count && !ss_is_set(frame->stop); f++) {
+        const float *near = frame->points + 3 * (int64_t)patch->mesh_vertex[faces->corner_vertex[faces->face_start[f]]];
+        double origin[3] = {near[0], near[1], near[2]};
+        int32_t end = work->face_start[f + 1];
+        if (work->face_start[f] < end)
+            ss_limit_prepare(work->cage->surfaces, f, frame->points, origin, work->scratch);
+        for (int32_t i = work->face_start[f]; i < end; i++)
+            list_target(work, frame->points, &slide->flat, work->by_face[i], f, origin);
+    }
 }
 
 /* ---- Damping ---- */

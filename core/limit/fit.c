@@ -12,7 +12,8 @@
  *
  *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                N = nn', u = e / |e|
  *
- * which differs from frame to frame. The preconditioner is factored once a shot, from scalar matrices. It takes a vertex apart
+ * which differs from frame to frame. The preconditioner is factored once a shot, from scalar matrices, the first of them, which is
+ * near to a mass matrix, incompletely. It takes a vertex apart
  * across and along the plane of its own sample, since normals turn little from one vertex to the next:
  *
  *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D)^-1 (1 - nn')      1/2 the mean of uu' in the plane
@@ -32,36 +33,63 @@ static const double edge_stiffness = 0.03;      /* s */
 static const double direction_stiffness = 0.05; /* t */
 enum { GAUSS_NEWTON_STEPS = 2, GRADIENT_STEPS = 5 };
 
+/* x, y, z and 0, as every processor adds and multiplies them: where the model is made in doubles, two by two; what conjugate
+ * gradients do with it in floats, in units of the largest of the gradient. What that loses the next step of Gauss-Newton mends. */
+typedef double pair __attribute__((vector_size(16)));
+typedef struct vector {
+    pair xy, z;
+} vector;
+typedef float single __attribute__((vector_size(16)));
+
 /* An edge that has a free end. */
 typedef struct edge {
     int32_t mesh_vertex[2];
-    int32_t end[2]; /* places in free_vertex, -1 where held */
+    int32_t end[2]; /* places in free_vertex, free_count where held */
 } edge;
+
+/* Where a vertex is in a term: a sample or, after them, an edge. */
+typedef struct share {
+    int32_t term;
+    float weight;
+} share;
 
 struct ss_fit {
     ss_memory memory;
     int32_t free_count, edge_count;
     const ss_rows *samples; /* L */
+    float *sample_weight;   /* its values */
     edge *edges;            /* [edge_count] */
-    ss_least_squares *across, *along;
+    int32_t *share_start;   /* [free_count + 1] L' and D' by rows */
+    share *shares;
+    double *share_weight; /* of each, exact */
+    int32_t *unknown;     /* [free_count] of each free vertex in along */
+    ss_incomplete *across;
+    ss_springs *along;
 };
 
+/* Arrays of free vertices have one vertex more, where held ones are: it is 0. */
 struct ss_fit_work {
     ss_memory memory;
     const ss_fit *fit;
-    ss_least_squares_work *across, *along;
-    const int *stop;           /* a flag: the frame is not wanted any more */
-    const double (*normal)[3]; /* [sample count] n */
-    double (*residual)[3];     /* [sample count] r */
-    double (*linear)[3];       /* [edge_count] e0 */
-    double (*direction)[3];    /* [edge_count] u */
-    double *excess;            /* [edge_count] |e| - |e0| */
-    double (*offset)[3];       /* [free_count] y */
-    double (*gradient)[3];     /* [free_count] what y leaves of -grad E / 2 */
-    double (*scaled)[3];       /* [free_count] the same through the preconditioner */
-    double (*search)[3];       /* [free_count] a direction of conjugate gradients ... */
-    double (*image)[3];        /* [free_count] ... and what the system makes of it */
-    double *right;             /* [4][free_count] */
+    const int *stop;          /* a flag: the frame is not wanted any more */
+    vector *up;               /* [sample count] n */
+    vector *residual;         /* [sample count] r */
+    vector *linear;           /* [edge_count] e0 */
+    vector *direction;        /* [edge_count] u */
+    double *excess;           /* [edge_count] |e| - |e0| */
+    vector *force;            /* [sample count + edge_count] of each term */
+    vector *offset;           /* [free_count + 1] y */
+    vector *slope;            /* [free_count + 1] -grad E / 2 */
+    single *single_up;        /* [sample count] n */
+    single *single_direction; /* [edge_count] u */
+    single *single_force;     /* [sample count + edge_count] */
+    single *gradient;         /* [free_count + 1] what y leaves of slope */
+    single *scaled;           /* [free_count + 1] the same through the preconditioner */
+    single *search;           /* [free_count + 1] a direction of conjugate gradients ... */
+    single *image;            /* [free_count + 1] ... and what the system makes of it */
+    float *across;            /* [free_count] right sides */
+    single *along;            /* [free_count] by unknowns */
+    single *scratch;          /* of solving for them */
 };
 
 /* ---- Creation ---- */
@@ -70,9 +98,34 @@ static void list_edges(const ss_patch *patch, const int32_t *free_index, ss_fit 
     for (int32_t e = 0; e < patch->faces.edge_count; e++) {
         const int32_t *v = patch->edge_vertex[e];
         edge own = {{patch->mesh_vertex[v[0]], patch->mesh_vertex[v[1]]}, {free_index[v[0]], free_index[v[1]]}};
-        if (own.end[0] >= 0 || own.end[1] >= 0)
+        for (int side = 0; side < 2; side++)
+            if (own.end[side] < 0)
+                own.end[side] = fit->free_count;
+        if (own.end[0] < fit->free_count || own.end[1] < fit->free_count)
             fit->edges[fit->edge_count++] = own;
     }
+}
+
+/* Adds a share, or in the first pass only counts it. */
+static void add_share(ss_fit *fit, bool count, int32_t vertex, int32_t term, double weight) {
+    if (vertex == fit->free_count)
+        return;
+    if (count)
+        fit->share_start[vertex]++;
+    else {
+        int32_t place = --fit->share_start[vertex];
+        fit->shares[place] = (share){term, (float)weight}, fit->share_weight[place] = weight;
+    }
+}
+
+static void list_shares(ss_fit *fit, bool count) {
+    const ss_rows *samples = fit->samples;
+    for (int32_t e = fit->edge_count - 1; e >= 0; e--)
+        for (int side = 0; side < 2; side++)
+            add_share(fit, count, fit->edges[e].end[side], samples->row_count + e, side ? 1 : -1);
+    for (int32_t s = samples->row_count - 1; s >= 0; s--)
+        for (int32_t k = samples->start[s]; k < samples->start[s + 1]; k++)
+            add_share(fit, count, samples->column[k], s, samples->value[k]);
 }
 
 /* Row by row of D, times weight. */
@@ -80,15 +133,8 @@ static void append_edges(const ss_fit *fit, double weight, ss_rows *rows) {
     int32_t end = rows->start[rows->row_count];
     for (int32_t e = 0; e < fit->edge_count; e++) {
         for (int side = 0; side < 2; side++)
-            if (fit->edges[e].end[side] >= 0)
+            if (fit->edges[e].end[side] < fit->free_count)
                 rows->column[end] = fit->edges[e].end[side], rows->value[end++] = side ? weight : -weight;
-        rows->start[++rows->row_count] = end;
-    }
-}
-
-static void append_vertices(const ss_fit *fit, double weight, ss_rows *rows) {
-    for (int32_t i = 0, end = rows->start[rows->row_count]; i < fit->free_count; i++) {
-        rows->column[end] = i, rows->value[end++] = weight;
         rows->start[++rows->row_count] = end;
     }
 }
@@ -101,14 +147,11 @@ static void append_samples(const ss_rows *samples, ss_rows *rows) {
     rows->row_count = samples->row_count;
 }
 
-/* A'A, of samples, or NULL for none, of edges so stiff, and where that is above 0, of vertices so stiff. */
-static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double stiffness, double own, const char *label,
-                               ss_least_squares **out, skinslide_error *error) {
-    int64_t row_count = fit->edge_count, entries = 2 * row_count;
-    if (own > 0)
-        row_count += fit->free_count, entries += fit->free_count;
-    if (samples)
-        row_count += samples->row_count, entries += samples->start[samples->row_count];
+/* L'L + s t D'D */
+static skinslide_status factor_across(ss_fit *fit, const char *label, skinslide_error *error) {
+    const ss_rows *samples = fit->samples;
+    int64_t row_count = (int64_t)fit->edge_count + samples->row_count;
+    int64_t entries = 2 * (int64_t)fit->edge_count + samples->start[samples->row_count];
     if (row_count > INT32_MAX || entries > INT32_MAX)
         return ss_refuse_large(label, error);
     ss_memory scratch = {0};
@@ -118,15 +161,46 @@ static skinslide_status factor(const ss_fit *fit, const ss_rows *samples, double
     rows.value = SS_NEW(&scratch, double, entries);
     skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
-        if (samples)
-            append_samples(samples, &rows);
-        append_edges(fit, sqrt(stiffness), &rows);
-        if (own > 0)
-            append_vertices(fit, sqrt(own), &rows);
-        status = ss_least_squares_create(&rows, label, out, error);
+        append_samples(samples, &rows);
+        append_edges(fit, sqrt(edge_stiffness * direction_stiffness), &rows);
+        status = ss_incomplete_create(&rows, label, &fit->across, error);
     }
     ss_free(&scratch);
     return status;
+}
+
+/* s (1/2 + t) D'D, and more where no vertex is held. */
+static skinslide_status factor_along(ss_fit *fit, const ss_patch *patch, skinslide_error *error) {
+    double stiffness = edge_stiffness * (0.5 + direction_stiffness);
+    bool is_held = patch->free_count < patch->vertex_count;
+    ss_net net = ss_net_of(patch, patch->fixed);
+    skinslide_status status = ss_springs_create(&net, patch->label, stiffness,
+                                                is_held ? 0 : 4 * SS_PI / patch->free_count * stiffness, &fit->along, error);
+    for (int32_t i = 0; i < fit->free_count && !status; i++)
+        fit->unknown[i] = ss_springs_unknown(fit->along, patch->free_vertex[i]);
+    return status;
+}
+
+static skinslide_status list_terms(ss_fit *fit, const ss_patch *patch, const int32_t *free_index, skinslide_error *error) {
+    ss_memory *memory = &fit->memory;
+    fit->edges = SS_NEW(memory, edge, patch->faces.edge_count);
+    fit->unknown = SS_NEW(memory, int32_t, fit->free_count);
+    fit->share_start = SS_NEW(memory, int32_t, (int64_t)fit->free_count + 1);
+    fit->sample_weight = SS_NEW(memory, float, fit->samples->start[fit->samples->row_count]);
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    for (int32_t k = 0; k < fit->samples->start[fit->samples->row_count]; k++)
+        fit->sample_weight[k] = (float)fit->samples->value[k];
+    list_edges(patch, free_index, fit);
+    list_shares(fit, true);
+    for (int32_t i = 0; i < fit->free_count; i++)
+        fit->share_start[i + 1] += fit->share_start[i];
+    fit->shares = SS_NEW(memory, share, fit->share_start[fit->free_count]);
+    fit->share_weight = SS_NEW(memory, double, fit->share_start[fit->free_count]);
+    if (memory->failed)
+        return ss_out_of_memory(error);
+    list_shares(fit, false);
+    return SKINSLIDE_OK;
 }
 
 skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index, const ss_rows *samples, ss_fit **out,
@@ -135,17 +209,11 @@ skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index,
     if (!fit)
         return ss_out_of_memory(error);
     fit->free_count = patch->free_count, fit->samples = samples;
-    fit->edges = SS_NEW(&fit->memory, edge, patch->faces.edge_count);
-    skinslide_status status = fit->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    if (!status) {
-        list_edges(patch, free_index, fit);
-        status = factor(fit, samples, edge_stiffness * direction_stiffness, 0, patch->label, &fit->across, error);
-    }
-    double along = edge_stiffness * (0.5 + direction_stiffness);
-    bool is_held = patch->free_count < patch->vertex_count;
+    skinslide_status status = list_terms(fit, patch, free_index, error);
     if (!status)
-        status =
-            factor(fit, NULL, along, is_held ? 0 : 4 * SS_PI / patch->free_count * along, patch->label, &fit->along, error);
+        status = factor_across(fit, patch->label, error);
+    if (!status)
+        status = factor_along(fit, patch, error);
     if (status)
         ss_fit_destroy(fit);
     else
@@ -156,8 +224,8 @@ skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index,
 void ss_fit_destroy(ss_fit *fit) {
     if (!fit)
         return;
-    ss_least_squares_destroy(fit->across);
-    ss_least_squares_destroy(fit->along);
+    ss_incomplete_destroy(fit->across);
+    ss_springs_destroy(fit->along);
     ss_free(&fit->memory);
     free(fit);
 }
@@ -165,16 +233,25 @@ void ss_fit_destroy(ss_fit *fit) {
 static void new_arrays(ss_fit_work *work) {
     const ss_fit *fit = work->fit;
     ss_memory *memory = &work->memory;
-    work->residual = ss_new(memory, fit->samples->row_count, sizeof *work->residual);
-    work->linear = ss_new(memory, fit->edge_count, sizeof *work->linear);
-    work->direction = ss_new(memory, fit->edge_count, sizeof *work->direction);
+    int64_t samples = fit->samples->row_count, vertices = (int64_t)fit->free_count + 1;
+    work->up = SS_NEW(memory, vector, samples);
+    work->residual = SS_NEW(memory, vector, samples);
+    work->linear = SS_NEW(memory, vector, fit->edge_count);
+    work->direction = SS_NEW(memory, vector, fit->edge_count);
     work->excess = SS_NEW(memory, double, fit->edge_count);
-    work->offset = ss_new(memory, fit->free_count, sizeof *work->offset);
-    work->gradient = ss_new(memory, fit->free_count, sizeof *work->gradient);
-    work->scaled = ss_new(memory, fit->free_count, sizeof *work->scaled);
-    work->search = ss_new(memory, fit->free_count, sizeof *work->search);
-    work->image = ss_new(memory, fit->free_count, sizeof *work->image);
-    work->right = SS_NEW(memory, double, 4 * (int64_t)fit->free_count);
+    work->force = SS_NEW(memory, vector, samples + fit->edge_count);
+    work->offset = SS_NEW(memory, vector, vertices);
+    work->slope = SS_NEW(memory, vector, vertices);
+    work->single_up = SS_NEW(memory, single, samples);
+    work->single_direction = SS_NEW(memory, single, fit->edge_count);
+    work->single_force = SS_NEW(memory, single, samples + fit->edge_count);
+    work->gradient = SS_NEW(memory, single, vertices);
+    work->scaled = SS_NEW(memory, single, vertices);
+    work->search = SS_NEW(memory, single, vertices);
+    work->image = SS_NEW(memory, single, vertices);
+    work->across = SS_NEW(memory, float, fit->free_count);
+    work->along = SS_NEW(memory, single, fit->free_count);
+    work->scratch = SS_NEW(memory, single, ss_springs_scratch(fit->along));
 }
 
 skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinslide_error *error) {
@@ -183,56 +260,72 @@ skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinsl
         return ss_out_of_memory(error);
     work->fit = fit;
     new_arrays(work);
-    skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
-    if (!status)
-        status = ss_least_squares_work_create(fit->across, &work->across, error);
-    if (!status)
-        status = ss_least_squares_work_create(fit->along, &work->along, error);
-    if (status)
+    if (work->memory.failed) {
         ss_fit_work_destroy(work);
-    else
-        *out = work;
-    return status;
+        return ss_out_of_memory(error);
+    }
+    *out = work;
+    return SKINSLIDE_OK;
 }
 
 void ss_fit_work_destroy(ss_fit_work *work) {
     if (!work)
         return;
-    ss_least_squares_work_destroy(work->across);
-    ss_least_squares_work_destroy(work->along);
     ss_free(&work->memory);
     free(work);
 }
 
-/* ---- Rows of L and D ---- */
+/* ---- Vectors ---- */
 
-/* out += scale (L x)_s */
-static void add_sample(const ss_rows *rows, int32_t s, double scale, const double (*x)[3], double out[3]) {
+static inline vector make(double x, double y, double z) {
+    return (vector){{x, y}, {z, 0}};
+}
+
+/* sum += factor a */
+static inline void add(vector *sum, double factor, const vector *a) {
+    sum->xy += factor * a->xy, sum->z += factor * a->z;
+}
+
+static inline vector scale(double factor, const vector *a) {
+    return (vector){factor * a->xy, factor * a->z};
+}
+
+static inline vector subtract(const vector *a, const vector *b) {
+    return (vector){a->xy - b->xy, a->z - b->z};
+}
+
+static inline double dot(const vector *a, const vector *b) {
+    pair product = a->xy * b->xy;
+    return product[0] + product[1] + a->z[0] * b->z[0];
+}
+
+/* ---- Rows of L and D, and of L' and D' ---- */
+
+static inline vector take_sample(const ss_rows *rows, int32_t s, const vector *x) {
+    vector sum = make(0, 0, 0);
     for (int32_t k = rows->start[s]; k < rows->start[s + 1]; k++)
-        ss_add(scale * rows->value[k], x[rows->column[k]], out);
+        add(&sum, rows->value[k], &x[rows->column[k]]);
+    return sum;
 }
 
-/* out += L'_s N a; where the surface has no normal, N is 1. */
-static void scatter_sample(const ss_fit_work *work, int32_t s, const double a[3], double (*out)[3]) {
-    const ss_rows *rows = work->fit->samples;
-    const double *n = work->normal[s];
-    bool none = n[0] == 0 && n[1] == 0 && n[2] == 0;
-    double height = none ? 1 : ss_dot(n, a);
-    for (int32_t k = rows->start[s]; k < rows->start[s + 1]; k++)
-        ss_add(height * rows->value[k], none ? a : n, out[rows->column[k]]);
+static inline vector take_edge(const edge *own, const vector *x) {
+    return subtract(&x[own->end[1]], &x[own->end[0]]);
 }
 
-/* out = (D x)_e */
-static void take_edge(const edge *own, const double (*x)[3], double out[3]) {
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = (own->end[1] < 0 ? 0 : x[own->end[1]][axis]) - (own->end[0] < 0 ? 0 : x[own->end[0]][axis]);
+/* N a; where the surface has no normal, N is 1. */
+static inline vector press(const vector *normal, const vector *a) {
+    return dot(normal, normal) > 0 ? scale(dot(normal, a), normal) : *a;
 }
 
-/* out += D'_e a */
-static void scatter_edge(const edge *own, const double a[3], double (*out)[3]) {
-    for (int side = 0; side < 2; side++)
-        if (own->end[side] >= 0)
-            ss_add(side ? 1 : -1, a, out[own->end[side]]);
+/* out = L' of the forces of samples + D' of those of edges */
+static void gather_forces(const ss_fit_work *work, vector *out) {
+    const ss_fit *fit = work->fit;
+    for (int32_t i = 0; i < fit->free_count; i++) {
+        vector sum = make(0, 0, 0);
+        for (int32_t k = fit->share_start[i]; k < fit->share_start[i + 1]; k++)
+            add(&sum, fit->share_weight[k], &work->force[fit->shares[k].term]);
+        out[i] = sum;
+    }
 }
 
 /* ---- The model where y is ---- */
@@ -240,51 +333,91 @@ static void scatter_edge(const edge *own, const double a[3], double (*out)[3]) {
 /* u, of zeros where an edge has no length, and |e| - |e0|. */
 static void measure_edges(ss_fit_work *work) {
     for (int32_t e = 0; e < work->fit->edge_count; e++) {
-        double now[3], *u = work->direction[e];
-        take_edge(&work->fit->edges[e], (const double(*)[3])work->offset, now);
-        ss_add(1, work->linear[e], now);
-        double length = ss_length(now);
-        for (int axis = 0; axis < 3; axis++)
-            u[axis] = length > 0 ? now[axis] / length : 0;
-        work->excess[e] = length - ss_length(work->linear[e]);
+        const vector *before = &work->linear[e];
+        vector now = take_edge(&work->fit->edges[e], work->offset);
+        add(&now, 1, before);
+        double length = sqrt(dot(&now, &now));
+        work->direction[e] = scale(length > 0 ? 1 / length : 0, &now);
+        work->excess[e] = length - sqrt(dot(before, before));
     }
 }
 
 /* gradient = -grad E / 2 */
 static void list_gradient(ss_fit_work *work) {
     const ss_fit *fit = work->fit;
-    const double(*y)[3] = (const double(*)[3])work->offset;
-    memset(work->gradient, 0, (size_t)fit->free_count * sizeof *work->gradient);
+    vector *edge_force = work->force + fit->samples->row_count;
     for (int32_t s = 0; s < fit->samples->row_count; s++) {
-        double left[3];
-        memcpy(left, work->residual[s], sizeof left);
-        add_sample(fit->samples, s, -1, y, left);
-        scatter_sample(work, s, left, work->gradient);
+        vector moved = take_sample(fit->samples, s, work->offset), left = subtract(&work->residual[s], &moved);
+        work->force[s] = press(&work->up[s], &left);
     }
     for (int32_t e = 0; e < fit->edge_count; e++) {
-        double change[3], force[3] = {0, 0, 0};
-        take_edge(&fit->edges[e], y, change);
-        ss_add(-edge_stiffness * direction_stiffness, change, force);
-        ss_add(-edge_stiffness * work->excess[e], work->direction[e], force);
-        scatter_edge(&fit->edges[e], force, work->gradient);
+        vector change = take_edge(&fit->edges[e], work->offset);
+        edge_force[e] = scale(-edge_stiffness * direction_stiffness, &change);
+        add(&edge_force[e], -edge_stiffness * work->excess[e], &work->direction[e]);
+    }
+    gather_forces(work, work->slope);
+}
+
+/* ---- The same in floats ---- */
+
+static inline single to_single(const vector *a) {
+    return (single){(float)a->xy[0], (float)a->xy[1], (float)a->z[0], 0};
+}
+
+static inline float single_dot(single a, single b) {
+    single product = a * b;
+    return product[0] + product[1] + product[2];
+}
+
+static void round_model(ss_fit_work *work) {
+    for (int32_t s = 0; s < work->fit->samples->row_count; s++)
+        work->single_up[s] = to_single(&work->up[s]);
+    for (int32_t e = 0; e < work->fit->edge_count; e++)
+        work->single_direction[e] = to_single(&work->direction[e]);
+}
+
+/* gradient = slope, in units of its largest. Returns that, 1 where all are 0. */
+static double round_slope(ss_fit_work *work) {
+    int32_t n = work->fit->free_count;
+    double unit = 0;
+    for (int32_t i = 0; i < n; i++)
+        unit = ss_most(sqrt(dot(&work->slope[i], &work->slope[i])), unit);
+    unit = unit > 0 ? unit : 1;
+    for (int32_t i = 0; i < n; i++) {
+        vector own = scale(1 / unit, &work->slope[i]);
+        work->gradient[i] = to_single(&own);
+    }
+    return unit;
+}
+
+/* single_force: of samples N L search, of edges s (uu' + t) D search. */
+static void list_single_forces(ss_fit_work *work) {
+    const ss_fit *fit = work->fit;
+    const ss_rows *samples = fit->samples;
+    const float stiffness = (float)edge_stiffness, direct = (float)(edge_stiffness * direction_stiffness);
+    single *edge_force = work->single_force + samples->row_count;
+    for (int32_t s = 0; s < samples->row_count; s++) {
+        single moved = {0}, up = work->single_up[s];
+        for (int32_t k = samples->start[s]; k < samples->start[s + 1]; k++)
+            moved += fit->sample_weight[k] * work->search[samples->column[k]];
+        work->single_force[s] = single_dot(up, up) > 0 ? single_dot(up, moved) * up : moved;
+    }
+    for (int32_t e = 0; e < fit->edge_count; e++) {
+        single change = work->search[fit->edges[e].end[1]] - work->search[fit->edges[e].end[0]];
+        single direction = work->single_direction[e];
+        edge_force[e] = direct * change + stiffness * single_dot(direction, change) * direction;
     }
 }
 
-/* out = (L'NL + s D'(uu' + t) D) x */
-static void apply_system(const ss_fit_work *work, const double (*x)[3], double (*out)[3]) {
+/* image = (L'NL + s D'(uu' + t) D) search */
+static void apply_system(ss_fit_work *work) {
     const ss_fit *fit = work->fit;
-    memset(out, 0, (size_t)fit->free_count * sizeof *out);
-    for (int32_t s = 0; s < fit->samples->row_count; s++) {
-        double moved[3] = {0, 0, 0};
-        add_sample(fit->samples, s, 1, x, moved);
-        scatter_sample(work, s, moved, out);
-    }
-    for (int32_t e = 0; e < fit->edge_count; e++) {
-        double change[3], force[3] = {0, 0, 0};
-        take_edge(&fit->edges[e], x, change);
-        ss_add(edge_stiffness * direction_stiffness, change, force);
-        ss_add(edge_stiffness * ss_dot(work->direction[e], change), work->direction[e], force);
-        scatter_edge(&fit->edges[e], force, out);
+    list_single_forces(work);
+    for (int32_t i = 0; i < fit->free_count; i++) {
+        single sum = {0};
+        for (int32_t k = fit->share_start[i]; k < fit->share_start[i + 1]; k++)
+            sum += fit->shares[k].weight * work->single_force[fit->shares[k].term];
+        work->image[i] = sum;
     }
 }
 
@@ -292,36 +425,34 @@ static void apply_system(const ss_fit_work *work, const double (*x)[3], double (
 
 /* scaled = what the preconditioner makes of gradient. Sample i is that of free vertex i. */
 static void precondition(ss_fit_work *work) {
-    int64_t n = work->fit->free_count;
-    double *across = work->right, *along = work->right + n;
-    for (int64_t i = 0; i < n; i++) {
-        const double *gradient = work->gradient[i], *normal = work->normal[i];
-        across[i] = ss_dot(normal, gradient);
-        for (int axis = 0; axis < 3; axis++)
-            along[axis * n + i] = gradient[axis] - across[i] * normal[axis];
+    const ss_fit *fit = work->fit;
+    for (int32_t i = 0; i < fit->free_count; i++) {
+        float across = work->across[i] = single_dot(work->single_up[i], work->gradient[i]);
+        work->along[fit->unknown[i]] = work->gradient[i] - across * work->single_up[i];
     }
-    ss_least_squares_solve(work->across, across, 1);
-    ss_least_squares_solve(work->along, along, 3);
-    for (int64_t i = 0; i < n; i++) {
-        double *scaled = work->scaled[i];
-        for (int axis = 0; axis < 3; axis++)
-            scaled[axis] = along[axis * n + i];
-        ss_add(across[i] - ss_dot(work->normal[i], scaled), work->normal[i], scaled);
+    ss_incomplete_solve(fit->across, work->across);
+    ss_springs_solve(fit->along, (float(*)[4])work->scratch, (float(*)[4])work->along);
+    for (int32_t i = 0; i < fit->free_count; i++) {
+        single moved = work->along[fit->unknown[i]], up = work->single_up[i];
+        work->scaled[i] = moved + (work->across[i] - single_dot(up, moved)) * up;
     }
 }
 
-static double product(int32_t count, double (*a)[3], double (*b)[3]) {
+static double product(int32_t count, const single *a, const single *b) {
     double sum = 0;
     for (int32_t i = 0; i < count; i++)
-        sum += ss_dot(a[i], b[i]);
+        sum += (double)single_dot(a[i], b[i]);
     return sum;
 }
 
-/* search = scaled + keep search */
-static void turn_search(ss_fit_work *work, double keep) {
-    for (int32_t i = 0; i < work->fit->free_count; i++)
-        for (int axis = 0; axis < 3; axis++)
-            work->search[i][axis] = work->scaled[i][axis] + keep * work->search[i][axis];
+/* y += unit step search, and gradient -= step image */
+static void take_step(ss_fit_work *work, double unit, float step) {
+    for (int32_t i = 0; i < work->fit->free_count; i++) {
+        single moved = step * work->search[i];
+        vector own = make((double)moved[0], (double)moved[1], (double)moved[2]);
+        add(&work->offset[i], unit, &own);
+        work->gradient[i] -= step * work->image[i];
+    }
 }
 
 /* One step of Gauss-Newton. Nothing is left to do where gradient.scaled is 0. */
@@ -330,50 +461,58 @@ static void improve(ss_fit_work *work) {
     double before = 0;
     measure_edges(work);
     list_gradient(work);
+    round_model(work);
+    double unit = round_slope(work);
     memset(work->search, 0, (size_t)n * sizeof *work->search);
     for (int k = 0; k < GRADIENT_STEPS && !ss_is_set(work->stop); k++) {
         precondition(work);
         double now = product(n, work->gradient, work->scaled);
         if (!(now > 0))
             return;
-        turn_search(work, k > 0 ? now / before : 0);
-        apply_system(work, (const double(*)[3])work->search, work->image);
+        float keep = k > 0 ? (float)(now / before) : 0;
+        for (int32_t i = 0; i < n; i++)
+            work->search[i] = work->scaled[i] + keep * work->search[i];
+        apply_system(work);
         double curvature = product(n, work->search, work->image);
         if (!(curvature > 0))
             return;
-        for (int32_t i = 0; i < n; i++) {
-            ss_add(now / curvature, work->search[i], work->offset[i]);
-            ss_add(-now / curvature, work->image[i], work->gradient[i]);
-        }
+        take_step(work, unit, (float)(now / curvature));
         before = now;
     }
 }
 
 /* ---- One frame ---- */
 
-/* Takes the linear displacement off the residual, and takes e0 from it. */
-static void start_linear(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*displacement)[3]) {
+/* Takes the linear displacement, which offset holds, off the residual, and takes e0 from it. */
+static void start_linear(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*normal)[3]) {
     const ss_fit *fit = work->fit;
     for (int32_t s = 0; s < fit->samples->row_count; s++) {
-        memcpy(work->residual[s], residual[s], sizeof *work->residual);
-        add_sample(fit->samples, s, -1, displacement, work->residual[s]);
+        const double *r = residual[s], *n = normal[s];
+        vector moved = take_sample(fit->samples, s, work->offset), wanted = make(r[0], r[1], r[2]);
+        work->residual[s] = subtract(&wanted, &moved);
+        work->up[s] = make(n[0], n[1], n[2]);
     }
     for (int32_t e = 0; e < fit->edge_count; e++) {
         const float *from = points + 3 * (int64_t)fit->edges[e].mesh_vertex[0];
         const float *to = points + 3 * (int64_t)fit->edges[e].mesh_vertex[1];
-        take_edge(&fit->edges[e], displacement, work->linear[e]);
-        for (int axis = 0; axis < 3; axis++)
-            work->linear[e][axis] += (double)to[axis] - from[axis];
+        vector way = make((double)to[0] - from[0], (double)to[1] - from[1], (double)to[2] - from[2]);
+        work->linear[e] = take_edge(&fit->edges[e], work->offset);
+        add(&work->linear[e], 1, &way);
     }
     memset(work->offset, 0, (size_t)fit->free_count * sizeof *work->offset);
 }
 
 void ss_fit_samples(ss_fit_work *work, const ss_frame *frame, const double (*residual)[3], const double (*normal)[3],
                     double (*displacement)[3]) {
-    work->normal = normal, work->stop = frame->stop;
-    start_linear(work, frame->points, residual, (const double(*)[3])displacement);
+    work->stop = frame->stop;
+    for (int32_t i = 0; i < work->fit->free_count; i++)
+        work->offset[i] = make(displacement[i][0], displacement[i][1], displacement[i][2]);
+    start_linear(work, frame->points, residual, normal);
     for (int k = 0; k < GAUSS_NEWTON_STEPS; k++)
         improve(work);
-    for (int32_t i = 0; i < work->fit->free_count; i++)
-        ss_add(1, work->offset[i], displacement[i]);
+    for (int32_t i = 0; i < work->fit->free_count; i++) {
+        displacement[i][0] += work->offset[i].xy[0];
+        displacement[i][1] += work->offset[i].xy[1];
+        displacement[i][2] += work->offset[i].z[0];
+    }
 }

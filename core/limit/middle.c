@@ -8,7 +8,7 @@ struct ss_middles {
     ss_memory memory;
     const ss_patch *patch;
     const int32_t *free_index;
-    ss_face_tree *tree;
+    ss_locator *locator;
     const ss_slide *slide;
     double (*way)[3]; /* [free_count] from each vertex's own place on rest to where it is looked up */
 };
@@ -21,7 +21,7 @@ skinslide_status ss_middles_create(const ss_patch *patch, const int32_t *free_in
     middles->way = ss_new(&middles->memory, patch->free_count, sizeof *middles->way);
     skinslide_status status = middles->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_face_tree_create(patch, &middles->tree, error);
+        status = ss_locator_create(patch, &middles->locator, error);
     if (status)
         ss_middles_destroy(middles);
     else
@@ -32,7 +32,7 @@ skinslide_status ss_middles_create(const ss_patch *patch, const int32_t *free_in
 void ss_middles_destroy(ss_middles *middles) {
     if (!middles)
         return;
-    ss_face_tree_destroy(middles->tree);
+    ss_locator_destroy(middles->locator);
     ss_free(&middles->memory);
     free(middles);
 }
@@ -44,20 +44,20 @@ static bool stays(const ss_middles *middles, int32_t vertex) {
 
 /* ---- In the plane ---- */
 
+/* From where one of its corners was found. */
 static ss_place look_up(const ss_middles *middles, int32_t face) {
-    const ss_faces *faces = &middles->patch->faces;
-    int32_t begin = faces->face_start[face], end = faces->face_start[face + 1];
-    ss_place found;
+    const ss_patch *patch = middles->patch;
+    int32_t begin = patch->faces.face_start[face], end = patch->faces.face_start[face + 1], near = face;
     double mean[2] = {0, 0};
     for (int32_t c = begin; c < end; c++) {
-        int32_t vertex = faces->corner_vertex[c], i = middles->free_index[vertex];
+        int32_t vertex = patch->faces.corner_vertex[c], i = middles->free_index[vertex];
         const double *at = i < 0 ? middles->slide->flat.uv[vertex] : middles->slide->asked[i];
+        if (!stays(middles, vertex))
+            near = patch->triangles.face[middles->slide->places[i].triangle];
         for (int k = 0; k < 2; k++)
             mean[k] += at[k] / (end - begin);
     }
-    if (!ss_face_tree_holding(middles->tree, mean, &found))
-        ss_face_tree_nearest(middles->tree, mean, &found);
-    return found;
+    return ss_locate_near(middles->locator, near, mean);
 }
 
 /* ---- Over rest ---- */
@@ -94,7 +94,7 @@ static ss_place walk(const ss_middles *middles, int32_t face) {
 void ss_middles_set(ss_middles *middles, const ss_slide *slide) {
     middles->slide = slide;
     if (slide->flat.uv)
-        ss_face_tree_build(middles->tree, slide->flat.uv);
+        ss_locator_set(middles->locator, slide->flat.uv, slide->regular);
     else
         list_ways(middles);
 }

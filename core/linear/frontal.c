@@ -92,8 +92,8 @@ static bool allocate_room(ss_frontal *frontal, const wanted *room) {
         frontal->stack[k] = SS_NEW(memory, double, room->stack[k]);
     frontal->to_panel = SS_NEW(memory, size_t, room->below);
     frontal->to_update = SS_NEW(memory, int32_t, room->below);
-    frontal->x = SS_NEW(memory, double, 3 * (int64_t)room->columns);
-    frontal->below = SS_NEW(memory, double, 3 * (int64_t)room->below);
+    frontal->x = SS_NEW(memory, double, 2 * (int64_t)room->columns);
+    frontal->below = SS_NEW(memory, double, 2 * (int64_t)room->below);
     return !memory->failed;
 }
 

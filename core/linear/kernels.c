@@ -12,9 +12,14 @@
 #include <float.h>
 
 typedef ss_shape shape;
-typedef double vector __attribute__((vector_size(32)));
-typedef double loose __attribute__((vector_size(32), aligned(8), may_alias)); /* wherever it is */
+typedef double narrow __attribute__((vector_size(16)));
+typedef double narrow_loose __attribute__((vector_size(16), aligned(8), may_alias)); /* wherever it is */
 #define INLINE static inline __attribute__((always_inline))
+
+/* Of four numbers. */
+INLINE double sum_of(const double *x) {
+    return (x[0] + x[1]) + (x[2] + x[3]);
+}
 
 /* ---- Within a tile of four columns: their own rows ---- */
 
@@ -67,21 +72,26 @@ INLINE void solve_tile(const double *tile, double x[4]) {
 }
 
 #define TARGET
+#define VECTOR     narrow
+#define LOOSE      narrow_loose
 #define TILES      1
 #define NAME(name) name##_plain
 #include "kernels.inc"
 #undef TARGET
+#undef VECTOR
+#undef LOOSE
 #undef TILES
 #undef NAME
 
 #ifdef __x86_64__
+typedef double wide __attribute__((vector_size(32)));
+typedef double wide_loose __attribute__((vector_size(32), aligned(8), may_alias));
 #define TARGET     __attribute__((target("avx2")))
+#define VECTOR     wide
+#define LOOSE      wide_loose
 #define TILES      2
 #define NAME(name) name##_avx2
 #include "kernels.inc"
-#undef TARGET
-#undef TILES
-#undef NAME
 #endif
 
 const ss_kernels *ss_kernels_of(bool fastest) {

@@ -87,10 +87,10 @@ typedef struct ss_kernels {
     bool (*factor)(const ss_shape *s, bool dominant, double *panel, double *force);
     /* Adds to an update, by columns, what a factored panel leaves there. */
     void (*update)(const ss_shape *s, const double *panel, const double *force, double *update);
-    /* Of 1, 2 or 3 right sides. Eliminates x [count][columns]; below [count][rows below] is out what that leaves there. */
-    void (*forward[3])(const ss_shape *s, const double *panel, double *x, double *below);
+    /* Of 1 or 2 right sides. Eliminates x [count][columns]; below [count][rows below] is out what that leaves there. */
+    void (*forward[2])(const ss_shape *s, const double *panel, double *x, double *below);
     /* x [count][columns]: in what forward made, over the pivots; out the solution, which is given below. */
-    void (*backward[3])(const ss_shape *s, const double *panel, double *x, const double *below);
+    void (*backward[2])(const ss_shape *s, const double *panel, double *x, const double *below);
 } ss_kernels;
 
 /* The fastest that the processor has, or those that all have. */
@@ -112,7 +112,7 @@ typedef struct ss_frontal {
     size_t *at;         /* [edge_count] where the entries of the matrix are in the panels of their fronts */
     size_t *to_panel;   /* [most rows below] where rows of a child go, in a panel ... */
     int32_t *to_update; /* ... and in an update, below 0 where they are columns */
-    double *x, *below;  /* [3][most columns], [3][most rows below] */
+    double *x, *below;  /* [2][most columns], [2][most rows below] */
 } ss_frontal;
 
 skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, ss_frontal **out,
@@ -175,7 +175,23 @@ bool ss_blocks_factor(ss_blocks *blocks, const int *stop);
 /* right becomes the solution. */
 void ss_blocks_solve(ss_blocks *blocks);
 
-/* ---- leastsquares.c: the only file that knows KLU ---- */
+/* ---- springs.c: a net of springs ---- */
+
+typedef struct ss_springs ss_springs; /* factored: immutable */
+
+/* Every edge is as stiff, and every free vertex is held by a spring of its own as stiff as own says. label begins messages. Fails
+ * with SINGULAR. */
+skinslide_status ss_springs_create(const ss_net *net, const char *label, double stiffness, double own, ss_springs **out,
+                                   skinslide_error *error);
+void ss_springs_destroy(ss_springs *springs);
+/* The place of a vertex in right sides, -1 where it is fixed. */
+int32_t ss_springs_unknown(const ss_springs *springs, int32_t vertex);
+/* How many vectors of scratch solving takes. */
+int32_t ss_springs_scratch(const ss_springs *springs);
+/* right [unknowns], four right sides, becomes the solutions. Both begin at a multiple of 16 bytes. */
+void ss_springs_solve(const ss_springs *springs, float (*scratch)[4], float (*right)[4]);
+
+/* ---- incomplete.c: an approximation to the normal equations of a sparse A ---- */
 
 /* A matrix by rows. */
 typedef struct ss_rows {
@@ -185,20 +201,15 @@ typedef struct ss_rows {
     double *value;
 } ss_rows;
 
-typedef struct ss_least_squares ss_least_squares;           /* A'A, factored: immutable */
-typedef struct ss_least_squares_work ss_least_squares_work; /* one a thread */
+typedef struct ss_incomplete ss_incomplete; /* immutable */
 
 /* That a system of a patch has more entries than can be numbered. label begins the message. */
 skinslide_status ss_refuse_large(const char *label, skinslide_error *error);
 /* SINGULAR where the condition of A'A leaves too few digits. rows are only read; label begins messages. */
-skinslide_status ss_least_squares_create(const ss_rows *rows, const char *label, ss_least_squares **out,
-                                         skinslide_error *error);
-void ss_least_squares_destroy(ss_least_squares *sparse);
-skinslide_status ss_least_squares_work_create(const ss_least_squares *sparse, ss_least_squares_work **out,
-                                              skinslide_error *error);
-void ss_least_squares_work_destroy(ss_least_squares_work *work);
-/* Puts x with A'A x = b in the place of each b of right: [count][column_count]. */
-void ss_least_squares_solve(ss_least_squares_work *work, double *right, int32_t count);
+skinslide_status ss_incomplete_create(const ss_rows *rows, const char *label, ss_incomplete **out, skinslide_error *error);
+void ss_incomplete_destroy(ss_incomplete *incomplete);
+/* x [column_count]: in b, out nearly what solves A'A x = b; symmetric and positive definite. */
+void ss_incomplete_solve(const ss_incomplete *incomplete, float *x);
 
 #ifdef __cplusplus
 }

@@ -9,12 +9,15 @@
 
 #define LARGE 2000 /* unknowns from which on a dissection fills less */
 
+static skinslide_status refuse_large(const ss_system *system, double entries, skinslide_error *error) {
+    return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label, entries);
+}
+
 /* ---- The graph of the unknowns ---- */
 
 static skinslide_status new_graph(const ss_system *system, ss_memory *memory, ss_graph *graph, skinslide_error *error) {
     if (system->edge_count > INT32_MAX / 2)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label,
-                       2.0 * system->edge_count);
+        return refuse_large(system, system->edge_count, error);
     graph->n = system->n;
     graph->start = SS_NEW(memory, int32_t, (int64_t)system->n + 1);
     graph->neighbour = SS_NEW(memory, int32_t, 2 * (int64_t)system->edge_count);
@@ -57,8 +60,7 @@ static skinslide_status minimum_degree(const ss_system *system, const ss_graph *
     if (status < 0)
         return ss_fail(error, SKINSLIDE_SINGULAR, "%s: its system cannot be ordered", system->label);
     if (info[CAMD_LNZ] > INT_MAX / 2)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label,
-                       info[CAMD_LNZ]);
+        return refuse_large(system, info[CAMD_LNZ], error);
     return SKINSLIDE_OK;
 }
 

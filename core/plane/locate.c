@@ -19,6 +19,7 @@ struct ss_locator {
     int32_t *landed; /* [free_count] a face near where each query was found */
     int32_t *stack;  /* [face_count] */
     uint8_t *seen;   /* [face_count] zero between calls */
+    bool regular;
     const double (*uv)[2];
 };
 
@@ -207,12 +208,31 @@ static void slide_on_loop(const ss_locator *locator, int32_t vertex, const doubl
 
 /* ---- All queries ---- */
 
-static void locate_one(ss_locator *locator, int32_t i, bool regular, const double p[2], const ss_candidates *candidates,
-                       ss_place *out, ss_located *located) {
+void ss_locator_set(ss_locator *locator, const double (*uv)[2], bool regular) {
+    locator->uv = uv, locator->regular = regular;
+    locator->tree_built = false;
+}
+
+/* Walks to p from a face, where that leads there. */
+static bool walk_to(ss_locator *locator, int32_t face, const double p[2], int64_t *steps, ss_place *out) {
+    bool on_border;
+    int32_t found = locator->regular ? walk(locator, face, p, &on_border, steps) : -1;
+    return found >= 0 && settle(locator, found, p, on_border, out);
+}
+
+ss_place ss_locate_near(ss_locator *locator, int32_t face, const double p[2]) {
+    ss_located located = {0};
+    ss_place place;
+    if (!walk_to(locator, face, p, &located.steps, &place))
+        search(locator, p, &place, &located);
+    return place;
+}
+
+static void locate_one(ss_locator *locator, int32_t i, const double p[2], const ss_candidates *candidates, ss_place *out,
+                       ss_located *located) {
     const ss_patch *patch = locator->patch;
     int32_t vertex = patch->free_vertex[i], own_face = patch->faces.corner_face[patch->vertex_corner[vertex]];
     int32_t before = patch->free_before[i], start = before < 0 ? own_face : locator->landed[before];
-    bool on_border;
     locator->landed[i] = own_face;
     if (p[0] == locator->uv[vertex][0] && p[1] == locator->uv[vertex][1]) {
         *out = ss_place_staying(p);
@@ -222,9 +242,8 @@ static void locate_one(ss_locator *locator, int32_t i, bool regular, const doubl
         slide_on_loop(locator, vertex, p, out);
         return;
     }
-    int32_t candidate = regular ? try_candidates(locator, candidates, p, out) : -1;
-    int32_t face = regular && candidate < 0 ? walk(locator, start, p, &on_border, &located->steps) : -1;
-    bool walked = face >= 0 && settle(locator, face, p, on_border, out);
+    int32_t candidate = locator->regular ? try_candidates(locator, candidates, p, out) : -1;
+    bool walked = candidate < 0 && walk_to(locator, start, p, &located->steps, out);
     located->centre += candidate == 0;
     located->around += candidate > 0;
     located->walked += walked;
@@ -236,9 +255,8 @@ static void locate_one(ss_locator *locator, int32_t i, bool regular, const doubl
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
                      const ss_candidates *candidates, ss_place *places) {
     ss_located located = {0};
-    locator->uv = uv;
-    locator->tree_built = false;
+    ss_locator_set(locator, uv, regular);
     for (int32_t i = 0; i < locator->patch->free_count; i++)
-        locate_one(locator, i, regular, query[i], candidates ? &candidates[i] : NULL, &places[i], &located);
+        locate_one(locator, i, query[i], candidates ? &candidates[i] : NULL, &places[i], &located);
     return located;
 }

@@ -25,7 +25,6 @@ typedef struct plane_slide {
     double (*own_rest_uv)[2];   /* [vertex_count] U0 with the frame's paint */
     double (*uv)[2];            /* [vertex_count] Ud, the head's */
     double *density;            /* [edge_count] */
-    bool regular;               /* the frame's layout */
 } plane_slide;
 
 static const ss_system *system_of(const plane_slide *own) {
@@ -182,7 +181,7 @@ static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_
 
     ss_layout layout = ss_lay_out(patch, slide->flat.uv);
     result->folded_faces = layout.folded;
-    own->regular = layout.regular;
+    slide->regular = layout.regular;
     ask(own, frame->weights);
     if (own->idbuffer && layout.regular)
         ss_idbuffer_draw(own->idbuffer, own->number, slide->flat.uv, (const double(*)[2])slide->asked);
@@ -192,9 +191,9 @@ static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_
 
 static void locate(plane_slide *own, skinslide_patch_result *result) {
     ss_slide *slide = &own->head;
-    bool asked = own->idbuffer && own->regular && slide->rest->patch->free_count > 0;
+    bool asked = own->idbuffer && slide->regular && slide->rest->patch->free_count > 0;
     bool proposed = asked && ss_idbuffer_candidates(own->idbuffer, own->number, own->candidates);
-    ss_located located = ss_locate(own->locator, slide->flat.uv, own->regular, (const double(*)[2])slide->asked,
+    ss_located located = ss_locate(own->locator, slide->flat.uv, slide->regular, (const double(*)[2])slide->asked,
                                    proposed ? (const ss_candidates *)own->candidates : NULL, slide->places);
     result->lost_textures = asked && !proposed;
     result->found_in_centre = located.centre;

@@ -100,6 +100,11 @@ void ss_locator_destroy(ss_locator *locator);
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
                      const ss_candidates *candidates, ss_place *places);
 
+/* The embedding that single places are asked of next. regular: its layout is. */
+void ss_locator_set(ss_locator *locator, const double (*uv)[2], bool regular);
+/* The place of p as ss_locate finds it for a vertex inside. face is one near by, any at all. */
+ss_place ss_locate_near(ss_locator *locator, int32_t face, const double p[2]);
+
 /* ---- interpolate.c ---- */
 
 /* The displacement of every free vertex, in their order, from its own place to where it is looked up. points is the whole

@@ -184,6 +184,7 @@ typedef struct ss_slide {
     ss_flat flat;       /* what places are in: the plane of the last frame; where the rule knows none, faces at rest */
     double (*asked)[2]; /* [free_count] where in the plane each was looked up */
     ss_place *places;   /* [free_count] where it was found, settled */
+    bool regular;       /* no two faces overlap there and all are convex: places can be walked to */
 } ss_slide;
 
 /* Makes asked where each vertex was found: elsewhere than asked where it was held back. */

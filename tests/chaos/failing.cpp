@@ -127,8 +127,8 @@ bool opensToWrite(int flags) {
 
 // ---- Allocations ----
 
-const char *const ourLibraries[] = {"/libskinslide", "/skinslideFileFormat",  "/_core.",    "/libcamd",   "/libklu",
-                                    "/libbtf",       "/libsuitesparseconfig", "/libosdCPU", "/libOpenEXR"};
+const char *const ourLibraries[] = {"/libskinslide",         "/skinslideFileFormat", "/_core.",    "/libcamd",
+                                    "/libsuitesparseconfig", "/libosdCPU",           "/libOpenEXR"};
 
 bool lookUpWhetherOurs(const void *caller) {
     Dl_info info;

@@ -8,7 +8,7 @@
  *     skinslide_slider     one mesh with all its patches; built once a shot; immutable, so any number of threads may share it.
  *     skinslide_workspace  the memory of one frame's work; one a thread.
  *     skinslide_slide      one call a frame. Frames do not depend on each other: any order, any thread, the same bytes;
- *                          other machines too, with the same builds of this library, CAMD, KLU and OpenSubdiv.
+ *                          other machines too, with the same builds of this library, CAMD and OpenSubdiv.
  *
  * Conventions
  *     Points are float [vertex][3] in the mesh's object space; lengths have its units. Work between is done in double.
