@@ -56,7 +56,7 @@ static void add_spring(ss_sheet *sheet, int32_t edge) {
 
 /* ---- Faces ---- */
 
-/* Axes of the plane of a face whose area vector is given: the first along its first side. Both 0 where it has no area. */
+/* Axes of the plane of a face whose area vector is given: the first along a side. The second is 0 where it has no area. */
 static void set_axes(const double area[3], const double side[3], double axes[2][3]) {
     double normal[3] = {area[0], area[1], area[2]};
     ss_normalise(normal);
@@ -64,6 +64,13 @@ static void set_axes(const double area[3], const double side[3], double axes[2][
     ss_add(-ss_dot(side, normal), normal, axes[0]);
     ss_normalise(axes[0]);
     ss_cross(normal, axes[0], axes[1]);
+}
+
+/* The first side of a face that has a length, or one that has none. */
+static void find_side(const double (*point)[3], const int32_t *v, int32_t count, double side[3]) {
+    side[0] = side[1] = side[2] = 0;
+    for (int32_t k = 0; k < count && ss_dot(side, side) == 0; k++)
+        ss_subtract(point[v[(k + 1) % count]], point[v[k]], side);
 }
 
 static void set_face(ss_sheet *sheet, int32_t face) {
@@ -79,7 +86,7 @@ static void set_face(ss_sheet *sheet, int32_t face) {
         ss_add(1, product, area);
     }
     sheet->area[face] = ss_length(area);
-    ss_subtract(point[v[begin + 1]], point[v[begin]], first);
+    find_side(point, v + begin, end - begin, first);
     set_axes(area, first, axes);
     for (int32_t c = begin; c < end; c++) {
         ss_subtract(point[v[c]], point[v[begin]], first);

@@ -151,6 +151,8 @@ void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]) {
 void ss_walk_border(const ss_posed *pose, ss_place *place, double distance) {
     const ss_patch *patch = pose->patch;
     int32_t triangle = place->triangle;
+    if (distance == 0) /* not on over sides that have no length */
+        return;
     int side = border_side(patch, place);
     double vector[3], length = side_vector(pose, triangle, side, vector);
     double along = place->weight[(side + 1) % 3] * length + distance;

@@ -486,7 +486,8 @@ static void mean_values_are_of_faces_at_rest(void **state) {
 
 /* ---- Bad rest and bad poses ---- */
 
-/* Rest with a face in a point, vertices on a line, a spike, a vertex thrown over its neighbour: finite, and rest keeps its bits. */
+/* Rest with a face in a point, vertices on a line, a spike, a vertex thrown over its neighbour, all flat, all on a line, sides of no
+ * length inside and on the border, and border faces without area: finite, and rest keeps its bits. */
 static void spoil(test_mesh *mesh, int32_t kind) {
     float *p = mesh->points;
     if (kind == 0)
@@ -498,29 +499,42 @@ static void spoil(test_mesh *mesh, int32_t kind) {
         p[3 * 24 + 2] += 30;
     if (kind == 3)
         p[3 * 24] += 3.5f;
-    for (int32_t v = 0; v < mesh->vertex_count && kind >= 4; v++) {
+    for (int32_t v = 0; v < mesh->vertex_count && (kind == 4 || kind == 5); v++) {
         p[3 * v + 2] = 0;
         p[3 * v + 1] = kind == 5 ? 0 : p[3 * v + 1];
     }
+    if (kind == 6)
+        memcpy(p + 3 * 46, p + 3 * 45, sizeof(float[3])), memcpy(p + 3 * 38, p + 3 * 37, sizeof(float[3]));
+    for (int k = 0; k < 4 && kind == 7; k++) /* three faces at the border, one of them in a point */
+        memcpy(p + 3 * (7 + k), p + 3 * k, sizeof(float[3])), memcpy(p + 3 * (k / 2), p, sizeof(float[3]));
+}
+
+static void expect_finite(const test_mesh *mesh, skinslide_patch_setup choices) {
+    rig r = rig_of(mesh, choices);
+    float *slid = slide_with(&r, mesh, mesh->points, NULL, NULL);
+    assert_same_bytes(slid, mesh->points, POINT_BYTES(mesh));
+    free(slid);
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        float *points = random_pose(mesh, seed);
+        slid = slide_with(&r, mesh, points, NULL, NULL);
+        assert_true(all_finite(slid, 3 * mesh->vertex_count));
+        free(points), free(slid);
+    }
+    free_rig(&r);
 }
 
 static void degenerate_rest_stays_finite(void **state) {
     (void)state;
-    for (int32_t kind = 0; kind < 6; kind++)
+    for (int32_t kind = 0; kind < 8; kind++)
         for (int closed = 0; closed < 2; closed++) {
             test_mesh mesh = closed ? torus(8, 7) : quad_grid(6, 6);
             spoil(&mesh, kind);
-            rig r = rig_of(&mesh, even());
-            float *slid = slide_with(&r, &mesh, mesh.points, NULL, NULL);
-            assert_same_bytes(slid, mesh.points, POINT_BYTES(&mesh));
-            free(slid);
-            for (uint64_t seed = 0; seed < 3; seed++) {
-                float *points = random_pose(&mesh, seed);
-                slid = slide_with(&r, &mesh, points, NULL, NULL);
-                assert_true(all_finite(slid, 3 * mesh.vertex_count));
-                free(points), free(slid);
+            for (int way = 0; way < 6; way++) {
+                skinslide_patch_setup choices = even();
+                choices.holes = (skinslide_holes)(way % 3);
+                choices.interpolation = way < 3 ? SKINSLIDE_INTERPOLATION_LINEAR : SKINSLIDE_INTERPOLATION_MEAN_VALUE;
+                expect_finite(&mesh, choices);
             }
-            free_rig(&r);
             free_mesh(&mesh);
         }
 }
