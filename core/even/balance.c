@@ -63,6 +63,13 @@ void ss_measure_stretch(ss_evener *evener) {
         evener->stretch[i] *= 0.5;
 }
 
+double ss_sum_stretch(const ss_evener *evener) {
+    double sum = 0;
+    for (int32_t i = 0; i < evener->sheet->spring_count; i++)
+        sum += evener->stretch[i] * evener->stretch[i];
+    return sum;
+}
+
 void ss_go_home(ss_evener *evener) {
     const ss_patch *patch = evener->sheet->patch;
     memcpy(evener->at, evener->pose.point, (size_t)patch->vertex_count * sizeof *evener->at);
@@ -188,6 +195,13 @@ skinslide_status ss_slide_by(ss_evener *evener, const ss_frame *frame, const dou
 
 void ss_keep_whole(ss_evener *evener) {
     memcpy(evener->whole, evener->slide, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
+}
+
+void ss_keep_part(ss_evener *evener, const double (*from)[2], double part) {
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        for (int j = 0; j < 2; j++)
+            evener->slide[v][j] = from[v][j] + part * (evener->slide[v][j] - from[v][j]), evener->step[v][j] = 0;
+    slide_all(evener);
 }
 
 void ss_scale_slide(ss_evener *evener) {

@@ -104,10 +104,14 @@ skinslide_status ss_slide_by(ss_evener *evener, const ss_frame *frame, const dou
                              skinslide_error *error);
 /* Keeps the slide for what shares are of. */
 void ss_keep_whole(ss_evener *evener);
+/* Leaves a part of the slide beyond from [vertex_count]. */
+void ss_keep_part(ss_evener *evener, const double (*from)[2], double part);
 /* In the end: leaves of the slide what the largest of the weights does. */
 void ss_scale_slide(ss_evener *evener);
 /* Measures the stretch where vertices are. */
 void ss_measure_stretch(ss_evener *evener);
+/* The sum of the squares of what was measured. */
+double ss_sum_stretch(const ss_evener *evener);
 /* s(z), z over the scale, and how fast that changes with z. */
 double ss_drive(const ss_frame *frame, double z, double *slope);
 /* Shortens the step, and takes it. Returns whether a face cut it short. */

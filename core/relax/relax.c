@@ -1,9 +1,11 @@
 /* One relaxed slide: what `even` gives, then steps on the pose. */
 #include "relax.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-#define STEPS 3
+#define STEPS       3
+#define LEAST_SPARE 0.01 /* of the cache's */
 
 static const ss_temper temper = {.hold = 0.3, .most_lost = 0.35, .least_area = 0.25};
 
@@ -38,10 +40,9 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
     free(relaxer);
 }
 
-/* Finds the step from where vertices are; false where the model cannot be solved. */
+/* Finds the step from where vertices are, whose stretch is measured; false where the model cannot be solved. */
 static bool find_step(ss_relaxer *relaxer, const ss_frame *frame) {
     ss_evener *evener = relaxer->evener;
-    ss_measure_stretch(evener);
     ss_find_axes(relaxer);
     ss_fill_model(relaxer, frame);
     if (!ss_blocks_factor(relaxer->blocks, frame->stop))
@@ -53,15 +54,32 @@ static bool find_step(ss_relaxer *relaxer, const ss_frame *frame) {
     return true;
 }
 
+/* Where rest is crumpled the model says little, and its steps may add stretch. Of three sums, that of the cache, where even leaves
+ * skin and after the steps, the part of the way from the second to the third on which there is no more than the first, if it grows
+ * evenly: all of it where there is no more in the end. It changes smoothly with all three. */
+static double part_without_gain(double cache, double even, double after) {
+    double spare = fmax(cache - even, LEAST_SPARE * cache), gain = fmax(after - fmax(cache, even), 0);
+    return gain > 0 ? spare / (spare + gain) : 1;
+}
+
 /* All steps from home, by weights [vertex_count]. */
 static skinslide_status slide_by(ss_relaxer *relaxer, const ss_frame *frame, const double *weight, int32_t *steps, int32_t *cut,
                                  skinslide_error *error) {
-    skinslide_status status = ss_slide_by(relaxer->evener, frame, weight, cut, error);
+    ss_evener *evener = relaxer->evener;
+    double cache = ss_sum_stretch(evener);
+    skinslide_status status = ss_slide_by(evener, frame, weight, cut, error);
     if (status)
         return status;
     ss_set_anchors(relaxer);
-    for (*steps = 0; *steps < STEPS && !ss_is_set(frame->stop) && find_step(relaxer, frame); ++*steps)
-        *cut += ss_take_step(relaxer->evener);
+    ss_measure_stretch(evener);
+    double even = ss_sum_stretch(evener);
+    for (*steps = 0; *steps < STEPS && !ss_is_set(frame->stop) && find_step(relaxer, frame); ++*steps) {
+        *cut += ss_take_step(evener);
+        ss_measure_stretch(evener);
+    }
+    double part = part_without_gain(cache, even, ss_sum_stretch(evener));
+    if (part < 1)
+        ss_keep_part(evener, (const double(*)[2])relaxer->even, part);
     return SKINSLIDE_OK;
 }
 

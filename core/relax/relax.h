@@ -6,7 +6,8 @@
  * over edges and over vertices; S' = s, the bounded stretch of `even`, D the slides in space. It is lowered by three damped
  * Newton steps, always, in which z changes with d as the pose does, smoothed from vertex to vertex; a holds vertices near where
  * they were, the more the cache crushes skin there. So every step is a smooth function of the pose, and skin does not pass from
- * one lowest place to another in a frame or two. Weights are shares of the whole slide, as `even` has them. */
+ * one lowest place to another in a frame or two. Of steps that add stretch to what the cache has, a part is taken that does not.
+ * Weights are shares of the whole slide, as `even` has them. */
 #ifndef SKINSLIDE_RELAX_H
 #define SKINSLIDE_RELAX_H
 

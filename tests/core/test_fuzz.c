@@ -125,9 +125,12 @@ static void slide_once(const rig *r, const test_mesh *mesh, const float *points,
     assert_ok(skinslide_slide(r->workspace, points, controls, slid, results, &error), &error);
     for (int32_t k = 0; k < 3 * mesh->vertex_count; k++)
         assert_true(isfinite(slid[k]));
-    for (int32_t p = 0; p < patches; p++)
+    for (int32_t p = 0; p < patches; p++) {
         assert_true(isfinite(results[p].stretch_before) && isfinite(results[p].stretch_after) &&
                     isfinite(results[p].largest_slide));
+        bool relaxes = r->slider->parts[p].patch->setup->rule == SKINSLIDE_RULE_RELAXED;
+        assert_int_equal(results[p].relax_steps, relaxes ? 3 : 0); /* no model of a step is refused */
+    }
     free(slid), free(results);
 }
 

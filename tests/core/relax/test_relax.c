@@ -150,6 +150,32 @@ static void slides_stay_on_the_surface(void **state) {
     }
 }
 
+/* Rest that is crumpled as paper is, where gradients smoothed from vertex to vertex say little of the surface: what even takes off
+ * stretch there, relaxed does not put back. */
+static void no_stretch_is_added_on_crumpled_rest(void **state) {
+    (void)state;
+    int32_t evened = 0;
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        test_mesh mesh = seed % 2 ? triangle_grid(7, 7) : quad_grid(7, 7);
+        float *rest = shaken(&mesh, seed, 0.7), *points;
+        memcpy(mesh.points, rest, POINT_BYTES(&mesh));
+        points = random_pose(&mesh, seed);
+        skinslide_patch_result results[2] = {SKINSLIDE_PATCH_RESULT_DEFAULT, SKINSLIDE_PATCH_RESULT_DEFAULT};
+        for (int k = 0; k < 2; k++) {
+            rig r = rig_of(&mesh, k ? relaxed() : by_rule(SKINSLIDE_RULE_EVEN));
+            free(slide_with(&r, &mesh, points, NULL, &results[k]));
+            free_rig(&r);
+        }
+        bool evens = results[0].stretch_after < results[0].stretch_before;
+        evened += evens;
+        if (evens)
+            assert_true(results[1].stretch_after < results[1].stretch_before);
+        free(rest), free(points);
+        free_mesh(&mesh);
+    }
+    assert_true(evened > 30);
+}
+
 /* In none of these poses, which are a sample, unpainted. Disks at random are left out, whose points have no shape: rest is
  * crumpled there, and what it turns over is counted. */
 static void nothing_turns_over(void **state) {
@@ -304,6 +330,7 @@ int main(void) {
         cmocka_unit_test(a_slide_by_hand),
         cmocka_unit_test(stretch_is_less_than_by_other_rules),
         cmocka_unit_test(slides_stay_on_the_surface),
+        cmocka_unit_test(no_stretch_is_added_on_crumpled_rest),
         cmocka_unit_test(nothing_turns_over),
         cmocka_unit_test(slides_are_smooth_in_time),
         cmocka_unit_test(no_slide_jumps),
