@@ -539,6 +539,29 @@ static void degenerate_rest_stays_finite(void **state) {
         }
 }
 
+/* Rest that is crumpled has no way for skin to go on which nothing turns over: what does is counted, and what is so at rest is not. */
+static void folds_on_crumpled_rest_are_counted(void **state) {
+    (void)state;
+    int32_t folded = 0;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        test_mesh mesh = quad_grid(8, 8);
+        float *rest = shaken(&mesh, seed, 0.9), *points;
+        memcpy(mesh.points, rest, POINT_BYTES(&mesh));
+        points = random_pose(&mesh, seed);
+        rig r = rig_of(&mesh, even());
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+        free(slide_with(&r, &mesh, points, NULL, &result));
+        assert_in_range(result.folded_faces, 0, mesh.face_count / 4);
+        folded += result.folded_faces;
+        free(slide_with(&r, &mesh, mesh.points, NULL, &result));
+        assert_int_equal(result.folded_faces, 0);
+        free(rest), free(points);
+        free_rig(&r);
+        free_mesh(&mesh);
+    }
+    assert_true(folded > 0);
+}
+
 static void wild_poses_stay_finite(void **state) {
     (void)state;
     test_mesh mesh = sphere(5);
@@ -818,6 +841,7 @@ int main(void) {
         cmocka_unit_test(controls_are_checked),
         cmocka_unit_test(mean_values_are_of_faces_at_rest),
         cmocka_unit_test(degenerate_rest_stays_finite),
+        cmocka_unit_test(folds_on_crumpled_rest_are_counted),
         cmocka_unit_test(wild_poses_stay_finite),
         cmocka_unit_test(wild_paint_stays_finite),
         cmocka_unit_test(nothing_free_is_nothing_slid),
