@@ -21,7 +21,8 @@ const char inverse[] = "!invert!", reset[] = "!resetXformStack!", prefix[] = "xf
 // ---- Values of any precision ----
 
 double numberOf(const VtValue &value) {
-    return value.CanCast<double>() ? VtValue::Cast<double>(value).UncheckedGet<double>() : 0;
+    const VtValue number = VtValue::Cast<double>(value);
+    return number.IsHolding<double>() ? number.UncheckedGet<double>() : 0;
 }
 
 GfVec3d vectorOf(const VtValue &value, double otherwise) {
