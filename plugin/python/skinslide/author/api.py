@@ -33,7 +33,7 @@ class SkinSlideAPI(AppliedPatch):
       ends), uniform (the mean of its faces) or constant; may be animated. Only ratios matter. Absent: 1.
     - primvars:skinSlide:NAME:hold: how much each point keeps to how its neighbours slide, under the rules relaxed
       and even: low where surplus skin is to come from, high where it must not. float above 0, vertex or constant;
-      may be animated. Absent: 1.
+      far under 0.1 nothing keeps skin from sliding at random; may be animated. Absent: 1.
 
     Numbers are half, float or double; of pairs and colours the one that paintChannel names counts. What is
     faceVarying counts as its mean over the face corners at each point. Tools that know no namespaces may leave paint
@@ -679,8 +679,8 @@ class SkinSlideAPI(AppliedPatch):
     def GetHoldPrimvar(self) -> UsdGeom.Primvar:
         """How much each point keeps to how its neighbours slide, under the rules relaxed and even.
 
-        Low where surplus skin is to come from, high where it must not. float above 0, vertex or constant; may be
-        animated. Absent: 1.
+        Low where surplus skin is to come from, high where it must not. float above 0, vertex or constant; far under
+        0.1 nothing keeps skin from sliding at random; may be animated. Absent: 1.
 
         Returns:
             The primvar primvars:skinSlide:NAME:hold; not valid where there is none.
