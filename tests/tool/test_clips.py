@@ -94,6 +94,16 @@ def test_what_does_not_fit_is_refused(shot, tmp_path):
         stitch([tmp_path / "out.usda"], tmp_path / "more.usda")
 
 
+def test_a_chunk_called_as_the_manifest_stays(shot, tmp_path):
+    manifest, rest = tmp_path / "out.manifest.usda", tmp_path / "rest.usda"
+    bake_to_file(shot, manifest, chunk="1/2")
+    bake_to_file(shot, rest, chunk="2/2")
+    before = manifest.read_bytes()
+    with pytest.raises(UsageError, match=f"output {manifest}: is one of the chunks"):
+        stitch([manifest, rest], tmp_path / "out.usda", clips=True)
+    assert manifest.read_bytes() == before and not (tmp_path / "out.usda").exists()
+
+
 def test_command(shot, tmp_path, capfd):
     chunks = parts(shot, tmp_path)
     out = tmp_path / "out.usda"

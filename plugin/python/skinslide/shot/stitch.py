@@ -23,7 +23,7 @@ from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
-from skinslide.write.clips import Clip, block, write_clips
+from skinslide.write.clips import Clip, block, manifest_of, write_clips
 from skinslide.write.overs import EXTENSIONS
 from skinslide.write.place import check_output, given_output, replacing, saved, state, writing
 from skinslide.write.record import Record, joined
@@ -84,11 +84,14 @@ def stitch(
     """
     files, stitched = _given_chunks(chunks), given_output("output", output)
     asked = None if frames is None else checked_frames(frames)
-    check_output(stitched, EXTENSIONS)
+    written = [stitched, manifest_of(stitched)] if clips else [stitched]
+    for file in written:
+        check_output(file, EXTENSIONS)
     opened = [_Chunk(file) for file in files]
     _refuse_repeated(files)
-    if stitched.exists() and any(file.samefile(stitched) for file in files):
-        raise UsageError(f"output {stitched}: is one of the chunks")
+    for output_file in filter(Path.exists, written):
+        if any(file.samefile(output_file) for file in files):
+            raise UsageError(f"output {output_file}: is one of the chunks")
     blocked = {path for chunk in opened for path in chunk.blocked}
     alone = [problem for chunk in opened for problem in chunk.problems()]
     among = [*_mixtures(opened), *_differences(opened, blocked), *_overlaps(opened, blocked)]

@@ -34,9 +34,14 @@ def block(layer: Sdf.Layer, attributes: Iterable[Sdf.Path]) -> None:
         spec.default = Sdf.ValueBlock()
 
 
+def manifest_of(output: Path) -> Path:
+    """What is written beside a layer of clips."""
+    return output.with_name(f"{output.stem}.manifest.usda")
+
+
 def write_clips(clips: Sequence[Clip], blocked: Sequence[Sdf.Path], output: Path) -> None:
     """Writes the layer and its manifest. Clips come in the order of their frames."""
-    manifest_file = output.with_name(f"{output.stem}.manifest.usda")
+    manifest_file = manifest_of(output)
     layer, manifest = Sdf.Layer.CreateAnonymous(".usda"), Sdf.Layer.CreateAnonymous(".usda")
     for clip in clips:
         UsdUtils.StitchLayers(layer, _still(clip.layer, manifest))
