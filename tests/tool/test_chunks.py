@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, UsdUtils
+from pxr import Sdf, Usd, UsdGeom, UsdUtils, Vt
 
 import stages
 from skinslide import StageError, StageProblems, UsageError, bake_to_file, stitch
@@ -249,6 +249,37 @@ def test_a_chunk_that_is_not_finished(shot, tmp_path):
 
     rewrite(chunks[1], forget)
     refused(chunks, tmp_path, f"{chunks[1]} does not say what it was baked from: it is not finished")
+
+
+@pytest.mark.parametrize(
+    ("member", "value"),
+    [
+        ("meshes", None),
+        ("meshes", "words"),
+        ("meshes", {"no prim": {"frames": Vt.DoubleArray()}}),
+        ("meshes", {MESH: "words"}),
+        ("meshes", {MESH: {}}),
+        ("meshes", {MESH: {"frames": Vt.StringArray(["words"])}}),
+        ("options", None),
+        ("options", 3),
+        ("version", None),
+        ("wanted", "words"),
+        ("before", "words"),
+    ],
+)
+def test_a_record_that_is_damaged(member, value, shot, tmp_path):
+    """It is no traceback, and such a chunk is baked again."""
+    chunks = ranges(shot, tmp_path, "1001-1004", "1005-1008")
+
+    def damage(layer):
+        data = dict(layer.customLayerData)
+        told = {name: each for name, each in data["skinslide"].items() if name != member}
+        layer.customLayerData = {"skinslide": told if value is None else {**told, member: value}}
+
+    rewrite(chunks[1], damage)
+    refused(chunks, tmp_path, f"{chunks[1]} says what it was baked from in a way that cannot be read")
+    assert not bake_to_file(shot, chunks[1], frames="1005-1008", resume=True).resumed
+    assert bake_to_file(shot, chunks[1], frames="1005-1008", resume=True).resumed
 
 
 def test_a_chunk_of_a_record_to_come(shot, tmp_path):

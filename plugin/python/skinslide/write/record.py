@@ -86,9 +86,19 @@ class Record:
             raise Fault("does not say what it was baked from: it is not finished, or older than skinslide 0.2")
         if told.get("form") != _FORM:
             raise Fault(f"was baked by skinslide {told.get('version')}, whose record this one cannot read")
-        meshes = {path: _mesh(dict(mesh)) for path, mesh in told["meshes"].items()}
-        ends, wanted = (told.get("before"), told.get("after")), tuple(told.get("wanted", ()))
-        return cls(meshes, told["options"], *ends, told.get("chunk", ""), wanted, told["version"])
+        try:
+            return cls._of(told)
+        except (AttributeError, KeyError, TypeError, ValueError) as bad:
+            raise Fault("says what it was baked from in a way that cannot be read") from bad
+
+    @classmethod
+    def _of(cls, told: Mapping[str, Any]) -> Record:
+        meshes = {_prim(path): _mesh(dict(mesh)) for path, mesh in told["meshes"].items()}
+        before, after = (None if told.get(end) is None else float(told[end]) for end in ("before", "after"))
+        wanted = _frames(told.get("wanted", ()))
+        return cls(
+            meshes, dict(told["options"]), before, after, str(told.get("chunk", "")), wanted, str(told["version"])
+        )
 
 
 def joined(records: Sequence[Record]) -> Record:
@@ -107,8 +117,18 @@ def joined(records: Sequence[Record]) -> Record:
 
 
 def _mesh(told: dict[str, Any]) -> MeshRecord:
-    frames = tuple(told.pop("frames"))
+    frames = _frames(told.pop("frames"))
     return MeshRecord(told, frames)
+
+
+def _prim(path: str) -> str:
+    if not Sdf.Path.IsValidPathString(path) or not Sdf.Path(path).IsPrimPath():
+        raise ValueError(path)
+    return path
+
+
+def _frames(told: Sequence[float]) -> tuple[float, ...]:
+    return tuple(map(float, told))
 
 
 def _array(frames: Sequence[float]) -> Vt.DoubleArray:
