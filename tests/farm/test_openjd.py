@@ -117,3 +117,12 @@ def test_what_a_template_cannot_hold(shot, tmp_path):
     with pytest.raises(UsageError, match="would replace what stands in"):
         farm(shot, tmp_path / "slid.usdc", chunk=3, html=page)
     assert not (tmp_path / "slid.openjd.json").exists()
+
+
+@pytest.mark.parametrize("form", ["openjd", "slurm"])
+def test_a_name_of_two_lines(form, shot, tmp_path):
+    """Of which the second would be a line of a script."""
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(UsageError, match="cannot have a line break in it"):
+        farm(shot, tmp_path / "slid\nTASK\ntouch gone; #.usdc", chunk=3, form=form)
+    assert sorted(tmp_path.iterdir()) == before

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from skinslide.problems import UsageError
+
 
 @dataclass(frozen=True)
 class Job:
@@ -27,6 +29,12 @@ class Job:
     sliding: Sequence[str]
     baking: Sequence[str]
     drawing: Mapping[str, Path]
+
+    def __post_init__(self) -> None:
+        """Raises UsageError for what would end a line of a script."""
+        for word in map(str, (self.tool, self.stage, self.layer, *self.sliding, *self.baking, *self.drawing.values())):
+            if "\n" in word:
+                raise UsageError(f"{word!r}: a job cannot have a line break in it")
 
     @property
     def name(self) -> str:
