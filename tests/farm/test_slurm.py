@@ -20,9 +20,9 @@ def environment():
 class Submitted:
     """A job of four tasks, and what comes after them."""
 
-    def __init__(self, shot: Path, environment: dict[str, str]):
+    def __init__(self, shot: Path, environment: dict[str, str], *words: str | Path):
         self.folder, self._environment = shot.parent, environment
-        tool("farm", shot, "-o", self.folder / "slid.usdc", "--chunk", "2", "--format", "slurm")
+        tool("farm", shot, "-o", self.folder / "slid.usdc", "--chunk", "2", "--format", "slurm", *words)
         lines = self.run("bash", self.folder / "slid.slurm.sh").splitlines()
         self.ids = dict(line.split() for line in lines)
 
@@ -85,3 +85,19 @@ def test_a_task_that_fails_is_named_and_tried_again(job, whole):
     again.wait(again.ids["stitch"], "COMPLETED")
     assert [job.chunk(number).stat().st_ino for number in (1, 2, 3)] == before
     assert content(job.folder / "slid.usdc") == whole
+
+
+def test_pictures_are_drawn_of_a_job_that_was_tried_again(shot, environment):
+    """Slurm never lets begin what waits for a job that went well, once that has failed."""
+    page = shot.parent / "page.html"
+    job = Submitted(shot, environment, "--html", page)
+    job.chunk(4).mkdir()
+    job.wait(job.ids["stitch"], "FAILED")
+    job.wait(job.ids["draw"], "COMPLETED")
+    page.unlink()
+    job.chunk(4).rmdir()
+    for each, ended in ((job.task(4), "bake"), (job.ids["stitch"], "stitch"), (job.ids["draw"], "draw")):
+        job.requeue(each)
+        job.wait(each, "COMPLETED")
+        assert not page.exists() or ended == "draw"
+    assert page.read_text().rstrip().endswith("</html>")

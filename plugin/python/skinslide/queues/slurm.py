@@ -1,7 +1,7 @@
 """A job as a script that hands it to Slurm: an array of tasks, and what runs once they have ended.
 
-Stitching waits until every task has ended, however: what is not there it names, and is run again with
-`scontrol requeue`, as a task is. After `afterok` it would wait for ever for a task that was requeued.
+Each step waits until what is before it has ended, however: stitching names what is not there, and is run again with
+`scontrol requeue`, as a task is. After `afterok` a step would wait for ever for one that failed and was requeued.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _SCRIPT = """\
 #!/usr/bin/env bash
 # {name}: {count} tasks, each a chunk of frames, then one that puts them together.
 #     bash {file} [options of sbatch, such as --partition=long]
-# Prints the ids of the jobs. A task that failed, and then the last, is run again by: scontrol requeue ID
+# Prints the ids of the jobs. A task that failed, and then stitch, is run again by: scontrol requeue ID
 set -euo pipefail
 
 submit() {{ sbatch --parsable --chdir={folder} --requeue --open-mode=append "$@"; }}
@@ -33,7 +33,7 @@ echo "bake $bake"
 
 _AFTER = """\
 
-{step}=$(submit --job-name={name} --dependency={when}:"${waits}" --output={log}.%j.log "$@" <<'TASK'
+{step}=$(submit --job-name={name} --dependency=afterany:"${waits}" --output={log}.%j.log "$@" <<'TASK'
 #!/usr/bin/env bash
 exec {words}
 TASK
@@ -47,9 +47,9 @@ def script(job: Job) -> str:
     folder, stem = str(job.folder), job.layer.stem
     log = shlex.quote(f"{stem}.slurm".replace("%", "%%"))
     bake = job.bake(str(job.stage), folder, _TASK)
-    after = _after(job, "stitch", "afterany", "bake", job.stitch(folder), log)
+    after = _after(job, "stitch", "bake", job.stitch(folder), log)
     if job.drawing:
-        after += _after(job, "draw", "afterok", "stitch", job.preview(str(job.stage), folder), log)
+        after += _after(job, "draw", "stitch", job.preview(str(job.stage), folder), log)
     return _SCRIPT.format(
         name=job.name,
         count=job.count,
@@ -62,10 +62,10 @@ def script(job: Job) -> str:
     )
 
 
-def _after(job: Job, step: str, when: str, waits: str, words: Sequence[str], log: str) -> str:
+def _after(job: Job, step: str, waits: str, words: Sequence[str], log: str) -> str:
     """A step that begins once another has ended."""
     name = shlex.quote(f"{job.name} {step}")
-    return _AFTER.format(step=step, name=name, when=when, waits=waits, log=log, words=_line(job.tool, words))
+    return _AFTER.format(step=step, name=name, waits=waits, log=log, words=_line(job.tool, words))
 
 
 def _line(tool: str, words: Sequence[str]) -> str:
