@@ -57,14 +57,28 @@ def test_a_page_is_not_led_to_from_itself(baked):
     assert skinslide.report(baked, baked / "b" / "report.html").shots[0].page == ""
 
 
-def test_a_shot_that_failed_is_told_of(baked):
-    failed = {"record": RECORD, "stage": "c.usda", "meshes": [], "problems": [
-        {"severity": "error", "prim": "", "patch": None, "frame": None, "message": "it failed"}
-    ]}  # fmt: skip
-    (baked / "c.json").write_text(json.dumps(failed))
+def test_a_shot_that_failed_is_told_of(baked, capsys):
+    """By what the command prints, from its file alone."""
+    assert main(["bake", str(baked / "gone.usda"), "-o", str(baked / "slid.usda"), "--json", "--quiet"]) == 1
+    (baked / "c.json").write_text(capsys.readouterr().out)
     report = skinslide.report(baked)
-    assert report.shots[-1].stage == "c.usda" and "it failed" in (baked / "shots.html").read_text()
+    assert report.shots[-1].file == "c.json" and "cannot open" in (baked / "shots.html").read_text()
     assert "no patches, 1 problem" in report.text()
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        {"record": RECORD},
+        {"record": RECORD, "meshes": 3, "problems": []},
+        {"record": RECORD, "meshes": [{"prim": "/a"}], "problems": []},
+        {"problems": "words"},
+        {"problems": [{"severity": "error"}]},
+    ],
+)
+def test_what_is_no_record_is_passed_over(document, baked):
+    (baked / "d.json").write_text(json.dumps(document))
+    assert len(skinslide.report(baked).shots) == 2
 
 
 @pytest.mark.parametrize(

@@ -158,14 +158,14 @@ def _line(shot: ShotRecord) -> str:
 
 
 def _records(top: Path, page: Path) -> Iterator[ShotRecord]:
-    """Those of its files that are records of this version."""
+    """Those of its files that are records of this version, or have but the problems of a command that failed."""
     for file in sorted(top.rglob("*.json")):
         try:
             found = json.loads(file.read_text("utf-8"))
-        except (OSError, ValueError):  # of something else, or still being written
-            continue
-        if isinstance(found, dict) and found.get("record") == RECORD:
-            yield _record(found, file, top, page)
+            if isinstance(found, dict) and (found.get("record") == RECORD or found.keys() == {"problems"}):
+                yield _record({"meshes": [], **found}, file, top, page)
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            continue  # of something else, or still being written
 
 
 def _record(found: dict[str, Any], file: Path, top: Path, page: Path) -> ShotRecord:
