@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -59,17 +59,27 @@ def _is_json(word: str) -> bool:
 
 # ---- What a command left behind ----
 
+_BESIDE = (".openjd.json", ".slurm.sh", ".manifest.usda")  # jobs of farm, and what clips of stitch need
+
 
 def _state(given: dict[str, Any]) -> dict[str, tuple[int, ...]]:
     """Tells whether a file is another than before: those that a command writes outside its folders."""
     found: dict[str, tuple[int, ...]] = {}
-    for file in filter(None, (given.get("output"), given.get("html"))):
+    for file in _written_by(given):
         try:
             status = os.stat(file)
         except (OSError, ValueError):  # there is nothing yet
             continue
         found[file] = (status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size)
     return found
+
+
+def _written_by(given: dict[str, Any]) -> Iterator[str]:
+    """Those that are named, and those beside the output that have its name."""
+    yield from filter(None, (given.get("output"), given.get("html"), given.get("payload")))
+    if given.get("output"):
+        stem = os.path.splitext(given["output"])[0]
+        yield from (stem + suffix for suffix in _BESIDE)
 
 
 def _outcome(given: dict[str, Any], before: dict[str, tuple[int, ...]]) -> str:
