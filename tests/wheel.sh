@@ -37,6 +37,6 @@ python3 -m venv "$work/venv"
 consumer=$("$work/venv/bin/python" -c 'import skinslide; print(skinslide.cmake_dir())')
 cmake -S tests/consumer -B "$work/consumer" -Dskinslide_DIR="$consumer" >"$work/log" && cmake --build "$work/consumer" >>"$work/log" ||
     { cat "$work/log"; exit 1; }
-ctest --test-dir "$work/consumer" --output-on-failure
+"$work/consumer/consumer_c" && "$work/consumer/consumer_cpp"
 
 say "$wheel"
