@@ -53,6 +53,11 @@ def in_object_mode(context: bpy.types.Context) -> Any:
             bpy.ops.object.mode_set(mode=mode)
 
 
+def _active(context: bpy.types.Context) -> str:
+    """The name of the active object, which outlives it."""
+    return context.active_object.name if context.active_object else ""
+
+
 class Waiting(bpy.types.Operator):
     """An operator in three steps: fetch, work apart, and write.
 
@@ -81,7 +86,7 @@ class Waiting(bpy.types.Operator):
         if event.type != "TIMER" or not self._future.done():
             return {"PASS_THROUGH"}
         context.window_manager.event_timer_remove(self._timer)
-        return self._guarded(lambda: self._written(context, self._future.result()))
+        return self._guarded(lambda: self._ended(context))
 
     def _fetched(self, context: bpy.types.Context) -> Callable[[], Any] | None:
         with in_object_mode(context):  # in edit mode nothing is evaluated
@@ -94,10 +99,16 @@ class Waiting(bpy.types.Operator):
         work = self._fetched(context)
         if not work:
             return self._written(context, None)
-        self._future = start(work)
+        self._future, self._begun_on = start(work), _active(context)
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
+
+    def _ended(self, context: bpy.types.Context) -> set[str]:
+        found = self._future.result()
+        if _active(context) != self._begun_on:
+            raise Fault(f"{self._begun_on} is no longer the active object; nothing was changed")
+        return self._written(context, found)
 
     def _written(self, context: bpy.types.Context, found: Any) -> set[str]:
         with in_object_mode(context):

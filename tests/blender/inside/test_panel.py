@@ -120,7 +120,7 @@ def test_a_change_is_not_lost_with_its_frame(scene, impatient):
 class Operator:
     """What Waiting does, on an object of ours: Blender makes operators itself, of events, of which there are none."""
 
-    for _name in ("execute", "modal", "_fetched", "_worked", "_begun", "_written", "_guarded"):
+    for _name in ("execute", "modal", "_fetched", "_worked", "_begun", "_ended", "_written", "_guarded"):
         locals()[_name] = getattr(work.Waiting, _name)
 
     def __init__(self, work_apart):
@@ -193,3 +193,16 @@ def test_what_fails_apart_is_reported(monkeypatch):
     assert (
         operator.reports == [({"ERROR"}, "there is no patch to slide")] and not operator.written and not window.timers
     )
+
+
+def test_another_object_is_not_written_to(scene, monkeypatch):
+    """Whoever waits may choose another meanwhile."""
+    monkeypatch.setattr(work, "interactive", lambda: True)
+    window, first, second = Window(), sheet(), sheet()
+    window.active_object = first
+    operator = Operator(lambda: "found")
+    assert operator.execute(window) == {"RUNNING_MODAL"}
+    window.active_object = second
+    assert ended(operator, window) == {"CANCELLED"}
+    assert operator.reports == [({"ERROR"}, f"{first.name} is no longer the active object; nothing was changed")]
+    assert not operator.written and not window.timers
