@@ -1,11 +1,16 @@
 #!/usr/bin/env bash
 # Measures what a frame costs, beside what a user would otherwise take: tables of ratios, of one run.
 #     tests/bench.sh [--against REVISION] [--sizes N...] [--kinds KIND...] [--rounds N]
-# --against pairs this tree with another revision of its repository, and must come first.
+#     tests/bench.sh --scale [--rule RULE] [--jobs N] [--large]
+# --against pairs this tree with another revision of its repository, and must come first. --scale measures bakes instead, as points,
+# patches and frames grow.
 set -euo pipefail
 EXTRA_PACKAGES=(libeigen3-dev)
 . "$(dirname "$0")/../examples/setup.sh"
 cd "$root"
+if [ "${1:-}" = --scale ]; then
+    exec "$python" tests/bench/scale.py "${@:2}"
+fi
 peers=$root/build/peers
 packages=(numpy==2.4.6 scipy==1.17.1 matplotlib==3.11.2 libigl==2.6.3 scikit-sparse==0.4.16 embreex==4.4.0.post1)
 

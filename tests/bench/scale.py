@@ -1,6 +1,6 @@
 """What a bake costs as a shot grows: set-up, time a frame, memory, against points, patches and frames.
 
-scale.py [--rule RULE] [--jobs N] [--large]        a line for each shot, as Markdown
+tests/bench.sh --scale [--rule RULE] [--jobs N] [--large]        a line for each shot, as Markdown
     --large     also 250,000 points in 100 patches, over ever more frames: memory must not follow them
 
 Each shot is baked by a process of its own. Memory is anonymous, and at most: what is mapped of files is not counted.
@@ -115,7 +115,9 @@ def in_a_process(shot: Shot, rule: str, jobs: int) -> dict[str, float]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="tests/bench.sh --scale", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rule", default="even")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--large", action="store_true")
