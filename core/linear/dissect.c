@@ -122,7 +122,7 @@ static void count_near(dissection *d, int32_t v) {
 /* The level of the histogram, among those that leave enough on both sides, that has the fewest unknowns. */
 static int32_t choose_level(const dissection *d, int32_t count) {
     int32_t n = d->graph->n, below = 0, found = 0, least = INT32_MAX, off = 0;
-    for (int32_t level = -n; level <= n && below < count; level++) {
+    for (int32_t level = -count; level <= count && below < count; level++) { /* no distance in a piece is beyond its count */
         int32_t own = d->histogram[n + level], away = abs(2 * below + own - count);
         if (own > 0 && away < LEVEL_RANGE * count && (own < least || (own == least && away < off)))
             found = level, least = own, off = away;
