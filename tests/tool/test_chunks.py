@@ -256,10 +256,11 @@ def test_a_chunk_that_is_not_finished(shot, tmp_path):
     [
         ("meshes", None),
         ("meshes", "words"),
-        ("meshes", {"no prim": {"frames": Vt.DoubleArray()}}),
+        ("meshes", {"no prim": {"frames": Vt.DoubleArray(), "poses": Vt.Int64Array()}}),
         ("meshes", {MESH: "words"}),
         ("meshes", {MESH: {}}),
-        ("meshes", {MESH: {"frames": Vt.StringArray(["words"])}}),
+        ("meshes", {MESH: {"frames": Vt.StringArray(["words"]), "poses": Vt.Int64Array([1])}}),
+        ("meshes", {MESH: {"frames": Vt.DoubleArray([1.0]), "poses": Vt.Int64Array()}}),
         ("options", None),
         ("options", 3),
         ("version", None),
@@ -370,6 +371,20 @@ def test_a_chunk_of_other_options_is_baked_again(options, shot, chunk):
 def test_a_chunk_of_something_else_is_baked_again(edit, shot, chunk):
     saved_shot(shot, edit)
     assert not resumed(shot, chunk)
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_a_chunk_of_another_pose_is_baked_again(frame, shot, chunk):
+    """Of any frame of its own, and of those beside it, of which velocities come."""
+
+    def move(stage):
+        points = UsdGeom.Mesh(stage.GetPrimAtPath(MESH)).GetPointsAttr()
+        points.Set(stages.vectors(np.array(points.Get(frame)) * 1.01), frame)
+
+    held = record(chunk).frames
+    saved_shot(shot, move)
+    near = held[0] - 1 <= frame <= held[-1] + 1
+    assert resumed(shot, chunk) == (not near and frame not in (FRAMES[0], FRAMES[4], FRAMES[-1]))
 
 
 def test_a_chunk_of_another_version_is_baked_again(shot, chunk):

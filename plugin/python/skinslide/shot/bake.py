@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import Lookup
@@ -24,7 +25,7 @@ from skinslide.shot.diagnostics import MeshDiagnostics, Primvar
 from skinslide.shot.frames import AUTHORED
 from skinslide.shot.loop import slide
 from skinslide.shot.options import ChunkOptions, Frames, LayerOptions, Prims, SlideOptions
-from skinslide.shot.origins import is_whole, record_of
+from skinslide.shot.origins import is_whole, pose_digest, record_of
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
 from skinslide.shot.report import MEASURES, BakeReport, MeshReport, roughness_text, stretch_text
@@ -227,6 +228,9 @@ class _Baking(Making):
         with self._place as self.overs:
             yield
 
+    def note_poses(self, _mesh: str, _poses: Iterable[np.ndarray]) -> None:
+        """Learns of what cached poses the samples of a mesh's next frame come."""
+
 
 class _BakingFile(_Baking):
     """One in a file, which says what it was baked from."""
@@ -234,16 +238,20 @@ class _BakingFile(_Baking):
     def __init__(self, layer: _Layer, asked: SlideOptions, place: AbstractContextManager[OverLayer]):
         super().__init__(layer.options, place, in_stage=False)
         self._layer, self._asked = layer, asked
+        self._poses: dict[str, list[int]] = {}
 
     def planned(self, plan: Plan) -> bool:
         self._record = record_of(plan, self._layer.part.chunk, {**_given(self._asked), **_given(self._layer.options)})
-        return self._layer.part.resume and is_whole(self._layer.output, self._record)
+        return self._layer.part.resume and is_whole(self._layer.output, self._record, plan)
 
     @contextmanager
     def running(self, report: BakeReport) -> Iterator[None]:
         with super().running(report):
             yield
-            self._record.write(self.overs.layer)
+            self._record.posed(self._poses).write(self.overs.layer)
+
+    def note_poses(self, mesh: str, poses: Iterable[np.ndarray]) -> None:
+        self._poses.setdefault(mesh, []).append(pose_digest(poses))
 
 
 def _given(options: SlideOptions | LayerOptions) -> dict[str, Any]:
@@ -260,11 +268,13 @@ class _MeshBake(MeshMaking):
     def __init__(self, planned: PlannedMesh, report: MeshReport, baking: _Baking):
         self._mesh, self._patches, self._report, self._baking = planned.mesh, planned.slider.patches, report, baking
         self._slider, self._derived = planned.slider, Derived(planned.mesh, between=planned.between)
+        self._needed: dict[Usd.TimeCode, set[Usd.TimeCode]] = {}
         self.turns = self._derived.carries
         self._diagnostics = MeshDiagnostics(planned.mesh) if baking.options.diagnostics else None
 
     def times_needed(self, time: Usd.TimeCode) -> set[Usd.TimeCode]:
-        return self._derived.times_needed(time)
+        self._needed[time] = self._derived.times_needed(time)
+        return self._needed[time]
 
     def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], list[tuple[Primvar, Any]]]:
         told = self._diagnostics
@@ -273,6 +283,8 @@ class _MeshBake(MeshMaking):
     def take(self, time: Usd.TimeCode, frames: SlidFrames, made: list[tuple[Primvar, Any]]) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim
         self._check_limits(time, frame)
+        if not time.IsDefault():
+            self._baking.note_poses(self._mesh.path, (frames[at].cached for at in sorted(self._needed[time])))
         geometry, points = UsdGeom.PointBased(prim), Vt.Vec3fArray.FromNumpy(frame.slid)
         overs.set(geometry.GetPointsAttr(), points, time)
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)

@@ -6,7 +6,7 @@ Two bakes of which a digest differs do not belong into one shot.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
@@ -16,8 +16,9 @@ import numpy as np
 from pxr import Sdf, Tf, Usd
 
 from skinslide.problems import Fault, FrameProblem
+from skinslide.shot.derived import Derived
 from skinslide.shot.frames import Chunk
-from skinslide.shot.plan import Plan
+from skinslide.shot.plan import Plan, PlannedMesh
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.write.record import MeshRecord, Record
 
@@ -25,7 +26,7 @@ _BYTES = 8
 
 
 def record_of(plan: Plan, chunk: Chunk | None, options: dict[str, Any]) -> Record:
-    """The record of a layer with all that is planned."""
+    """The record of a layer with all that is planned, but for poses, which are known as they are slid."""
     meshes = {planned.mesh.path: MeshRecord(origins_of(planned.mesh), tuple(planned.frames)) for planned in plan.meshes}
     record = Record(meshes, options)
     if chunk:
@@ -38,24 +39,37 @@ def record_of(plan: Plan, chunk: Chunk | None, options: dict[str, Any]) -> Recor
     return replace(record, before=before, after=after)
 
 
-def is_whole(file: Path, record: Record) -> bool:
-    """Whether a file holds all that its record says, and that is the record."""
+def is_whole(file: Path, record: Record, plan: Plan) -> bool:
+    """Whether a file holds all that its record says, and that is the record of the plan, with the poses of today."""
     if not file.is_file():
         return False
     try:
         layer = Sdf.Layer.OpenAsAnonymous(str(file))
-        if Record.read(layer) != record:
-            return False
-    except (Tf.ErrorException, Fault):
+        found = Record.read(layer)
+        poses = {path: mesh.poses for path, mesh in found.meshes.items()}
+        same = record.posed(poses) == found and not found.lacking(layer)
+        return same and all(poses[each.mesh.path] == tuple(_poses_of(each)) for each in plan.meshes)
+    except (Tf.ErrorException, Fault, FrameProblem):
         return False
-    return not record.lacking(layer)
+
+
+def _poses_of(planned: PlannedMesh) -> Iterator[int]:
+    derived = Derived(planned.mesh, between=planned.between)
+    for frame in planned.frames:
+        needed = sorted(derived.times_needed(Usd.TimeCode(frame)))
+        yield pose_digest(planned.mesh.points_at(time) for time in needed)
+
+
+def pose_digest(poses: Iterable[np.ndarray]) -> int:
+    """Of all poses (V, 3) of the cache that the samples at a frame come of, in the order of their times."""
+    return int.from_bytes(bytes.fromhex(_digest(*poses)), "little", signed=True)
 
 
 def origins_of(mesh: PatchedMesh) -> dict[str, str]:
     """A digest of topology, of rest, of settings and paint at every time, and of three poses of the cache."""
     return {
         "topology": _digest(mesh.face_counts, mesh.face_indices, mesh.left_handed, mesh.subdivision),
-        "rest": _digest(mesh.rest_points, mesh.weld.vertices),
+        "rest": _digest(mesh.rest_points, mesh.weld.vertices, mesh.space),
         "setup": _digest(mesh.patches, *_animated(mesh)),
         "cache": _digest(mesh.points_times(), *_poses(mesh)),
     }

@@ -25,10 +25,12 @@ class MeshRecord:
 
     origins  a digest of each of: its topology, its rest, its set-up, its cache
     frames   that its points have samples at, ascending; none: they have a default
+    poses    a digest of the cache at each of them
     """
 
     origins: Mapping[str, str]
     frames: tuple[float, ...]
+    poses: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,11 @@ class Record:
         """That of a layer which is no part."""
         return replace(self, chunk="", wanted=())
 
+    def posed(self, poses: Mapping[str, Sequence[int]]) -> Record:
+        """With poses of meshes, by their paths; none of others."""
+        posed = {path: replace(mesh, poses=tuple(poses.get(path, ()))) for path, mesh in self.meshes.items()}
+        return replace(self, meshes=posed)
+
     def lacking(self, layer: Sdf.Layer) -> dict[str, list[float]]:
         """The meshes that a layer does not hold whole, each with the frames that it lacks; none of a default value."""
         found: dict[str, list[float]] = {}
@@ -71,7 +78,10 @@ class Record:
         return found
 
     def write(self, layer: Sdf.Layer) -> None:
-        meshes = {path: {**mesh.origins, "frames": _array(mesh.frames)} for path, mesh in self.meshes.items()}
+        meshes = {
+            path: {**mesh.origins, "frames": _array(mesh.frames), "poses": Vt.Int64Array(list(mesh.poses))}
+            for path, mesh in self.meshes.items()
+        }
         told: dict[str, Any] = {"form": _FORM, "version": self.version, "meshes": meshes, "options": dict(self.options)}
         told |= {name: at for name in ("before", "after") if (at := getattr(self, name)) is not None}
         if self.chunk:
@@ -107,7 +117,8 @@ def joined(records: Sequence[Record]) -> Record:
     for record in records:
         for path, mesh in record.meshes.items():
             known = meshes.get(path, mesh)
-            meshes[path] = replace(known, frames=tuple(sorted({*known.frames, *mesh.frames})))
+            poses = {**_posed(known), **_posed(mesh)}
+            meshes[path] = replace(known, frames=tuple(sorted(poses)), poses=tuple(poses[at] for at in sorted(poses)))
     common = [record.options for record in records]
     options = {name: value for name, value in common[0].items() if all(each.get(name) == value for each in common)}
     framed = [record for record in records if record.frames]
@@ -117,8 +128,14 @@ def joined(records: Sequence[Record]) -> Record:
 
 
 def _mesh(told: dict[str, Any]) -> MeshRecord:
-    frames = _frames(told.pop("frames"))
-    return MeshRecord(told, frames)
+    frames, poses = _frames(told.pop("frames")), tuple(map(int, told.pop("poses")))
+    if len(poses) != len(frames):
+        raise ValueError(poses)
+    return MeshRecord(told, frames, poses)
+
+
+def _posed(mesh: MeshRecord) -> dict[float, int]:
+    return dict(zip(mesh.frames, mesh.poses, strict=True))
 
 
 def _prim(path: str) -> str:
