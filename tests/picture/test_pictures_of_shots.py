@@ -15,6 +15,7 @@ from repository import EXAMPLES, load
 from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
 from skinslide.arrays.images import decode_exr
 from skinslide.command.cli import main
+from skinslide.picture.material import base_colour
 from stages import FRAMES, PATCH
 
 # ---- What is drawn ----
@@ -380,6 +381,22 @@ def test_textures_that_cannot_be_shown(file, message, tmp_path, capfd):
     assert main(["preview", path, "-o", str(tmp_path / "out"), "--view", "texture", "--size", "64x32"]) == 3
     said = capfd.readouterr().err
     assert f"error: {stages.MESH}: patch {PATCH}: " in said and message in said
+
+
+def test_a_material_of_many_ways_is_gone_through_once(tmp_path):
+    """Each of its shaders has two inputs, both of which the next feeds; the last has the texture."""
+    stage, mesh = sheet()
+    Image.fromarray(np.full((8, 8, 3), (255, 0, 0), np.uint8)).save(tmp_path / "skin.png")
+    textured(stage, mesh, tmp_path, "skin.png")
+    after, kind = UsdShade.Shader.Get(stage, "/World/look/texture"), Sdf.ValueTypeNames.Color3f
+    for number in range(40):
+        mix = UsdShade.Shader.Define(stage, f"/World/look/mix{number}")
+        for name in ("fg", "bg"):
+            mix.CreateInput(name, kind).ConnectToSource(after.GetOutput("rgb" if number == 0 else "out"))
+        mix.CreateOutput("out", kind)
+        after = mix
+    UsdShade.Shader.Get(stage, "/World/look/surface").GetInput("diffuseColor").ConnectToSource(after.GetOutput("out"))
+    assert base_colour(mesh.GetPrim())[1001].reshape(-1, 4).tolist() == [[255, 0, 0, 255]] * 64
 
 
 # ---- What the chequer follows ----

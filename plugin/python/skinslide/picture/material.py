@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections import deque
 from collections.abc import Iterator
 
 import numpy as np
@@ -15,7 +16,6 @@ from skinslide.stage.values import FIRST, layer_of
 
 _INPUTS = ("diffuseColor", "baseColor", "base_color")  # of UsdPreviewSurface, and of what others make of it
 _LARGEST = 2048  # texels along a side: a picture shows no more
-_DEEPEST = 16  # connections from a surface to its file
 
 
 def base_colour(prim: Usd.Prim) -> dict[int, np.ndarray]:
@@ -24,21 +24,26 @@ def base_colour(prim: Usd.Prim) -> dict[int, np.ndarray]:
     if not material:
         raise Fault("has no material, whose texture could be shown")
     surface = material.ComputeSurfaceSource()[0]
-    found = next((file for name in _INPUTS if surface for file in _files(surface.GetInput(name), _DEEPEST)), None)
+    found = next((file for name in _INPUTS if surface for file in _files(surface.GetInput(name))), None)
     if found is None:
         raise Fault(f"its material {material.GetPath()} has no texture of a base colour")
     return {number: _pixels(path) for number, path in _tiles(found)}
 
 
-def _files(input_: UsdShade.Input, deeper: int) -> Iterator[Usd.Attribute]:
+def _files(input_: UsdShade.Input) -> Iterator[Usd.Attribute]:
     """The attributes of files that feed an input, the nearest first."""
-    for attribute in UsdShade.Utils.GetValueProducingAttributes(input_) if input_ and deeper else ():
-        shader = UsdShade.Shader(attribute.GetPrim())
-        file = shader.GetInput("file") if shader else None
-        if file:
-            yield from UsdShade.Utils.GetValueProducingAttributes(file)
-        for other in shader.GetInputs() if shader and not file else ():
-            yield from _files(other, deeper - 1)
+    waiting, seen = deque([input_] if input_ else []), set[Sdf.Path]()
+    while waiting:
+        for attribute in UsdShade.Utils.GetValueProducingAttributes(waiting.popleft()):
+            shader = UsdShade.Shader(attribute.GetPrim())
+            if not shader or shader.GetPath() in seen:
+                continue
+            seen.add(shader.GetPath())
+            file = shader.GetInput("file")
+            if file:
+                yield from UsdShade.Utils.GetValueProducingAttributes(file)
+            else:
+                waiting.extend(shader.GetInputs())
 
 
 def _tiles(file: Usd.Attribute) -> list[tuple[int, str]]:
