@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ALWAYS_COLUMNS 12    /* a front of so few takes in any child */
+#define ALWAYS_COLUMNS 12   /* a front of so few takes in any child */
 #define OFTEN_COLUMNS  32   /* ... of so few, one with which it has ... */
-#define OFTEN_ZEROS    0.3 /* ... this share of zeros; and of more, with ... */
+#define OFTEN_ZEROS    0.3  /* ... this share of zeros; and of more, with ... */
 #define SELDOM_ZEROS   0.05 /* ... this */
 
 /* The elimination tree. A node is named by the last of its columns; what has been taken into another is none any more. */
