@@ -2,8 +2,9 @@
 # Sets up the machine and runs every test: format, lint, the C tests plain and sanitized, the Python tests.
 # Arguments go to pytest: ./tests/run.sh -k bake
 set -euo pipefail
-# The last four are what bpy, Blender as a Python module, is linked to.
-EXTRA_PACKAGES=(libcmocka-dev pkg-config chromium chromium-driver slurm-wlm munge libgl1 libsm6 libxi6 libxrender1 fonts-vlgothic)
+# The last six are what bpy, Blender as a Python module, is linked to.
+EXTRA_PACKAGES=(libcmocka-dev pkg-config chromium chromium-driver fonts-vlgothic slurm-wlm munge
+    libgl1 libsm6 libxfixes3 libxi6 libxkbcommon0 libxrender1)
 . "$(dirname "$0")/../examples/setup.sh"
 cd "$root"
 
