@@ -138,7 +138,7 @@ skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points
     if (!status) {
         fill(sheet, rest_points);
         ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, sheet->held};
-        status = ss_system_create(&net, patch->label, &sheet->system, error);
+        status = ss_block_system_create(&net, patch->label, &sheet->system, error);
     }
     if (status)
         ss_sheet_destroy(sheet);

@@ -14,7 +14,7 @@
 
 /* The elimination tree. A node is named by the last of its columns; what has been taken into another is none any more. */
 typedef struct tree {
-    int32_t n;
+    int32_t n, block;
     int32_t *parent;       /* [n] -1 of a root */
     int32_t *below;        /* [n] rows below its columns */
     int32_t *count;        /* [n] columns */
@@ -75,8 +75,9 @@ static double zeros_together(const tree *t, int32_t child, int32_t parent) {
 
 static bool is_worth(const tree *t, int32_t child, int32_t parent) {
     int32_t columns = t->count[child] + t->count[parent];
-    double most = columns <= OFTEN_COLUMNS ? OFTEN_ZEROS : SELDOM_ZEROS;
-    return columns <= ALWAYS_COLUMNS || zeros_together(t, child, parent) <= most * entries_of(columns, t->below[parent]);
+    double most = (t->block * columns <= OFTEN_COLUMNS ? OFTEN_ZEROS : SELDOM_ZEROS) / t->block;
+    return t->block * columns <= ALWAYS_COLUMNS ||
+           zeros_together(t, child, parent) <= most * entries_of(columns, t->below[parent]);
 }
 
 /* Puts a list of children before that of a node. */
@@ -261,6 +262,7 @@ skinslide_status ss_find_fronts(ss_system *system, ss_graph *graph, skinslide_er
         ss_free(&scratch);
         return ss_out_of_memory(error);
     }
+    t.block = system->block;
     find_tree(graph, &t);
     number_columns(&t, system, place);
     int64_t rows = 0;

@@ -37,6 +37,7 @@ typedef struct ss_system {
     ss_memory memory;
     char label[160];
     int32_t vertex_count, edge_count, n; /* n unknowns */
+    int32_t block;                       /* rows of an entry that the fronts are for: 1 or 2 */
     int32_t (*edge_vertex)[2];
     int32_t *unknown; /* [vertex_count] place in the ordered system, -1 where fixed */
     int32_t front_count;
@@ -47,6 +48,8 @@ typedef struct ss_system {
 } ss_system;
 
 skinslide_status ss_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error);
+/* The same for ss_blocks, for which fewer zeros in fronts pay. */
+skinslide_status ss_block_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error);
 void ss_system_destroy(ss_system *system);
 
 /* The unknowns that share an entry with each. */

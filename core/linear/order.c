@@ -108,11 +108,11 @@ static void copy_net(ss_system *system, const ss_net *net) {
         system->unknown[v] = net->fixed[v] ? -1 : system->n++;
 }
 
-skinslide_status ss_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error) {
+static skinslide_status create(const ss_net *net, int32_t block, const char *label, ss_system **out, skinslide_error *error) {
     ss_system *system = calloc(1, sizeof *system);
     if (!system)
         return ss_out_of_memory(error);
-    system->vertex_count = net->vertex_count, system->edge_count = net->edge_count;
+    system->vertex_count = net->vertex_count, system->edge_count = net->edge_count, system->block = block;
     for (size_t i = 0; i + 1 < sizeof system->label && label[i]; i++)
         system->label[i] = label[i];
     system->edge_vertex = ss_new(&system->memory, net->edge_count, sizeof *system->edge_vertex);
@@ -127,6 +127,14 @@ skinslide_status ss_system_create(const ss_net *net, const char *label, ss_syste
     else
         *out = system;
     return status;
+}
+
+skinslide_status ss_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error) {
+    return create(net, 1, label, out, error);
+}
+
+skinslide_status ss_block_system_create(const ss_net *net, const char *label, ss_system **out, skinslide_error *error) {
+    return create(net, 2, label, out, error);
 }
 
 void ss_system_destroy(ss_system *system) {
