@@ -15,7 +15,7 @@ class Canvases:
 
     def __init__(self, make: Callable[[], Canvas], at_once: int):
         """at_once: how many may be. Raises UsageError where there is no EGL, or where it has no such size."""
-        self._make, self._lock, self._room = make, threading.Lock(), threading.Semaphore(max(1, at_once))
+        self._make, self._lock, self._room = make, threading.Lock(), threading.Semaphore(at_once)
         try:
             self._idle = [make()]
         except SliderError as error:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
 from dataclasses import asdict, dataclass, field, replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
@@ -14,8 +16,9 @@ from pxr import Usd
 
 from skinslide.arrays.canvas import Canvas
 from skinslide.arrays.slider import Slider
-from skinslide.picture import lettering
+from skinslide.picture import encoding
 from skinslide.picture.canvases import Canvases
+from skinslide.picture.encoders import Encoders
 from skinslide.picture.page import Strip, compressed
 from skinslide.picture.series import Column, Moment, Series, Skin
 from skinslide.picture.settings import settings_of
@@ -25,6 +28,7 @@ from skinslide.shot.options import PictureOptions
 from skinslide.shot.plan import PlannedMesh, frame_of
 from skinslide.shot.products import MeshMaking, SlidFrame, SlidFrames
 from skinslide.shot.report import MeshReport
+from skinslide.shot.workers import core_named
 from skinslide.write.folder import OutputFolder
 
 _ON_A_SHEET = 12  # pictures of each series
@@ -75,6 +79,7 @@ class Easel(NamedTuple):
 
     options: PictureOptions
     canvases: Canvases
+    encoders: Encoders
     folder: OutputFolder | None
     page: Path | None  # where there will be one
     drawn: DrawnPictures
@@ -186,21 +191,24 @@ class MeshPictures(MeshMaking):
             for number in range(self.picture_count):
                 yield self._path(folder, number, time)
 
-    def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], list[_Encoded]]:
+    def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], list[Future[_Encoded]]]:
         moments = [series.moment(time) for series in self._series]
 
-        def work(frame: SlidFrame) -> list[_Encoded]:
+        def work(frame: SlidFrame) -> list[Future[_Encoded]]:
             slid = {rule: frame.by(slider) for rule, slider in zip(self._rules, self.sliders, strict=True)}
             with self._easel.canvases.taken() as canvas:
                 drawn = self._draw(canvas, moments, frame, slid or {"after": frame})
-                return [self._encode(each, time in self._on_sheet) for each in drawn]
+                works = (partial(self._encode, each, time in self._on_sheet) for each in drawn)
+                return [self._easel.encoders.encode(each) for each in works]
 
         return work
 
-    def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: list[_Encoded]) -> None:
+    def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: list[Future[_Encoded]]) -> None:
         """Writes the files; keeps what sheet and page want."""
         self._easel.drawn.pictures += len(made)
-        for number, picture in enumerate(made):
+        for number, encoded in enumerate(made):
+            with core_named(self._mesh, time):
+                picture = encoded.result()
             if picture.thumbnail:
                 self.thumbnails[number].append(picture.thumbnail)
             if picture.small:
@@ -241,10 +249,10 @@ class MeshPictures(MeshMaking):
         return Column(title, points, measured.stretch_after, measure, measured.force_density, ways)
 
     def _encode(self, pixels: np.ndarray, on_sheet: bool) -> _Encoded:
-        files = self._easel.folder is not None
-        file = lettering.as_file(pixels, self._options.form) if files else None
-        thumbnail = lettering.thumbnail(pixels) if files and on_sheet else None
-        small = compressed(lettering.displayed(pixels), self._easel.budget.of_each) if self._easel.page else None
+        kept, shown = self._easel.folder is not None, cache(lambda: encoding.displayed(pixels))
+        file = (encoding.exr(pixels) if self._options.form == "exr" else encoding.png(shown())) if kept else None
+        thumbnail = encoding.thumbnail(shown()) if kept and on_sheet else None
+        small = compressed(shown(), self._easel.budget.of_each) if self._easel.page else None
         return _Encoded(file, thumbnail, small)
 
     def strips(self) -> Iterator[Strip]:

@@ -1,4 +1,4 @@
-"""What stands on a picture beside the skin: titles, the scale of its colours; contact sheets; and files of pictures."""
+"""What stands on a picture beside the skin: titles, the scale of its colours; and contact sheets."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ import io
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from skinslide.arrays.canvas import Viewport, false_colour
-from skinslide.arrays.images import encode_exr
+from skinslide.picture.encoding import png, srgb
 
 BACKGROUND = (0.045, 0.045, 0.052)  # linear light
 
@@ -100,7 +99,7 @@ def write_scale(pixels: np.ndarray, title: str, ticks: tuple[str, str, str], pla
     card = Image.new("RGBA", (wide + 4 * pad, round(font.size * 3.2) + tall), _SHADE)
     draw = ImageDraw.Draw(card)
     for x in range(wide):
-        colour = tuple(_encoded(np.array(false_colour(x / (wide - 1)))).tolist())
+        colour = tuple(srgb(np.array(false_colour(x / (wide - 1)))).tolist())
         draw.line([(2 * pad + x, 2 * pad), (2 * pad + x, 2 * pad + tall)], (*colour, 255))
     for share, anchor, tick in zip((0.0, 0.5, 1.0), ("la", "ma", "ra"), ticks, strict=True):
         draw.text((2 * pad + share * wide, 2.3 * pad + tall), tick, _TEXT, font, anchor=anchor)
@@ -120,50 +119,13 @@ def _lay(pixels: np.ndarray, card: np.ndarray, place: Viewport, top: int) -> Non
         part[...] = part * (1 - alpha) + _decoded(card[..., :3]) * alpha
 
 
-def _encoded(light: np.ndarray) -> np.ndarray:
-    """Bytes, in sRGB, of linear light."""
-    light = np.clip(light, 0, 1)
-    encoded = np.where(light < 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
-    return np.rint(255 * encoded).astype(np.uint8)
-
-
 def _decoded(encoded: np.ndarray) -> np.ndarray:
     share = encoded / 255
     return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4).astype(np.float32)
 
 
-# ---- Files ----
-
-
-def as_file(pixels: np.ndarray, form: str) -> bytes:
-    """A picture (height, width, 4) as the bytes of a file: png of uint8, exr of float32."""
-    if form == "exr":
-        return encode_exr({name: np.ascontiguousarray(pixels[..., k]) for k, name in enumerate("RGB")})
-    return _as_bytes(Image.fromarray(displayed(pixels)), "PNG", compress_level=1)
-
-
-def displayed(pixels: np.ndarray) -> np.ndarray:
-    """A picture in sRGB, uint8 (height, width, 3)."""
-    return np.ascontiguousarray(pixels[..., :3] if pixels.dtype == np.uint8 else _encoded(pixels[..., :3]))
-
-
-def thumbnail(pixels: np.ndarray) -> bytes:
-    """A picture for a contact sheet, as a PNG file: of many patches there are thousands."""
-    image = Image.fromarray(displayed(pixels))
-    height = max(1, round(image.height * _THUMBNAIL / image.width))
-    small = image.resize((_THUMBNAIL, height), Image.Resampling.BOX) if image.width > _THUMBNAIL else image
-    return _as_bytes(small, "PNG", compress_level=1)
-
-
-def _as_bytes(image: Image.Image, form: str, **options: Any) -> bytes:
-    file = io.BytesIO()
-    image.save(file, form, **options)
-    return file.getvalue()
-
-
 # ---- Contact sheets ----
 
-_THUMBNAIL = 480  # pixels wide
 _TALLEST = 16384  # pixels of a sheet
 _IN_A_ROW, _MARGIN = 4, 12
 
@@ -188,7 +150,7 @@ def _sheet(rows: Sequence[Sequence[bytes]]) -> bytes:
                 sheet.paste(image, (left, top))
                 left += image.width + _MARGIN
         top += height
-    return _as_bytes(sheet, "PNG")
+    return png(np.asarray(sheet))
 
 
 def _size(file: bytes) -> tuple[int, int]:

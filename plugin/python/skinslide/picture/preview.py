@@ -2,7 +2,8 @@
 
 for each piece of a patch: a series            its triangles, its camera, its chequer
 for each time: cameras                         read on the loop's thread
-    for each series and view: draw, write titles, encode        on a thread of the pool, on a canvas of its own
+    for each series and view: draw, write titles                on a thread of the pool, on a canvas of its own
+        encode                                 on a thread of the encoders, while the next is drawn
     put the pictures in place                  on the loop's thread
 """
 
@@ -24,6 +25,7 @@ from skinslide.arrays.native import Lookup
 from skinslide.arrays.slider import choose_lookup, version
 from skinslide.picture.canvases import Canvases
 from skinslide.picture.drawing import Budget, DrawnPictures, Easel, MeshPictures
+from skinslide.picture.encoders import Encoders
 from skinslide.picture.lettering import contact_sheets
 from skinslide.picture.page import bytes_of_each, page
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
@@ -166,7 +168,12 @@ def _check_clock(stage: Usd.Stage) -> None:
 def _canvases(options: PictureOptions, lookup: Lookup) -> Canvases:
     width, height = options.size
     pixels = "floats" if options.form == "exr" else "bytes"
-    return Canvases(lambda: Canvas(width, height, pixels, lookup.device), _MOST_PIXELS // (width * height))
+    return Canvases(lambda: Canvas(width, height, pixels, lookup.device), _most_at_once(options))
+
+
+def _most_at_once(options: PictureOptions) -> int:
+    width, height = options.size
+    return max(1, _MOST_PIXELS // (width * height))
 
 
 class _Previewing(Making):
@@ -177,7 +184,9 @@ class _Previewing(Making):
         self._stage, self._options, self._folder = stage, options, folder
         self._page = None if asked.html is None else Path(asked.html)
         self._drawn = DrawnPictures()
-        self._easel = Easel(asked, _canvases(asked, options.lookup), folder, self._page, self._drawn, Budget())
+        canvases = _canvases(asked, options.lookup)  # of a size that can be
+        encoders = Encoders(options.jobs, min(options.jobs + 1, _most_at_once(asked)))
+        self._easel = Easel(asked, canvases, encoders, folder, self._page, self._drawn, Budget())
         self._meshes: list[MeshPictures] = []
 
     def of_mesh(self, planned: PlannedMesh, report: MeshReport) -> MeshMaking | None:
@@ -201,7 +210,8 @@ class _Previewing(Making):
         report.made.append(self._drawn)
         self._easel.budget.of_each = bytes_of_each(sum(mesh.total for mesh in self._meshes))
         start = time.monotonic()
-        yield
+        with self._easel.encoders.running():
+            yield
         self._drawn.seconds = time.monotonic() - start
         self._write_sheets()
         self._write_page(report)

@@ -73,9 +73,14 @@ def _submit(time: Usd.TimeCode, read: Callable[[Usd.TimeCode], Callable[[], T]],
         failed: Future[T] = Future()
         failed.set_exception(problem)
         return failed
+    return submitted(pool, work)
+
+
+def submitted(pool: ThreadPoolExecutor, work: Callable[[], T]) -> Future[T]:
+    """Raises StageError where the machine gives no more threads."""
     try:
         return pool.submit(work)
-    except RuntimeError as error:  # the machine gives no more threads
+    except RuntimeError as error:
         raise StageError(f"{error}; ask for fewer jobs") from error
 
 
