@@ -149,6 +149,8 @@ def show(thing: bpy.types.Object, slid: Slid) -> None:
         if len(mesh.vertices) != len(slid.points):
             _copy_mesh(thing, own.slid)
             mesh = own.slid.data
+        if len(mesh.vertices) != len(slid.points):  # edited meanwhile; it is slid anew
+            return
         mesh.vertices.foreach_set("co", np.ascontiguousarray(slid.points).ravel())
         share = np.clip(slid.stretch / own.most_stretch, 0, 1)
         colours = shades()[np.rint(share * (SHADES - 1)).astype(np.int64)]

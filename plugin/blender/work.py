@@ -53,9 +53,11 @@ def in_object_mode(context: bpy.types.Context) -> Any:
             bpy.ops.object.mode_set(mode=mode)
 
 
-def _active(context: bpy.types.Context) -> str:
-    """The name of the active object, which outlives it."""
-    return context.active_object.name if context.active_object else ""
+def _active(context: bpy.types.Context) -> tuple[str, tuple[int, ...]]:
+    """The name of the active object, which outlives it, and how many vertices, edges and faces it has."""
+    thing = context.active_object
+    mesh = thing.data if thing and thing.type == "MESH" else None
+    return thing.name if thing else "", (len(mesh.vertices), len(mesh.edges), len(mesh.polygons)) if mesh else ()
 
 
 class Waiting(bpy.types.Operator):
@@ -99,16 +101,22 @@ class Waiting(bpy.types.Operator):
         work = self._fetched(context)
         if not work:
             return self._written(context, None)
-        self._future, self._begun_on = start(work), _active(context)
+        with in_object_mode(context):
+            self._begun_on = _active(context)
+        self._future = start(work)
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def _ended(self, context: bpy.types.Context) -> set[str]:
         found = self._future.result()
-        if _active(context) != self._begun_on:
-            raise Fault(f"{self._begun_on} is no longer the active object; nothing was changed")
-        return self._written(context, found)
+        name, counts = self._begun_on
+        with in_object_mode(context):
+            if _active(context)[0] != name:
+                raise Fault(f"{name} is no longer the active object; nothing was changed")
+            if _active(context)[1] != counts:
+                raise Fault(f"{name} has other vertices or faces than it had; nothing was changed")
+            return self._written(context, found)
 
     def _written(self, context: bpy.types.Context, found: Any) -> set[str]:
         with in_object_mode(context):

@@ -206,3 +206,17 @@ def test_another_object_is_not_written_to(scene, monkeypatch):
     assert ended(operator, window) == {"CANCELLED"}
     assert operator.reports == [({"ERROR"}, f"{first.name} is no longer the active object; nothing was changed")]
     assert not operator.written and not window.timers
+
+
+def test_a_mesh_edited_meanwhile_is_not_written_to(scene, monkeypatch):
+    monkeypatch.setattr(work, "interactive", lambda: True)
+    window, thing = Window(), sheet()
+    window.active_object = thing
+    operator = Operator(lambda: "found")
+    assert operator.execute(window) == {"RUNNING_MODAL"}
+    thing.data.vertices.add(1)
+    assert ended(operator, window) == {"CANCELLED"}
+    assert operator.reports == [
+        ({"ERROR"}, f"{thing.name} has other vertices or faces than it had; nothing was changed")
+    ]
+    assert not operator.written and not window.timers
