@@ -25,13 +25,16 @@ def test_attacks(ground, kind):
     assert KINDS[kind](Attack(ground, "short", random.Random(f"{SEED} {kind}"))) == []
 
 
+# Frame after frame, so that there are as many allocations each time.
+ALONE = Command((*COMMANDS[0].words, "--jobs", "1"), COMMANDS[0].outputs)
+
 # Each with the command, and the call that fails: its kind, its number (below 0: from the last) and errno, or a signal
 # below 0.
 FOUND = {
     "USD's own file beside ours": (COMMANDS[1], ("rename", 2, errno.ENOSPC)),
     "a job that is beside its layer": (COMMANDS[-1], ("rename", 1, -signal.SIGTERM)),
     "a manifest that is beside its clips": (COMMANDS[-2], ("rename", -1, -signal.SIGTERM)),
-    "roughness of the last frame but one": (COMMANDS[0], ("ours", -5, errno.ENOMEM)),
+    **{f"roughness, {-number} before the last": (ALONE, ("ours", number, errno.ENOMEM)) for number in range(-8, 0)},
 }
 
 
