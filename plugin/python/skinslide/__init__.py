@@ -160,12 +160,12 @@ _HOMES = {
     "shot.cache": ("CachedMesh", "CacheReport", "cache"),
     "shot.candidates": ("Candidate",),
     "shot.check": (
-        "CheckReport",
         "CheckedLookup",
         "CheckedMap",
         "CheckedMesh",
         "CheckedPatch",
         "CheckedShare",
+        "CheckReport",
         "check",
     ),
     "shot.frames": ("parse_frames",),
