@@ -70,6 +70,10 @@ echo
 
 say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"
 "$python" examples/measure/table.py "$out"
+
+say "The character: jump of its normals at a tiny slide (0), degrees across its seams, as in the cache; points off the surface (0)"
+head -n 2 "$out/normals.txt"
+cat "$out/surface.txt"
 cat <<SUMMARY
 
 Look at these in $out:
