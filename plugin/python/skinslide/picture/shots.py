@@ -138,7 +138,9 @@ def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
     if not shots:
         raise UsageError(f"{top}: there is no record in it or below, such as bake --json prints")
     total = sum(len(shot.patches) for shot in shots)
-    text = render("shots.html", shots=shots, top=top.resolve().name or str(top), total=total, worst_first=_worst_first)
+    text = render(
+        "shots.html", shots=shots, title=top.resolve().name or str(top), total=total, worst_first=_worst_first
+    )
     with replacing(page) as partial, writing(page):
         partial.write_text(text, "utf-8")
     return ShotsReport(str(page), shots)
