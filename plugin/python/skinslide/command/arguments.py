@@ -148,6 +148,12 @@ def _add_json(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_output(
+    command: argparse.ArgumentParser, metavar: str, help_: str, *, dest: str = "output", required: bool = True
+) -> None:
+    command.add_argument("-o", "--output", dest=dest, required=required, metavar=metavar, help=help_)
+
+
 def _add_page(command: argparse._ActionsContainer) -> None:
     command.add_argument(
         "--html",
@@ -159,12 +165,10 @@ def _add_page(command: argparse._ActionsContainer) -> None:
 
 def _add_bake(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    command.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        metavar="OUT",
-        help="layer of overs to write, to be sublayered above the cache: .usda, .usdc or .usd. "
+    _add_output(
+        command,
+        "OUT",
+        "layer of overs to write, to be sublayered above the cache: .usda, .usdc or .usd. "
         "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was; one killed outright "
         "leaves partial files beside it, which the next bake of OUT removes when they are a day old",
     )
@@ -191,14 +195,14 @@ def _add_check(command: argparse.ArgumentParser) -> None:
 
 def _add_preview(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    command.add_argument(
-        "-o",
-        "--output",
-        dest="folder",
-        metavar="DIR",
-        help="folder for MESH.PATCH.VIEW.FRAME.png (MESH.PATCH.PIECE.VIEW.FRAME.png where a patch falls into pieces) "
+    _add_output(
+        command,
+        "DIR",
+        "folder for MESH.PATCH.VIEW.FRAME.png (MESH.PATCH.PIECE.VIEW.FRAME.png where a patch falls into pieces) "
         "and contact_sheet.png (with --frames contact_sheet.FIRST-LAST.png), made where it is missing; each file is "
         "replaced in one step. This, --html, or both",
+        dest="folder",
+        required=False,
     )
     _add_page(command)
     _add_options(command, SlideOptions)
@@ -208,16 +212,14 @@ def _add_preview(command: argparse.ArgumentParser) -> None:
 
 def _add_maps(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    command.add_argument(
-        "-o",
-        "--output",
-        dest="folder",
-        required=True,
-        metavar="DIR",
-        help="folder for the maps, made where it is missing: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where "
+    _add_output(
+        command,
+        "DIR",
+        "folder for the maps, made where it is missing: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where "
         "faces reach beyond the first tile of a UDIM. KIND is stretchBefore and stretchAfter (the RMS of log(length / "
         "rest length) over the edges at a point), slide (distance, in the mesh's units) and forceDensity (as painted). "
         "One channel, Y. A map is replaced in one step, so one that fails or is killed leaves it as it was",
+        dest="folder",
     )
     _add_options(command, SlideOptions)
     _add_options(command, MapOptions, "patches", "st", "strain")
@@ -229,12 +231,10 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
 def _add_layer(command: argparse.ArgumentParser) -> None:
     """What the commands that write a set-up have."""
     _add_stage(command)
-    command.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        metavar="X.skinslide",
-        help="layer to write: .skinslide, .usda, .usdc or .usd. It sublayers STAGE by a relative path. "
+    _add_output(
+        command,
+        "X.skinslide",
+        "layer to write: .skinslide, .usda, .usdc or .usd. It sublayers STAGE by a relative path. "
         "If it exists and sublayers STAGE this is written into it, and it keeps everything else but comments in its "
         "text; any other existing file is an error",
     )
@@ -350,12 +350,10 @@ def _add_mirror(command: argparse.ArgumentParser) -> None:
 
 def _add_cache(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    command.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        metavar="OUT",
-        help="layer of overs to write, .usda, .usdc or .usd, to be sublayered above the character, whose meshes are "
+    _add_output(
+        command,
+        "OUT",
+        "layer of overs to write, .usda, .usdc or .usd, to be sublayered above the character, whose meshes are "
         "then skinned no more; replaced in one step at the end. Live layers slide it",
     )
     _add_options(command, SlideOptions, "prims", "frames")
@@ -364,12 +362,10 @@ def _add_cache(command: argparse.ArgumentParser) -> None:
 
 def _add_stitch(command: argparse.ArgumentParser) -> None:
     command.add_argument("chunks", nargs="+", metavar="CHUNK", help="layers that bake wrote, each with other --frames")
-    command.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        metavar="OUT",
-        help="layer of overs to write, with all that one bake of all the frames has; replaced in one step at the end",
+    _add_output(
+        command,
+        "OUT",
+        "layer of overs to write, with all that one bake of all the frames has; replaced in one step at the end",
     )
     command.add_argument(
         "--frames",
@@ -387,12 +383,10 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
 
 def _add_farm(command: argparse.ArgumentParser) -> None:
     _add_stage(command)
-    command.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        metavar="OUT",
-        help="the layer that the job is to make, .usda, .usdc or .usd, beside which the job is written, "
+    _add_output(
+        command,
+        "OUT",
+        "the layer that the job is to make, .usda, .usdc or .usd, beside which the job is written, "
         "OUT.openjd.json or OUT.slurm.sh; or the job, .json, .yaml or .sh, whose layer then has its name",
     )
     _add_options(command, FarmOptions)
@@ -410,7 +404,7 @@ def _add_report(command: argparse.ArgumentParser) -> None:
         help="a folder with what bake --json or preview --json printed of each shot, in it or below, in files that end "
         "in .json. A page of pictures beside one, of its name or called report.html, is led to",
     )
-    command.add_argument("-o", "--output", metavar="FILE", help="the page, .html (default: DIR/shots.html)")
+    _add_output(command, "FILE", "the page, .html (default: DIR/shots.html)", required=False)
     _add_printing(command)
 
 
