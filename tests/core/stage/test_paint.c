@@ -11,15 +11,9 @@ static skinslide_error error;
 #define DENSITY "primvars:skinSlide:elbow:forceDensity"
 enum { VERTICES = 6, CORNERS = 8 };
 
-typedef struct scene {
-    test_mesh grid; /* 2 x 1 quads: corners 0 1 4 3 and 1 2 5 4 */
-    skinslide_stage_mesh *mesh;
-    skinslide_stage_patch *patch;
-    skinslide_stage_controls *controls;
-} scene;
-
-static scene set_up(const char *name, const char *channel, bool fold) {
-    scene s = {quad_grid(2, 1), NULL, NULL, NULL};
+/* 2 x 1 quads: corners 0 1 4 3 and 1 2 5 4. */
+static patch_scene set_up(const char *name, const char *channel, bool fold) {
+    patch_scene s = {quad_grid(2, 1), NULL, NULL, NULL};
     s.mesh = scene_mesh(&s.grid);
     assert_ok(mesh_takes(s.mesh, "foldCase", single_of("fold", SKINSLIDE_VALUE_BOOL, &(uint8_t){fold}), &error), &error);
     assert_ok(skinslide_stage_patch_create(s.mesh, name, NULL, &s.patch, &error), &error);
@@ -29,21 +23,14 @@ static scene set_up(const char *name, const char *channel, bool fold) {
     return s;
 }
 
-static void tear_down(scene *s) {
-    skinslide_stage_controls_destroy(s->controls);
-    skinslide_stage_patch_destroy(s->patch);
-    skinslide_stage_mesh_destroy(s->mesh);
-    free_mesh(&s->grid);
-}
-
-static const float *weight(scene *s, skinslide_value value) {
+static const float *weight(patch_scene *s, skinslide_value value) {
     skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_ok(controls_take(s->controls, "weight", value, &error), &error);
     assert_ok(skinslide_stage_controls_get(s->controls, &out, &error), &error);
     return out.weight;
 }
 
-static void refuses(scene *s, skinslide_value value, const char *text) {
+static void refuses(patch_scene *s, skinslide_value value, const char *text) {
     assert_fails(controls_take(s->controls, "weight", value, &error), &error, SKINSLIDE_BAD_CONTROL, text);
 }
 
@@ -51,7 +38,7 @@ static void refuses(scene *s, skinslide_value value, const char *text) {
 
 /* ---- Names ---- */
 
-static int32_t found(const scene *s, const char *input, const char *const *names, int32_t count) {
+static int32_t found(const patch_scene *s, const char *input, const char *const *names, int32_t count) {
     skinslide_stage_group group = strcmp(input, "patch") == 0 ? SKINSLIDE_STAGE_PATCH : SKINSLIDE_STAGE_CONTROLS;
     return skinslide_stage_patch_property(s->patch, input_of(group, NULL, input), names, count);
 }
@@ -62,7 +49,7 @@ static void names_as_tools_leave_them(void **state) {
                                         "primvars:skinslide_left_elbow_hold",        "skinSlide_left_elbow_maxDistance",
                                         "primvars_skinSlide_left_elbow_maxDistance", "primvars:skinSlide_left_elbow_patch",
                                         "primvars:skinSlide_left_elbow_envelope",    NULL};
-    scene s = set_up("left:elbow", "none", false);
+    patch_scene s = set_up("left:elbow", "none", false);
     assert_int_equal(found(&s, "weight", names, 8), 0);
     assert_int_equal(found(&s, "patch", names, 8), 5);
     assert_int_equal(found(&s, "hold", names, 8), -1);
@@ -70,7 +57,7 @@ static void names_as_tools_leave_them(void **state) {
     assert_int_equal(found(&s, "envelope", names, 8), -1); /* no paint */
     assert_int_equal(found(&s, "weight", NULL, 0), -1);
     assert_int_equal(skinslide_stage_patch_property(NULL, NULL, names, 8), -1);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* The schema's own name is the best, then that with underscores, then another case; of two that are as good the first by letters,
@@ -79,14 +66,14 @@ static void the_best_name_counts(void **state) {
     (void)state;
     static const char *const names[] = {"primvars:skinslide:elbow:WEIGHT", "primvars:SKINSLIDE_elbow_weight",
                                         "primvars:skinSlide_elbow_weight", "primvars:skinSlide:elbow_weight", WEIGHT};
-    scene folds = set_up("elbow", "none", true), keeps = set_up("elbow", "none", false);
+    patch_scene folds = set_up("elbow", "none", true), keeps = set_up("elbow", "none", false);
     assert_int_equal(found(&folds, "weight", names, 5), 4);
     assert_int_equal(found(&folds, "weight", names, 4), 3);
     assert_int_equal(found(&folds, "weight", names, 3), 2);
     assert_int_equal(found(&folds, "weight", names, 2), 1);
     assert_int_equal(found(&folds, "weight", names, 1), 0);
     assert_int_equal(found(&keeps, "weight", names, 2), -1);
-    tear_down(&folds), tear_down(&keeps);
+    end_scene(&folds), end_scene(&keeps);
 }
 
 /* ---- Types ---- */
@@ -95,25 +82,25 @@ static void halves_and_doubles(void **state) {
     (void)state;
     const uint16_t halves[VERTICES] = {0, 0x3800, 0x3C00, 0x3400, 0, 0x3C00}; /* 0, 1/2, 1, 1/4, 0, 1 */
     const double doubles[VERTICES] = {0.1, 0.5, 1, 0.25, 0, 1.0 / 3};
-    scene s = set_up("elbow", "none", false);
+    patch_scene s = set_up("elbow", "none", false);
     EXPECT_FLOATS(weight(&s, painted_as(array_of(WEIGHT, SKINSLIDE_VALUE_HALF, 1, VERTICES, halves), "vertex")), 0, 0.5f, 1,
                   0.25f, 0, 1);
     EXPECT_FLOATS(weight(&s, painted_as(array_of(WEIGHT, SKINSLIDE_VALUE_DOUBLE, 1, VERTICES, doubles), "varying")), 0.1f, 0.5f,
                   1, 0.25f, 0, 1.0f / 3);
     EXPECT_FLOATS(weight(&s, single_of(WEIGHT, SKINSLIDE_VALUE_DOUBLE, doubles)), 0.1f, 0.1f, 0.1f, 0.1f, 0.1f, 0.1f);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* A double may be no float. */
 static void doubles_beyond_floats(void **state) {
     (void)state;
     const double large[VERTICES] = {0, 1e300}, small = 1e-300;
-    scene s = set_up("elbow", "none", false);
+    patch_scene s = set_up("elbow", "none", false);
     refuses(&s, painted_as(array_of(WEIGHT, SKINSLIDE_VALUE_DOUBLE, 1, VERTICES, large), "vertex"),
             WEIGHT "[1] is 1e+300; it must be a number");
     assert_fails(controls_take(s.controls, "forceDensity", single_of(DENSITY, SKINSLIDE_VALUE_DOUBLE, &small), &error), &error,
                  SKINSLIDE_BAD_CONTROL, DENSITY "[0] is 1e-300; it must be finite and above 0");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static skinslide_value colours(int32_t width, const char *type_name, int64_t count, const float *numbers) {
@@ -126,8 +113,8 @@ static void a_channel_of_colours(void **state) {
     (void)state;
     const float numbers[2 * VERTICES] = {0, 0.1f, 1, 0.2f, 2, 0.3f, 3, 0.4f, 4, 0.5f, 5, 0.6f};
     const skinslide_value indices = INTS(WEIGHT ":indices", 1, 0, 0, 0, 0, 2);
-    scene red = set_up("elbow", "r", false), green = set_up("elbow", "g", false), blue = set_up("elbow", "b", false),
-          none = set_up("elbow", "none", false);
+    patch_scene red = set_up("elbow", "r", false), green = set_up("elbow", "g", false), blue = set_up("elbow", "b", false),
+                none = set_up("elbow", "none", false);
     const skinslide_value pairs = colours(2, "float2[]", VERTICES, numbers);
     EXPECT_FLOATS(weight(&red, pairs), 0, 1, 2, 3, 4, 5);
     EXPECT_FLOATS(weight(&green, pairs), 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f);
@@ -137,7 +124,7 @@ static void a_channel_of_colours(void **state) {
     refuses(&blue, pairs, WEIGHT " is float2[], which has no channel b; skinSlide:elbow:paintChannel names it");
     refuses(&none, pairs,
             WEIGHT " is float2[]; it must be float[], or skinSlide:elbow:paintChannel must name the channel that counts");
-    tear_down(&red), tear_down(&green), tear_down(&blue), tear_down(&none);
+    end_scene(&red), end_scene(&green), end_scene(&blue), end_scene(&none);
 }
 
 /* ---- Face corners ---- */
@@ -154,18 +141,18 @@ static void corners_are_averaged(void **state) {
     (void)state;
     const float numbers[2] = {0.25f, 0.75f};
     const skinslide_value indices = INTS(WEIGHT ":indices", 0, 0, 0, 0, 1, 1, 1, 1);
-    scene s = set_up("elbow", "none", false);
+    patch_scene s = set_up("elbow", "none", false);
     EXPECT_FLOATS(weight(&s, corners(0.25f, 0.75f)), 0.25f, 0.5f, 0.75f, 0.25f, 0.5f, 0.75f);
     skinslide_value indexed = painted_as(array_of(WEIGHT, SKINSLIDE_VALUE_FLOAT, 1, 2, numbers), "faceVarying");
     EXPECT_FLOATS(weight(&s, indexed_by(indexed, &indices)), 0.25f, 0.5f, 0.75f, 0.25f, 0.5f, 0.75f);
     refuses(&s, corners(1, NAN), WEIGHT "[1] is nan; it must be a number");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* A point with a corner that was chosen is. */
 static void faces_by_corner(void **state) {
     (void)state;
-    scene s = set_up("elbow", "none", false);
+    patch_scene s = set_up("elbow", "none", false);
     skinslide_value value = corners(0, 1);
     int32_t count = 0;
     value.name = FACES;
@@ -173,12 +160,12 @@ static void faces_by_corner(void **state) {
     const int32_t *faces = skinslide_stage_patch_faces(s.patch, &count);
     assert_int_equal(count, 1);
     assert_int_equal(faces[0], 1);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* ---- What is said ---- */
 
-static void expect_said(const scene *s, const char *input, skinslide_value value, const char *text) {
+static void expect_said(const patch_scene *s, const char *input, skinslide_value value, const char *text) {
     char said[512] = "";
     skinslide_stage_group group = strcmp(input, "patch") == 0 ? SKINSLIDE_STAGE_PATCH : SKINSLIDE_STAGE_CONTROLS;
     assert_int_equal(skinslide_stage_patch_describe(s->patch, input_of(group, NULL, input), &value, said), *text != 0);
@@ -189,7 +176,7 @@ static void what_was_taken_is_said(void **state) {
     (void)state;
     const float numbers[3 * CORNERS] = {0};
     skinslide_value wide = colours(3, "color3f[]", CORNERS, numbers);
-    scene s = set_up("elbow", "g", false);
+    patch_scene s = set_up("elbow", "g", false);
     expect_said(&s, "weight", FLOATS(WEIGHT, 1), "");
     expect_said(&s, "weight", nothing_of("primvars:skinSlide_elbow_weight"), "");
     expect_said(&s, "patch", painted_as(INTS(FACES, 1, 1), "uniform"), "");
@@ -198,7 +185,7 @@ static void what_was_taken_is_said(void **state) {
                 "weight comes from primvars:skinSlide_elbow_weight, float[]");
     expect_said(&s, "weight", painted_as(wide, "faceVarying"),
                 "weight comes from " WEIGHT ", color3f[], channel g, the mean over the face corners at each point");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 int main(void) {

@@ -6,16 +6,9 @@
 
 static skinslide_error error;
 
-typedef struct scene {
-    test_mesh grid;
-    skinslide_stage_mesh *mesh;
-    skinslide_stage_patch *patch;
-    skinslide_stage_controls *controls;
-} scene;
-
-static scene set_up(const skinslide_stage_live *live) {
+static patch_scene set_up(const skinslide_stage_live *live) {
     static const uint8_t chosen[4] = {1, 1, 1, 1};
-    scene s = {quad_grid(2, 2), NULL, NULL, NULL};
+    patch_scene s = {quad_grid(2, 2), NULL, NULL, NULL};
     s.mesh = scene_mesh(&s.grid);
     assert_ok(skinslide_stage_patch_create(s.mesh, "elbow", live, &s.patch, &error), &error);
     skinslide_value faces = painted_as(array_of("patch", SKINSLIDE_VALUE_BOOL, 1, 4, chosen), "uniform");
@@ -24,14 +17,7 @@ static scene set_up(const skinslide_stage_live *live) {
     return s;
 }
 
-static void tear_down(scene *s) {
-    skinslide_stage_controls_destroy(s->controls);
-    skinslide_stage_patch_destroy(s->patch);
-    skinslide_stage_mesh_destroy(s->mesh);
-    free_mesh(&s->grid);
-}
-
-static skinslide_patch_setup setup_of_scene(scene *s) {
+static skinslide_patch_setup setup_of_scene(patch_scene *s) {
     skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     assert_ok(skinslide_stage_patch_get(s->patch, s->controls, &setup, &error), &error);
     return setup;
@@ -40,7 +26,7 @@ static skinslide_patch_setup setup_of_scene(scene *s) {
 /* The same whether nothing was given, or each input with no value. */
 static void fallbacks_are_those_of_the_schema(void **state) {
     (void)state;
-    scene s = set_up(NULL);
+    patch_scene s = set_up(NULL);
     for (int32_t given = 0; given < 2; given++) {
         skinslide_patch_setup setup = setup_of_scene(&s);
         assert_string_equal(setup.name, "elbow");
@@ -61,12 +47,12 @@ static void fallbacks_are_those_of_the_schema(void **state) {
         while ((input = skinslide_stage_next_input(SKINSLIDE_STAGE_CONTROLS, input)) != NULL)
             assert_ok(skinslide_stage_controls_take(s.controls, input, NULL, &error), &error);
     }
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void what_was_authored_comes_back(void **state) {
     (void)state;
-    scene s = set_up(NULL);
+    patch_scene s = set_up(NULL);
     assert_ok(patch_takes(s.patch, "boundary", text_of("boundary", "circle"), &error), &error);
     assert_ok(patch_takes(s.patch, "holes", text_of("holes", "free"), &error), &error);
     assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "relaxed"), &error), &error);
@@ -78,7 +64,7 @@ static void what_was_authored_comes_back(void **state) {
     assert_int_equal(setup.rule, SKINSLIDE_RULE_RELAXED);
     assert_int_equal(setup.interpolation, SKINSLIDE_INTERPOLATION_MEAN_VALUE);
     assert_same_bytes(setup.corners, ((int32_t[]){0, 2, 8, 6}), 16);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void only_some_interpolations_need_subdivision(void **state) {
@@ -89,22 +75,22 @@ static void only_some_interpolations_need_subdivision(void **state) {
         for (int32_t over = -1; over < 4; over++) {
             skinslide_stage_live live = SKINSLIDE_STAGE_LIVE_DEFAULT;
             live.interpolation = over;
-            scene s = set_up(&live);
+            patch_scene s = set_up(&live);
             assert_ok(patch_takes(s.patch, "interpolation", text_of("interpolation", tokens[own]), &error), &error);
             assert_int_equal(skinslide_stage_patch_needs_subdivision(s.patch), needs[over < 0 ? own : over]);
             assert_int_equal(setup_of_scene(&s).interpolation, over < 0 ? own : over);
-            tear_down(&s);
+            end_scene(&s);
         }
 }
 
 static void expect(const char *name, skinslide_value value, const char *text) {
-    scene s = set_up(NULL);
+    patch_scene s = set_up(NULL);
     skinslide_patch_setup setup = SKINSLIDE_PATCH_SETUP_DEFAULT;
     assert_fails(patch_takes(s.patch, name, value, &error), &error, SKINSLIDE_BAD_CONTROL, text);
     assert_int_equal(skinslide_stage_patch_get(s.patch, s.controls, &setup, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_ok(patch_takes(s.patch, name, nothing_of(name), &error), &error);
     assert_ok(skinslide_stage_patch_get(s.patch, s.controls, &setup, &error), &error);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void bad_tokens_are_named(void **state) {
@@ -130,7 +116,7 @@ static void bad_numbers_are_named(void **state) {
     expect("grow", text_of("grow", "far"), "grow is 'far'; it must be a float");
 }
 
-static void expect_unread(const scene *s, const char *first, const char *second) {
+static void expect_unread(const patch_scene *s, const char *first, const char *second) {
     const skinslide_stage_input *input = NULL;
     const char *names[] = {first, second};
     for (int i = 0; i < 2 && names[i]; i++) {
@@ -143,7 +129,7 @@ static void expect_unread(const scene *s, const char *first, const char *second)
 
 static void what_a_rule_does_not_read_is_known(void **state) {
     (void)state;
-    scene s = set_up(NULL);
+    patch_scene s = set_up(NULL);
     expect_unread(&s, NULL, NULL);
     assert_ok(patch_takes(s.patch, "boundary", text_of("boundary", "square"), &error), &error);
     assert_ok(patch_takes(s.patch, "corners", INTS("corners", 0, 2, 8, 6), &error), &error);
@@ -157,7 +143,7 @@ static void what_a_rule_does_not_read_is_known(void **state) {
     expect_unread(&s, NULL, NULL);
     assert_ok(patch_takes(s.patch, "forceDensityRule", text_of("rule", "unit"), &error), &error);
     expect_unread(&s, "grow", "hold");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void bad_corners_and_edges_are_named(void **state) {
@@ -172,7 +158,7 @@ static void bad_corners_and_edges_are_named(void **state) {
     expect("edges", FLOATS("edges", 0, 1), "edges is not an array of int");
 }
 
-static void expect_later(scene *s, const char *name, skinslide_value later, const char *text) {
+static void expect_later(patch_scene *s, const char *name, skinslide_value later, const char *text) {
     const skinslide_stage_input *input = input_of(SKINSLIDE_STAGE_PATCH, NULL, name);
     skinslide_status status = skinslide_stage_patch_check(s->patch, input, &later, 1002, &error);
     if (text)
@@ -183,13 +169,13 @@ static void expect_later(scene *s, const char *name, skinslide_value later, cons
 
 static void indices_must_stay_the_same(void **state) {
     (void)state;
-    scene s = set_up(NULL);
+    patch_scene s = set_up(NULL);
     assert_ok(patch_takes(s.patch, "corners", INTS("corners", 0, 2, 8, 6), &error), &error);
     expect_later(&s, "corners", INTS("corners", 0, 2, 8, 6), NULL);
     expect_later(&s, "corners", INTS("corners", 0, 2, 6, 8), "corners changes at frame 1002; it must stay the same over time");
     expect_later(&s, "edges", nothing_of("edges"), NULL);
     expect_later(&s, "edges", INTS("edges", 0, 1), "edges changes at frame 1002; it must stay the same over time");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* Of what is a choice or a word the first sample counts, whatever comes after it. */
@@ -220,14 +206,14 @@ static void a_patch_without_faces_gives_nothing(void **state) {
 
 static void inputs_of_another_group_are_refused(void **state) {
     (void)state;
-    scene s = set_up(NULL);
+    patch_scene s = set_up(NULL);
     const skinslide_stage_input *envelope = input_of(SKINSLIDE_STAGE_CONTROLS, NULL, "envelope");
     const skinslide_stage_input *holes = input_of(SKINSLIDE_STAGE_PATCH, NULL, "holes");
     assert_int_equal(skinslide_stage_patch_take(s.patch, envelope, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_stage_controls_take(s.controls, holes, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_stage_mesh_take(s.mesh, holes, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
     assert_int_equal(skinslide_stage_patch_take(s.patch, NULL, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* ---- What a shot sets ---- */

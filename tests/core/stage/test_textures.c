@@ -13,26 +13,13 @@ static skinslide_error error;
 #define WEIGHT  "primvars:skinSlide:elbow:weight"
 #define DENSITY "primvars:skinSlide:elbow:forceDensity"
 
-typedef struct scene {
-    test_mesh grid; /* 2 x 2 quads with st from 0 to 1 */
-    skinslide_stage_mesh *mesh;
-    skinslide_stage_patch *patch;
-    skinslide_stage_controls *controls;
-} scene;
-
-static scene set_up(void) {
-    scene s = {quad_grid(2, 2), NULL, NULL, NULL};
+/* 2 x 2 quads with st from 0 to 1. */
+static patch_scene set_up(void) {
+    patch_scene s = {quad_grid(2, 2), NULL, NULL, NULL};
     s.mesh = scene_mesh(&s.grid);
     s.patch = scene_patch(s.mesh, &s.grid, NULL);
     s.controls = scene_controls(s.patch);
     return s;
-}
-
-static void tear_down(scene *s) {
-    skinslide_stage_controls_destroy(s->controls);
-    skinslide_stage_patch_destroy(s->patch);
-    skinslide_stage_mesh_destroy(s->mesh);
-    free_mesh(&s->grid);
 }
 
 /* st of the grid's vertices, times a scale. */
@@ -100,7 +87,7 @@ static void expect_need(skinslide_stage_controls *controls, const char *name, co
 
 static void no_texture_asks_for_nothing(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     assert_ok(controls_take(s.controls, "weightMap", nothing_of(MAP), &error), &error);
     assert_null(skinslide_stage_controls_coordinates(s.controls));
     assert_ok(controls_take(s.controls, "forceDensityMap", asset_of(MAP, ""), &error), &error);
@@ -108,12 +95,12 @@ static void no_texture_asks_for_nothing(void **state) {
     assert_int_equal(give_none(s.controls), SKINSLIDE_BAD_ARGUMENT);
     assert_null(skinslide_stage_controls_texture(s.controls, input_of(SKINSLIDE_STAGE_CONTROLS, NULL, "weightMap")));
     assert_null(got(s.controls).weight);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void a_texture_alone_is_the_weight(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     ask(s.controls, "weightMap", "./w.exr", 1);
     expect_need(s.controls, "weightMap", "./w.exr", 0);
@@ -130,13 +117,13 @@ static void a_texture_alone_is_the_weight(void **state) {
     assert_string_equal(shown->channel, "R");
     assert_string_equal(shown->st, "primvars:st");
     assert_true(shown->tile_count == 1 && shown->tiles[0].number == 0 && shown->tiles[0].width == 1);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* By vertex they multiply; a constant density drops out, one by face stays beside. */
 static void textures_multiply_paint(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     const float numbers[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     skinslide_value by_vertex = painted_as(array_of(DENSITY, SKINSLIDE_VALUE_FLOAT, 1, 9, numbers), "vertex"),
                     by_face = by_vertex;
@@ -156,13 +143,13 @@ static void textures_multiply_paint(void **state) {
     assert_true(out.vertex_density[3] == 0.5f && !out.face_density);
     assert_ok(controls_take(s.controls, "forceDensityMap", nothing_of(MAP), &error), &error);
     assert_null(got(s.controls).vertex_density);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* The grid lies in four tiles; borders between them are in the tile of their face. */
 static void tiles_are_asked_for_in_turn(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     static const int32_t numbers[] = {1001, 1002, 1011, 1012};
     ask(s.controls, "weightMap", "./w.<UDIM>.exr", 2);
     for (int32_t i = 0; i < 4; i++) {
@@ -179,39 +166,39 @@ static void tiles_are_asked_for_in_turn(void **state) {
         skinslide_stage_controls_texture(s.controls, input_of(SKINSLIDE_STAGE_CONTROLS, NULL, "weightMap"));
     assert_string_equal(shown->file, "/1001/w.<UDIM>.exr");
     assert_true(shown->tile_count == 4 && shown->tiles[3].number == 1012);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void coordinates_of_another_name(void **state) {
     (void)state;
     static const char *const words[] = {"uv2", "primvars:uv2"};
     for (int i = 0; i < 2; i++) {
-        scene s = set_up();
+        patch_scene s = set_up();
         assert_ok(patch_takes(s.patch, "mapSt", text_of("mapSt", words[i]), &error), &error);
         assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, "w.exr"), &error), &error);
         const skinslide_stage_input *st = skinslide_stage_controls_coordinates(s.controls);
         assert_string_equal(st->prefix, "primvars:");
         assert_string_equal(st->name, "uv2");
         assert_true(st->is_primvar && st->when == SKINSLIDE_STAGE_ANIMATED);
-        tear_down(&s);
+        end_scene(&s);
     }
 }
 
 static void a_channel_of_its_own(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     assert_ok(patch_takes(s.patch, "weightMapChannel", text_of("channel", "Q"), &error), &error);
     ask(s.controls, "weightMap", "w.exr", 1);
     assert_fails(give(s.controls, "/w.exr", 1), &error, SKINSLIDE_BAD_IMAGE,
                  "weightMap: /w.exr: there is no channel Q; the file has R");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* ---- Frames ---- */
 
 static void a_frame_multiplies_the_texture_of_its_base(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_stage_controls *frame = NULL;
     ask(s.controls, "weightMap", "w.exr", 1);
     assert_ok(give(s.controls, "w.exr", 0.5f), &error);
@@ -222,13 +209,13 @@ static void a_frame_multiplies_the_texture_of_its_base(void **state) {
     assert_ok(controls_take(frame, "weight", FLOATS(WEIGHT, 0.5f), &error), &error);
     assert_true(got(frame).weight[4] == 0.25f && got(s.controls).weight[4] == 0.5f);
     skinslide_stage_controls_destroy(frame);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* From the second frame on an image is held, so that only coordinates that vary are sampled anew. */
 static void images_are_held_between_frames(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     for (int frame = 0; frame < 4; frame++) {
         ask(s.controls, "weightMap", frame == 3 ? "other.exr" : "w.exr", 1);
         assert_int_equal(skinslide_stage_controls_holds(s.controls, "/w.exr"), frame >= 2);
@@ -242,13 +229,13 @@ static void images_are_held_between_frames(void **state) {
         }
         assert_true(got(s.controls).weight[0] == (frame == 3 ? 3 : 0.5f));
     }
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* Of one asset, with no need to take it again. */
 static void other_coordinates_ask_for_files_again(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_value st;
     for (int32_t taken = 1; taken <= 2; taken++) { /* from the second on, images are held */
         ask(s.controls, "weightMap", "w.<UDIM>.exr", 2);
@@ -263,13 +250,13 @@ static void other_coordinates_ask_for_files_again(void **state) {
         assert_ok(take_coordinates(s.controls, st), &error);
         expect_need(s.controls, "weightMap", "w.1001.exr", 1001);
     }
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* A frame takes what varies alone: of its base's maps, at other coordinates, nothing else is new. */
 static void a_frame_moves_the_texture_of_its_base(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_stage_controls *frame = NULL;
     ask(s.controls, "weightMap", "w.<UDIM>.exr", 2);
     for (int32_t tile = 0; tile < 4; tile++)
@@ -291,12 +278,12 @@ static void a_frame_moves_the_texture_of_its_base(void **state) {
         assert_int_equal(skinslide_stage_controls_need(frame, &need, &error), SKINSLIDE_BAD_CONTROL);
     }
     skinslide_stage_controls_destroy(frame);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void a_frame_takes_one_texture_of_two(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_stage_controls *frame = NULL;
     ask(s.controls, "weightMap", "w.exr", 1);
     assert_ok(give(s.controls, "/w.exr", 0.5f), &error);
@@ -311,12 +298,12 @@ static void a_frame_takes_one_texture_of_two(void **state) {
     assert_true(got(frame).weight[0] == 1 && got(s.controls).weight[0] == 0.5f);
     assert_ptr_equal(got(frame).vertex_density, got(s.controls).vertex_density);
     skinslide_stage_controls_destroy(frame);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* ---- What fails ---- */
 
-static void expect_refused(scene *s, skinslide_status status, skinslide_status expected, const char *text) {
+static void expect_refused(patch_scene *s, skinslide_status status, skinslide_status expected, const char *text) {
     skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     assert_fails(status, &error, expected, text);
     assert_null(needed(s->controls));
@@ -326,21 +313,21 @@ static void expect_refused(scene *s, skinslide_status status, skinslide_status e
 
 static void assets_of_another_type(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     expect_refused(&s, controls_take(s.controls, "weightMap", text_of(MAP, "m.exr"), &error), SKINSLIDE_BAD_CONTROL,
                    MAP " is 'm.exr'; it must be an asset");
     expect_refused(&s, controls_take(s.controls, "weightMap", other_of(MAP, "asset[]"), &error), SKINSLIDE_BAD_CONTROL,
                    MAP " is asset[]; it must be an asset");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void expect_no_coordinates(skinslide_value st, const char *asset, const char *text) {
-    scene s = set_up();
+    patch_scene s = set_up();
     const skinslide_stage_need *need;
     assert_ok(controls_take(s.controls, "weightMap", asset_of(MAP, asset), &error), &error);
     assert_ok(take_coordinates(s.controls, st), &error);
     expect_refused(&s, skinslide_stage_controls_need(s.controls, &need, &error), SKINSLIDE_BAD_CONTROL, text);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void no_coordinates(void **state) {
@@ -355,7 +342,7 @@ static void no_coordinates(void **state) {
 /* A map may come later. */
 static void coordinates_matter_where_there_is_a_map(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     const skinslide_stage_need *need;
     skinslide_stage_controls *frame = NULL;
     assert_ok(controls_take(s.controls, "weightMap", blocked_of(MAP), &error), &error);
@@ -367,12 +354,12 @@ static void coordinates_matter_where_there_is_a_map(void **state) {
     assert_fails(skinslide_stage_controls_need(frame, &need, &error), &error, SKINSLIDE_BAD_CONTROL,
                  "has a map, but the mesh has no primvars:st; name one in skinSlide:elbow:mapSt: there are none");
     skinslide_stage_controls_destroy(frame);
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void no_such_file(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     ask(s.controls, "weightMap", "./w.exr", 1);
     expect_refused(&s, give_none(s.controls), SKINSLIDE_BAD_CONTROL, "weightMap: ./w.exr: there is no such file");
     ask(s.controls, "weightMap", "./w.<UDIM>.exr", 2);
@@ -385,12 +372,12 @@ static void no_such_file(void **state) {
     assert_ok(give(s.controls, "/w.1011.exr", 1), &error);
     expect_refused(&s, give(s.controls, "/w.1012.exr", 1), SKINSLIDE_BAD_CONTROL,
                    "weightMap: ./w.1002.exr: there is no such file, and the patch has texture coordinates in it");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void files_that_cannot_be_read(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_stage_file file = SKINSLIDE_STAGE_FILE_DEFAULT;
     file.path = "/w.exr";
     ask(s.controls, "weightMap", "w.exr", 1);
@@ -408,24 +395,24 @@ static void files_that_cannot_be_read(void **state) {
     file.byte_count = 4, file.bytes = (const uint8_t *)"\x89PNG", file.reason = NULL;
     expect_refused(&s, skinslide_stage_controls_give(s.controls, &file, &error), SKINSLIDE_BAD_IMAGE,
                    "weightMap: /w.exr: not an OpenEXR file...");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void values_that_cannot_be(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     ask(s.controls, "weightMap", "w.exr", 1);
     expect_refused(&s, give(s.controls, "/w.exr", NAN), SKINSLIDE_BAD_CONTROL, "weightMap: /w.exr: the map is nan at st...");
     assert_ok(controls_take(s.controls, "weightMap", nothing_of(MAP), &error), &error);
     ask(s.controls, "forceDensityMap", "q.exr", 1);
     assert_fails(give(s.controls, "/q.exr", -2), &error, SKINSLIDE_BAD_CONTROL,
                  "forceDensityMap: /q.exr at point 0 is -2; it must be finite and above 0");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 static void products_that_cannot_be(void **state) {
     (void)state;
-    scene s = set_up();
+    patch_scene s = set_up();
     skinslide_controls out = SKINSLIDE_CONTROLS_DEFAULT;
     const float numbers[9] = {1, 1, 1, 1, 1e30f, 1, 1, 1, 1};
     ask(s.controls, "forceDensityMap", "q.exr", 1);
@@ -434,7 +421,7 @@ static void products_that_cannot_be(void **state) {
     assert_ok(controls_take(s.controls, "forceDensity", paint, &error), &error);
     assert_fails(skinslide_stage_controls_get(s.controls, &out, &error), &error, SKINSLIDE_BAD_CONTROL,
                  DENSITY " times forceDensityMap: /q.exr at point 4 is inf; it must be finite and above 0");
-    tear_down(&s);
+    end_scene(&s);
 }
 
 /* Of what could be, and of nothing else, in the order in which it is offered. */

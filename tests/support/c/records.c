@@ -110,3 +110,10 @@ skinslide_stage_controls *scene_controls(const skinslide_stage_patch *patch) {
     assert_ok(skinslide_stage_controls_create(patch, NULL, &controls, &error), &error);
     return controls;
 }
+
+void end_scene(patch_scene *scene) {
+    skinslide_stage_controls_destroy(scene->controls);
+    skinslide_stage_patch_destroy(scene->patch);
+    skinslide_stage_mesh_destroy(scene->mesh);
+    free_mesh(&scene->grid);
+}

@@ -37,4 +37,14 @@ skinslide_stage_mesh *scene_mesh(const test_mesh *mesh);
 skinslide_stage_patch *scene_patch(const skinslide_stage_mesh *mesh, const test_mesh *of, const uint8_t *chosen);
 skinslide_stage_controls *scene_controls(const skinslide_stage_patch *patch);
 
+/* A grid with a patch and its controls. */
+typedef struct patch_scene {
+    test_mesh grid;
+    skinslide_stage_mesh *mesh;
+    skinslide_stage_patch *patch;
+    skinslide_stage_controls *controls;
+} patch_scene;
+
+void end_scene(patch_scene *scene);
+
 #endif
