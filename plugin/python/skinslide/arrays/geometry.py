@@ -66,6 +66,13 @@ class Mirrored(NamedTuple):
     vertices: np.ndarray  # (V,) int32, -1 for vertices of none of the faces
 
 
+def _across(native: Arguments, mesh: Any, faces: np.ndarray, plane: tuple[str, float, float | None]) -> tuple[Any, ...]:
+    """What mirroring of either kind is given: the mesh, the plane and how near, and the faces."""
+    axis, place, tolerance = plane
+    pointed = native.pointer(faces, np.int32, (-1,), "faces")
+    return ffi.addressof(mesh), AXES.index(axis), place, -1.0 if tolerance is None else tolerance, pointed, len(faces)
+
+
 def mirror_faces(
     face_counts: np.ndarray,
     face_indices: np.ndarray,
@@ -85,12 +92,7 @@ def mirror_faces(
     found = Mirrored(np.empty(len(faces), np.int32), np.empty(len(rest_points), np.int32))
     call(
         lib.skinslide_mirror,
-        ffi.addressof(mesh),
-        AXES.index(axis),
-        plane,
-        -1.0 if tolerance is None else tolerance,
-        native.pointer(faces, np.int32, (-1,), "faces"),
-        len(faces),
+        *_across(native, mesh, faces, (axis, plane, tolerance)),
         writable("int32_t[]", found.faces),
         writable("int32_t[]", found.vertices),
     )
@@ -122,12 +124,7 @@ def mirror_nearest(
     face_sources, vertex_sources = np.empty(len(face_counts), np.int32), np.empty(len(rest_points), np.int32)
     call(
         lib.skinslide_mirror_nearest,
-        ffi.addressof(mesh),
-        AXES.index(axis),
-        plane,
-        -1.0 if tolerance is None else tolerance,
-        native.pointer(faces, np.int32, (-1,), "faces"),
-        len(faces),
+        *_across(native, mesh, faces, (axis, plane, tolerance)),
         writable("int32_t[]", face_sources),
         writable("int32_t[]", vertex_sources),
         worst,
