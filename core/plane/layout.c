@@ -22,8 +22,10 @@ static double doubled_area(const double a[2], const double b[2], const double c[
     return x1 * y2 - y1 * x2;
 }
 
-static void count_face(const ss_faces *faces, int32_t face, const double (*uv)[2], ss_layout *layout) {
-    bool folded = false, collapsed = true;
+/* Returns whether its fan turns left beyond doubt: each area is above a rounding that, in an embedding of size 1, is also above that
+ * of the area itself. */
+static bool count_face(const ss_faces *faces, int32_t face, const double (*uv)[2], ss_layout *layout) {
+    bool folded = false, collapsed = true, left = true;
     for (int32_t t = 0; t < ss_fan_size(faces, face); t++) {
         int32_t v[3];
         double rounding;
@@ -31,21 +33,30 @@ static void count_face(const ss_faces *faces, int32_t face, const double (*uv)[2
         double area = doubled_area(uv[v[0]], uv[v[1]], uv[v[2]], &rounding);
         folded |= area < -rounding;
         collapsed &= fabs(area) <= rounding;
+        left &= area > rounding;
     }
     layout->folded += folded;
     layout->collapsed += collapsed;
+    return left;
 }
 
-/* Exactly: every corner turns left or goes straight, and so does every triangle of the fan, which rules out going round twice.
- */
-static bool is_convex(const ss_faces *faces, int32_t face, const double (*uv)[2]) {
+/* Exactly, or straight on, every triangle of the fan: so the face does not go round twice. */
+static bool fan_turns_left(const ss_faces *faces, int32_t face, const double (*uv)[2]) {
+    for (int32_t t = 0; t < ss_fan_size(faces, face); t++) {
+        int32_t v[3];
+        ss_fan(faces, face, t, v);
+        if (ss_orient(uv[v[0]], uv[v[1]], uv[v[2]]) < 0)
+            return false;
+    }
+    return true;
+}
+
+/* Exactly, or straight on, every corner that is not the fan's: its first triangle is at the second, its last at the last. */
+static bool corners_turn_left(const ss_faces *faces, int32_t face, const double (*uv)[2]) {
     const int32_t *corners = faces->corner_vertex + faces->face_start[face];
     int32_t n = ss_fan_size(faces, face) + 2;
-    for (int32_t k = 0; k < (n == 3 ? 1 : n); k++)
-        if (ss_orient(uv[corners[k]], uv[corners[(k + 1) % n]], uv[corners[(k + 2) % n]]) < 0)
-            return false;
-    for (int32_t k = 2; n > 4 && k + 1 < n; k++)
-        if (ss_orient(uv[corners[0]], uv[corners[k]], uv[corners[k + 1]]) < 0)
+    for (int32_t k = 1; k < n && n > 3; k++)
+        if (k != n - 2 && ss_orient(uv[corners[k]], uv[corners[(k + 1) % n]], uv[corners[(k + 2) % n]]) < 0)
             return false;
     return true;
 }
@@ -53,8 +64,9 @@ static bool is_convex(const ss_faces *faces, int32_t face, const double (*uv)[2]
 ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]) {
     ss_layout layout = {.regular = patch->loop_count == 1 || patch->setup->holes == SKINSLIDE_HOLES_PINNED};
     for (int32_t f = 0; f < patch->faces.face_count; f++) {
-        count_face(&patch->faces, f, uv, &layout);
-        layout.regular = layout.regular && is_convex(&patch->faces, f, uv);
+        bool left = count_face(&patch->faces, f, uv, &layout);
+        bool convex = (left || fan_turns_left(&patch->faces, f, uv)) && corners_turn_left(&patch->faces, f, uv);
+        layout.regular = layout.regular && convex;
     }
     return layout;
 }

@@ -2,21 +2,23 @@
  *
  * Which face: the lowest that holds the point, its border included, among faces with area. All tests are exact, so the answer
  * depends on the embedding alone and not on how it was found. A vertex whose point is its own place stays, whatever else is
- * there. Where candidates are proposed, from a texture, the first that holds the point begins; else a walk over neighbours,
- * which starts where the neighbour before it landed and takes about three steps a query. Where faces may overlap, where a walk
- * goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is
- * counted. */
+ * there. Where candidates are proposed, from a texture, the first that holds the point begins; else a walk over triangles, see
+ * paving.c, which starts where the neighbour before it landed and takes about two steps a query. Where faces may overlap, where a
+ * walk goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is counted. */
 #include "plane.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct ss_locator {
     ss_memory memory;
     const ss_patch *patch;
     ss_face_tree *tree;
     bool tree_built; /* for the embedding at hand */
-    int32_t *landed; /* [free_count] a face near where each query was found */
+    ss_paving paving;
+    int32_t *own;    /* [free_count] a slab at each vertex */
+    int32_t *landed; /* [free_count] a slab near where each query was found */
     int32_t *stack;  /* [face_count] */
     uint8_t *seen;   /* [face_count] zero between calls */
     bool regular;
@@ -28,10 +30,14 @@ skinslide_status ss_locator_create(const ss_patch *patch, ss_locator **out, skin
     if (!locator)
         return ss_out_of_memory(error);
     locator->patch = patch;
+    locator->own = SS_NEW(&locator->memory, int32_t, patch->free_count);
     locator->landed = SS_NEW(&locator->memory, int32_t, patch->free_count);
     locator->stack = SS_NEW(&locator->memory, int32_t, patch->faces.face_count);
     locator->seen = SS_NEW(&locator->memory, uint8_t, patch->faces.face_count);
-    skinslide_status status = locator->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    bool paved = ss_pave(&locator->memory, patch, &locator->paving) && !locator->memory.failed;
+    skinslide_status status = paved ? SKINSLIDE_OK : ss_out_of_memory(error);
+    for (int32_t i = 0; i < patch->free_count && paved; i++)
+        locator->own[i] = locator->paving.slab_of[patch->triangles.vertex_triangle[patch->free_vertex[i]]];
     if (!status)
         status = ss_face_tree_create(patch, &locator->tree, error);
     if (status)
@@ -49,8 +55,6 @@ void ss_locator_destroy(ss_locator *locator) {
     free(locator);
 }
 
-/* ---- The walk ---- */
-
 static const double *corner_uv(const ss_locator *locator, int32_t corner) {
     return locator->uv[locator->patch->faces.corner_vertex[corner]];
 }
@@ -58,36 +62,6 @@ static const double *corner_uv(const ss_locator *locator, int32_t corner) {
 /* On which side of the side that begins at a corner p is: 1 inside, 0 on its line, -1 outside. */
 static int side_of(const ss_locator *locator, int32_t corner, const double p[2]) {
     return ss_orient(corner_uv(locator, corner), corner_uv(locator, ss_next_corner(&locator->patch->faces, corner)), p);
-}
-
-/* The first side of the face, from a corner on, that p is outside of; -1 where it is outside of none. */
-static int32_t side_to_leave_by(const ss_locator *locator, int32_t corner, const double p[2], bool *on_border) {
-    int32_t c = corner;
-    *on_border = false;
-    do {
-        int side = side_of(locator, c, p);
-        if (side < 0)
-            return c;
-        *on_border |= side == 0;
-        c = ss_next_corner(&locator->patch->faces, c);
-    } while (c != corner);
-    return -1;
-}
-
-/* Walks from a face to one that holds p; -1 where it meets the boundary or takes too long. Faces are convex. */
-static int32_t walk(const ss_locator *locator, int32_t face, const double p[2], bool *on_border, int64_t *steps) {
-    const ss_faces *faces = &locator->patch->faces;
-    int32_t corner = faces->face_start[face];
-    int32_t most = 64 + 4 * (int32_t)sqrt(faces->face_count);
-    for (int32_t step = 0; step < most; step++, ++*steps) {
-        int32_t leave = side_to_leave_by(locator, corner, p, on_border);
-        if (leave < 0)
-            return faces->corner_face[corner];
-        if (faces->corner_twin[leave] < 0)
-            return -1;
-        corner = ss_next_corner(faces, faces->corner_twin[leave]); /* the side walked in by is looked at last */
-    }
-    return -1;
 }
 
 /* ---- The tie rule ---- */
@@ -211,19 +185,26 @@ static void slide_on_loop(const ss_locator *locator, int32_t vertex, const doubl
 void ss_locator_set(ss_locator *locator, const double (*uv)[2], bool regular) {
     locator->uv = uv, locator->regular = regular;
     locator->tree_built = false;
+    ss_paving_lay_out(&locator->paving, uv);
 }
 
-/* Walks to p from a face, where that leads there. */
-static bool walk_to(ss_locator *locator, int32_t face, const double p[2], int64_t *steps, ss_place *out) {
+/* The slab that a walk from another leads to, and p's place; -1 where it leads nowhere. */
+static int32_t walk_to(ss_locator *locator, int32_t from, const double p[2], int64_t *steps, ss_place *out) {
     bool on_border;
-    int32_t found = locator->regular ? walk(locator, face, p, &on_border, steps) : -1;
-    return found >= 0 && settle(locator, found, p, on_border, out);
+    int32_t slab = ss_paving_walk(&locator->paving, from, p, &on_border, steps);
+    if (slab < 0)
+        return -1;
+    if (on_border)
+        return settle(locator, locator->patch->triangles.face[locator->paving.slab[slab].triangle], p, true, out) ? slab : -1;
+    ss_paving_place_at(&locator->paving, slab, p, out);
+    return slab;
 }
 
 ss_place ss_locate_near(ss_locator *locator, int32_t face, const double p[2]) {
     ss_located located = {0};
     ss_place place;
-    if (!walk_to(locator, face, p, &located.steps, &place))
+    int32_t from = locator->paving.slab_of[locator->patch->triangles.first_triangle[face]];
+    if (!locator->regular || walk_to(locator, from, p, &located.steps, &place) < 0)
         search(locator, p, &place, &located);
     return place;
 }
@@ -231,10 +212,9 @@ ss_place ss_locate_near(ss_locator *locator, int32_t face, const double p[2]) {
 static void locate_one(ss_locator *locator, int32_t i, const double p[2], const ss_candidates *candidates, ss_place *out,
                        ss_located *located) {
     const ss_patch *patch = locator->patch;
-    int32_t vertex = patch->free_vertex[i], own_face = patch->faces.corner_face[patch->vertex_corner[vertex]];
-    int32_t before = patch->free_before[i], start = before < 0 ? own_face : locator->landed[before];
-    locator->landed[i] = own_face;
-    if (p[0] == locator->uv[vertex][0] && p[1] == locator->uv[vertex][1]) {
+    const double *own = locator->paving.uv[i];
+    int32_t vertex = patch->free_vertex[i], before = patch->free_before[i], slab = -1;
+    if (p[0] == own[0] && p[1] == own[1]) {
         *out = ss_place_staying(p);
         return;
     }
@@ -243,20 +223,23 @@ static void locate_one(ss_locator *locator, int32_t i, const double p[2], const 
         return;
     }
     int32_t candidate = locator->regular ? try_candidates(locator, candidates, p, out) : -1;
-    bool walked = candidate < 0 && walk_to(locator, start, p, &located->steps, out);
+    if (candidate < 0 && locator->regular)
+        slab = walk_to(locator, locator->landed[before < 0 ? i : before], p, &located->steps, out);
     located->centre += candidate == 0;
     located->around += candidate > 0;
-    located->walked += walked;
-    if (candidate < 0 && !walked)
+    located->walked += slab >= 0;
+    if (candidate < 0 && slab < 0)
         search(locator, p, out, located);
-    locator->landed[i] = patch->triangles.face[out->triangle];
+    locator->landed[i] = slab < 0 ? locator->paving.slab_of[out->triangle] : slab;
 }
 
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
                      const ss_candidates *candidates, ss_place *places) {
     ss_located located = {0};
+    int32_t count = locator->patch->free_count;
     ss_locator_set(locator, uv, regular);
-    for (int32_t i = 0; i < locator->patch->free_count; i++)
+    memcpy(locator->landed, locator->own, (size_t)count * sizeof *locator->landed);
+    for (int32_t i = 0; i < count; i++)
         locate_one(locator, i, query[i], candidates ? &candidates[i] : NULL, &places[i], &located);
     return located;
 }

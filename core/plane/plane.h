@@ -15,14 +15,17 @@ extern "C" {
 
 /* ---- orient.c ---- */
 
+/* Of the determinant below, to the sum of its products' sizes: Shewchuk's bound for this order of operations, (3 + 16 e) e with
+ * e = DBL_EPSILON / 2, rounded up. */
+#define SS_ORIENT_DOUBT ((3 + 10 * DBL_EPSILON) * (DBL_EPSILON / 2))
+
 int ss_orient_exactly(const double a[2], const double b[2], const double c[2]);
 
 /* 1 where a, b, c turn left, -1 right, 0 where they are on one line: exact for the doubles given. Here, since it is asked
  * several times a step of every walk. */
 static inline int ss_orient(const double a[2], const double b[2], const double c[2]) {
     double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]), determinant = left - right;
-    /* Shewchuk's bound for this order of operations, (3 + 16 e) e with e = DBL_EPSILON / 2, rounded up. */
-    double bound = (3 + 10 * DBL_EPSILON) * (DBL_EPSILON / 2) * (fabs(left) + fabs(right));
+    double bound = SS_ORIENT_DOUBT * (fabs(left) + fabs(right));
     return determinant > bound ? 1 : determinant < -bound ? -1 : ss_orient_exactly(a, b, c);
 }
 
@@ -69,6 +72,31 @@ typedef struct ss_layout {
 } ss_layout;
 
 ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]);
+
+/* ---- paving.c: the triangles of an embedding as walks go over them ---- */
+
+typedef struct ss_slab {
+    int32_t vertex[3], beyond[3]; /* of the paving: slabs over each side, -1 on the border */
+    int32_t triangle;             /* of the patch */
+} ss_slab;
+
+typedef struct ss_paving {
+    const ss_patch *patch;
+    int32_t *vertex;  /* [vertex_count] the patch's: first those of free_vertex, in their order */
+    ss_slab *slab;    /* [triangle_count] */
+    int32_t *slab_of; /* [triangle_count] of each of the patch's */
+    double (*uv)[2];  /* [vertex_count] */
+} ss_paving;
+
+/* False where memory is short. */
+bool ss_pave(ss_memory *memory, const ss_patch *patch, ss_paving *paving);
+/* Takes an embedding [vertex_count], of the patch's vertices. */
+void ss_paving_lay_out(ss_paving *paving, const double (*uv)[2]);
+/* Walks to a slab that holds p, its border included, where none is turned over; -1 where it meets the patch's border or takes too
+ * long. Adds the slabs that it entered. */
+int32_t ss_paving_walk(const ss_paving *paving, int32_t from, const double p[2], bool *on_border, int64_t *steps);
+/* The place of a point of a slab. */
+void ss_paving_place_at(const ss_paving *paving, int32_t slab, const double p[2], ss_place *out);
 
 /* ---- locate.c, facetree.c ---- */
 

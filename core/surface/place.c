@@ -57,9 +57,7 @@ static double clamped(double share, double most) {
     return share > 0 ? (share < most ? share : most) : 0;
 }
 
-void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle, const double p[2], ss_place *out) {
-    const int32_t *v = patch->triangles.vertex[triangle];
-    const double *corners[3] = {uv[v[0]], uv[v[1]], uv[v[2]]};
+void ss_place_between(const double *corners[3], int32_t triangle, const double p[2], ss_place *out) {
     double area = cross(corners[0], corners[1], corners[2]);
     double second = cross(corners[0], p, corners[2]) / area, third = cross(corners[0], corners[1], p) / area;
     out->triangle = triangle, out->uv[0] = p[0], out->uv[1] = p[1];
@@ -70,6 +68,12 @@ void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle,
     out->weight[1] = clamped(second, 1);
     out->weight[2] = clamped(third, 1 - out->weight[1]);
     out->weight[0] = 1 - out->weight[1] - out->weight[2];
+}
+
+void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle, const double p[2], ss_place *out) {
+    const int32_t *v = patch->triangles.vertex[triangle];
+    const double *corners[3] = {uv[v[0]], uv[v[1]], uv[v[2]]};
+    ss_place_between(corners, triangle, p, out);
 }
 
 void ss_place_settle(const ss_patch *patch, const double (*uv)[2], ss_place *place) {

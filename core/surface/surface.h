@@ -26,6 +26,8 @@ ss_place ss_place_of_vertex(const ss_patch *patch, const double (*uv)[2], int32_
 ss_place ss_place_staying(const double own[2]);
 /* The point p of the plane in a triangle: outside of it by rounding at most, but where it has no area. */
 void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle, const double p[2], ss_place *out);
+/* The same, given where the corners of the triangle are. */
+void ss_place_between(const double *corners[3], int32_t triangle, const double p[2], ss_place *out);
 /* Where the weights are in the plane. */
 void ss_place_in_plane(const ss_patch *patch, const double (*uv)[2], const ss_place *place, double out[2]);
 /* Ends a walk: sets uv, and the weights to what a place found at that point has. */

@@ -505,7 +505,7 @@ typedef struct skinslide_patch_result {
     int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
     int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was walked for */
     int32_t relax_steps;       /* of the relaxed rule: those on the pose itself. 3; fewer where the next could not be solved */
-    int64_t walk_steps;        /* faces entered by walking, in all */
+    int64_t walk_steps;        /* triangles entered by walking, in all */
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
     double stretch_after;      /* and in the result, overlapping patches included */
