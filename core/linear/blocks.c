@@ -57,6 +57,6 @@ bool ss_blocks_factor(ss_blocks *blocks, const int *stop) {
 }
 
 void ss_blocks_solve(ss_blocks *blocks) {
-    ss_eliminate_right(blocks->frontal, 1, blocks->right[0]);
-    ss_substitute_back(blocks->frontal, 1, false, blocks->right[0]);
+    ss_eliminate_right(blocks->frontal, blocks->right);
+    ss_substitute_back(blocks->frontal, false, blocks->right);
 }

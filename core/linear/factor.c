@@ -43,13 +43,13 @@ bool ss_factorise(ss_factor *factor) {
 }
 
 void ss_solve(ss_factor *factor) {
-    ss_eliminate_right(factor->frontal, 2, factor->right[0]);
-    ss_substitute_back(factor->frontal, 2, false, factor->right[0]);
+    ss_eliminate_right(factor->frontal, factor->right);
+    ss_substitute_back(factor->frontal, false, factor->right);
 }
 
 bool ss_factorise_and_solve(ss_factor *factor) {
     bool good = ss_factorise(factor);
     if (good)
-        ss_substitute_back(factor->frontal, 2, true, factor->right[0]);
+        ss_substitute_back(factor->frontal, true, factor->right);
     return good;
 }

@@ -126,9 +126,10 @@ ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front);
 bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double *slack, const double (*right)[2]);
 /* False also where work is left because of the flag. own [n], between [edge_count]: its rows are those of the higher unknown. */
 bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], const int *stop);
-/* The two halves of solving for right [n][block][count]. carried: the first has been done with right sides carried along. */
-void ss_eliminate_right(ss_frontal *frontal, int count, double *right);
-void ss_substitute_back(ss_frontal *frontal, int count, bool carried, double *right);
+/* The two halves of solving for right [n]: two right sides, or one in blocks. carried: the first has been done with right sides
+ * carried along, which those in blocks never are. */
+void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]);
+void ss_substitute_back(ss_frontal *frontal, bool carried, double (*right)[2]);
 
 /* ---- factor.c: entries of one number, none positive off the diagonal ---- */
 

@@ -1,12 +1,18 @@
 /* The two halves of solving with a factor: right sides are eliminated from the first front on, and solutions put in from the last
- * one back. */
+ * one back. Two numbers belong to an unknown: two right sides of a system of numbers, [unknown][side], or one of a system of blocks,
+ * [unknown][row]. */
 #include "linear.h"
+
+#define INLINE                                                                                                                 \
+    static inline __attribute__((always_inline)) /* so that block is a constant, and count, of right sides, is, too */
 
 /* ---- Right sides of one front ---- */
 
 /* x [count][columns]: right sides of a front's columns, 0 of those that are none. */
-static void take_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int count, const double *right) {
-    const double *from = right + (size_t)count * (size_t)(frontal->block * front->first);
+INLINE void take_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
+                         const double (*right)[2]) {
+    const double *from = right[front->first];
+    int count = 2 / block;
     for (int c = 0; c < count; c++) {
         double *x = frontal->x + c * s->columns;
         for (int32_t k = 0; k < s->columns; k++)
@@ -14,52 +20,61 @@ static void take_columns(const ss_frontal *frontal, const ss_front *front, const
     }
 }
 
-static void put_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int count, double *right) {
-    double *to = right + (size_t)count * (size_t)(frontal->block * front->first);
+INLINE void put_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
+    double *to = right[front->first];
+    int count = 2 / block;
     for (int c = 0; c < count; c++)
         for (int32_t k = 0; k < s->used; k++)
             to[count * k + c] = frontal->x[c * s->columns + k];
 }
 
-static void add_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int count, double *right) {
-    const int32_t *rows = frontal->system->rows + front->row_start;
-    int32_t block = frontal->block;
-    for (int32_t i = 0; i < front->row_count; i++)
-        for (int32_t k = 0; k < block; k++)
-            for (int c = 0; c < count; c++)
-                right[(block * (size_t)rows[i] + (size_t)k) * (size_t)count + (size_t)c] +=
-                    frontal->below[4 * c * s->below_tiles + block * i + k];
+/* Where below [count][rows] has a number of a row. */
+INLINE size_t place_below(const ss_shape *s, int block, int32_t row, int number) {
+    size_t own = (size_t)block * (size_t)row;
+    return block == 2 ? own + (size_t)number : own + 4 * (size_t)s->below_tiles * (size_t)number;
 }
 
-static void take_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int count, const double *right) {
+INLINE void add_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
     const int32_t *rows = frontal->system->rows + front->row_start;
-    int32_t block = frontal->block;
     for (int32_t i = 0; i < front->row_count; i++)
-        for (int32_t k = 0; k < block; k++)
-            for (int c = 0; c < count; c++)
-                frontal->below[4 * c * s->below_tiles + block * i + k] =
-                    right[(block * (size_t)rows[i] + (size_t)k) * (size_t)count + (size_t)c];
-    for (int32_t i = s->below; i < 4 * s->below_tiles; i++)
-        for (int c = 0; c < count; c++)
+        for (int k = 0; k < 2; k++)
+            right[rows[i]][k] += frontal->below[place_below(s, block, i, k)];
+}
+
+INLINE void take_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
+                       const double (*right)[2]) {
+    const int32_t *rows = frontal->system->rows + front->row_start;
+    for (int32_t i = 0; i < front->row_count; i++)
+        for (int k = 0; k < 2; k++)
+            frontal->below[place_below(s, block, i, k)] = right[rows[i]][k];
+    for (int c = 0; c < 2 / block; c++)
+        for (int32_t i = s->below; i < 4 * s->below_tiles; i++)
             frontal->below[4 * c * s->below_tiles + i] = 0;
 }
 
 /* ---- All of them ---- */
 
-void ss_eliminate_right(ss_frontal *frontal, int count, double *right) {
+INLINE void eliminate(ss_frontal *frontal, int block, double (*right)[2]) {
     for (int32_t f = 0; f < frontal->system->front_count; f++) {
         const ss_front *front = &frontal->system->fronts[f];
         ss_shape s = ss_shape_of(frontal, front);
-        take_columns(frontal, front, &s, count, right);
-        frontal->kernels->forward[count - 1](&s, frontal->L + frontal->panel[f], frontal->x, frontal->below);
-        put_columns(frontal, front, &s, count, right);
-        add_below(frontal, front, &s, count, right);
+        take_columns(frontal, front, &s, block, (const double(*)[2])right);
+        frontal->kernels->forward[2 / block - 1](&s, frontal->L + frontal->panel[f], frontal->x, frontal->below);
+        put_columns(frontal, front, &s, block, right);
+        add_below(frontal, front, &s, block, right);
     }
 }
 
-static void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int count) {
+void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]) {
+    if (frontal->block == 2)
+        eliminate(frontal, 2, right);
+    else
+        eliminate(frontal, 1, right);
+}
+
+INLINE void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int block) {
     for (int32_t k = 0; k < s->columns; k++)
-        for (int c = 0; c < count; c++)
+        for (int c = 0; c < 2 / block; c++)
             frontal->x[c * s->columns + k] *= panel[4 * (size_t)s->columns * (size_t)(k / 4) + 4 * (size_t)k + (size_t)(k % 4)];
 }
 
@@ -69,7 +84,7 @@ static void take_extras(const ss_frontal *frontal, const ss_shape *s, const doub
         frontal->x[k] = extras[4 * k + 1], frontal->x[s->columns + k] = extras[4 * k + 2];
 }
 
-void ss_substitute_back(ss_frontal *frontal, int count, bool carried, double *right) {
+INLINE void substitute(ss_frontal *frontal, int block, bool carried, double (*right)[2]) {
     for (int32_t f = frontal->system->front_count - 1; f >= 0; f--) {
         const ss_front *front = &frontal->system->fronts[f];
         ss_shape s = ss_shape_of(frontal, front);
@@ -77,11 +92,18 @@ void ss_substitute_back(ss_frontal *frontal, int count, bool carried, double *ri
         if (carried) {
             take_extras(frontal, &s, panel);
         } else {
-            take_columns(frontal, front, &s, count, right);
-            divide_columns(frontal, &s, panel, count);
+            take_columns(frontal, front, &s, block, (const double(*)[2])right);
+            divide_columns(frontal, &s, panel, block);
         }
-        take_below(frontal, front, &s, count, right);
-        frontal->kernels->backward[count - 1](&s, panel, frontal->x, frontal->below);
-        put_columns(frontal, front, &s, count, right);
+        take_below(frontal, front, &s, block, (const double(*)[2])right);
+        frontal->kernels->backward[2 / block - 1](&s, panel, frontal->x, frontal->below);
+        put_columns(frontal, front, &s, block, right);
     }
+}
+
+void ss_substitute_back(ss_frontal *frontal, bool carried, double (*right)[2]) {
+    if (frontal->block == 2)
+        substitute(frontal, 2, false, right);
+    else
+        substitute(frontal, 1, carried, right);
 }
