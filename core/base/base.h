@@ -49,6 +49,8 @@ static inline void ss_set(int *flag, int to) {
 double ss_log(double x);
 /* Of each of several, in their place: the same bits, and quicker. */
 void ss_logs(int32_t count, double *x);
+/* The same as processors without AVX2 do it. */
+void ss_logs_plain(int32_t count, double *x);
 /* Of |x| under 700. */
 double ss_exp(double x);
 
