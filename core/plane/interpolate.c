@@ -88,12 +88,12 @@ static bool weigh_place(const ss_patch *patch, const ss_flat *flat, const ss_pla
 static void interpolate_one(const ss_patch *patch, const ss_flat *flat, int32_t vertex, const ss_place *place,
                             const float *points, double *weights, double out[3]) {
     const ss_triangles *triangles = &patch->triangles;
-    int32_t face = triangles->face[place->triangle], n = ss_fan_size(&patch->faces, face) + 2;
-    const int32_t *corners = patch->faces.corner_vertex + patch->faces.face_start[face];
-    if (patch->setup->interpolation == SKINSLIDE_INTERPOLATION_MEAN_VALUE && weigh_place(patch, flat, place, weights))
-        offset_from(patch, points, vertex, corners, n, weights, out);
-    else
+    if (patch->setup->interpolation != SKINSLIDE_INTERPOLATION_MEAN_VALUE || !weigh_place(patch, flat, place, weights)) {
         offset_from(patch, points, vertex, triangles->vertex[place->triangle], 3, place->weight, out);
+        return;
+    }
+    int32_t face = triangles->face[place->triangle], n = ss_fan_size(&patch->faces, face) + 2;
+    offset_from(patch, points, vertex, patch->faces.corner_vertex + patch->faces.face_start[face], n, weights, out);
 }
 
 void ss_interpolate(const ss_patch *patch, const ss_flat *flat, const ss_place *places, const float *points, double *weights,

@@ -72,6 +72,7 @@ struct skinslide_workspace {
     skinslide_patch_result *results; /* [part_count] */
     skinslide_controls *controls;    /* [setup_count] of the frame */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
+    float (*landed)[3];              /* [own vertices of the slider] where each slides to */
     float *before, *after;           /* [vertex_count][3] points where lengths are taken; NULL where that is the mesh's space */
     bool has_frame;
     int stop;              /* a flag that other threads set, see base.h */
@@ -84,7 +85,7 @@ struct skinslide_workspace {
 /* How much the displacement of a free vertex, or its normal, counts where patches overlap. One of no weight keeps its limit point,
  * for which it follows its neighbours, but has no say there. */
 static inline double ss_say(const ss_patch_work *work, int32_t i) {
-    return fmax(work->frame.weights[i], 1e-30);
+    return ss_most(work->frame.weights[i], 1e-30);
 }
 
 /* The vertex that a vertex of the mesh is one with. */

@@ -79,7 +79,7 @@ static void blend(skinslide_workspace *workspace) {
         add_displacement(slider->parts[p].patch, &workspace->patches[p], workspace->sum);
     for (int32_t i = 0; i < slider->own.count; i++) {
         double *sum = workspace->sum[slider->own.vertex[i]];
-        for (int k = 0; k < 3 && sum[3] > 0; k++)
+        for (int k = 0; k < 3 && sum[3] > 0 && sum[3] != 1; k++)
             sum[k] /= sum[3];
     }
 }
@@ -90,21 +90,26 @@ static bool moves(const double displacement[3]) {
 
 /* Where a vertex goes: as that goes which it is one with. */
 static void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
-    const double *slid = workspace->sum[ss_welded(workspace->slider, vertex)];
+    const double *slid = workspace->sum[ss_welded(workspace->slider, vertex)], *displacement = slid;
+    double own[3];
     bool moved = moves(slid);
-    double displacement[3];
-    ss_take_back(workspace->slider, slid, displacement);
+    if (workspace->slider->space)
+        ss_take_back(workspace->slider, slid, own), displacement = own;
     for (int k = 0; k < 3; k++) {
         float here = points[3 * (int64_t)vertex + k];
         out[k] = moved ? (float)(here + displacement[k]) : here;
     }
 }
 
+static bool is_finite(const float point[3]) {
+    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
+}
+
 static skinslide_status check_landing(const skinslide_workspace *workspace, const ss_patch *patch, int32_t vertex,
                                       const float *points, skinslide_error *error) {
     float to[3];
     land(workspace, points, vertex, to);
-    if (isfinite(to[0]) && isfinite(to[1]) && isfinite(to[2]))
+    if (is_finite(to))
         return SKINSLIDE_OK;
     return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d slides to where it is not finite: (%g, %g, %g)", patch->label,
                    vertex, to[0], to[1], to[2]);
@@ -121,19 +126,30 @@ static skinslide_status check_landings(const skinslide_workspace *workspace, con
     return status;
 }
 
-/* All of them or, where a float cannot hold one, none. */
-static skinslide_status write_points(const skinslide_workspace *workspace, const float *points, float *slid,
-                                     skinslide_error *error) {
+/* Names the first vertex of a patch that lands where a float cannot. */
+static skinslide_status refuse_landing(const skinslide_workspace *workspace, const float *points, skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)
         status = check_landings(workspace, workspace->slider->parts[p].patch, points, error);
+    return status;
+}
+
+/* All of them or, where a float cannot hold one, none. */
+static skinslide_status write_points(const skinslide_workspace *workspace, const float *points, float *slid,
+                                     skinslide_error *error) {
+    const ss_list *own = &workspace->slider->own;
+    bool finite = true;
+    for (int32_t i = 0; i < own->count; i++) {
+        land(workspace, points, own->vertex[i], workspace->landed[i]);
+        finite = finite && is_finite(workspace->landed[i]);
+    }
+    skinslide_status status = finite ? SKINSLIDE_OK : refuse_landing(workspace, points, error);
     if (status)
         return status;
-    const ss_list *own = &workspace->slider->own;
     if (slid != points)
         memcpy(slid, points, (size_t)workspace->slider->vertex_count * sizeof(float[3]));
     for (int32_t i = 0; i < own->count; i++)
-        land(workspace, points, own->vertex[i], slid + 3 * (int64_t)own->vertex[i]);
+        memcpy(slid + 3 * (int64_t)own->vertex[i], workspace->landed[i], sizeof *workspace->landed);
     return SKINSLIDE_OK;
 }
 

@@ -41,6 +41,7 @@ skinslide_status ss_workspace_create(const skinslide_slider *slider, const skins
         workspace->after = SS_NEW(&workspace->memory, float, 3 * (int64_t)slider->vertex_count);
     }
     workspace->sum = ss_new(&workspace->memory, slider->vertex_count, sizeof *workspace->sum);
+    workspace->landed = ss_new(&workspace->memory, slider->own.count, sizeof *workspace->landed);
     skinslide_status status = workspace->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
         status = ss_workspace_open_lookup(workspace, options, load, error);
