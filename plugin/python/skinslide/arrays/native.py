@@ -11,6 +11,7 @@ import weakref
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache, partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -416,6 +417,8 @@ def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.
         wanted = " x ".join("n" if size == -1 else str(size) for size in shape)
         got = " x ".join(map(str, source.shape)) or "a single value"
         raise SliderError("BAD_ARGUMENT", f"{what}: the shape is {got}; it must be {wanted}")
+    if source.dtype == dtype and source.flags.c_contiguous:
+        return source
     # Casts of the same kind lose digits at most, but for integers that do not fit.
     fits = source.size == 0 or (
         np.can_cast(source.dtype, dtype, "same_kind") and (source.dtype == np.bool_) == (dtype == np.bool_)
@@ -462,14 +465,23 @@ def read(kind: type[Record], *structs: Any) -> Record:
     """A record of the fields of structs, text and tokens as str."""
     values: dict[str, Any] = {}
     for struct in structs:
-        values |= {name: _read(field.type, getattr(struct, name)) for name, field in ffi.typeof(struct).fields}
-    return kind(*(values[name] for name in kind._fields))
+        names, get, meanings = _fields(ffi.typeof(struct))
+        values.update(zip(names, get(struct), strict=True))
+        for name, meaning in meanings.items():
+            values[name] = meaning(values[name])
+    return kind(*[values[name] for name in kind._fields])
 
 
-def _read(ctype: Any, value: Any) -> Any:
-    if ctype.kind == "enum":
-        return token_of(ctype.cname.removeprefix("enum skinslide_"), value)
-    return text(value) if isinstance(value, ffi.CData) else value
+@cache
+def _fields(struct: Any) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]], dict[str, Callable[[Any], str]]]:
+    """The names of the fields of a type, what gets them all, and of those that are no numbers what they mean."""
+    names, meanings = tuple(name for name, _ in struct.fields), dict[str, Callable[[Any], str]]()
+    for name, field_ in struct.fields:
+        if field_.type.kind == "enum":
+            meanings[name] = partial(token_of, field_.type.cname.removeprefix("enum skinslide_"))
+        elif field_.type.kind != "primitive":
+            meanings[name] = text
+    return names, operator.attrgetter(*names), meanings
 
 
 def text(characters: Any) -> str:
