@@ -20,11 +20,11 @@ class Ours:
         setup = PatchSetup("bench", faces=np.arange(len(patch.counts)), **self._options)
         smooth = Subdivision("catmullClark") if self._options["interpolation"] == "limit" else None
         self._slider = Slider(patch.counts, patch.indices, patch.rest, [setup], lookup=self._lookup, subdivision=smooth)
-        self._vertices = self._slider.vertices(0)
 
     @property
     def rest_embedding(self) -> np.ndarray | None:
-        return self._of_mesh(self._slider.embedding(0)) if self._embeds else None
+        """Vertices of the patch are those of the mesh."""
+        return self._slider.embedding(0) if self._embeds else None
 
     def frame(self, points: np.ndarray) -> Slid:
         frame = self._slider.slide(points, embeddings=self._embeds)
@@ -35,9 +35,4 @@ class Ours:
             "locate": of_patch.locate_seconds,
             "interpolate": of_patch.interpolate_seconds,
         }
-        return Slid(seconds, self._of_mesh(frame.embeddings[0]) if self._embeds else None, frame.points)
-
-    def _of_mesh(self, embedding: np.ndarray) -> np.ndarray:
-        whole = np.empty_like(embedding)
-        whole[self._vertices] = embedding
-        return whole
+        return Slid(seconds, frame.embeddings[0] if self._embeds else None, frame.points)
