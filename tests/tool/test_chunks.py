@@ -1,14 +1,13 @@
 """Parts of a shot that were baked apart: which fit together, which are whole, and which need not be baked again."""
 
 import json
-import os
 import random
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, UsdUtils, Vt
+from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
 from skinslide import StageError, StageProblems, UsageError, bake_to_file, stitch
@@ -211,6 +210,95 @@ def test_chunks_of_something_else(edit, what, shot, tmp_path):
     assert len(said.splitlines()) == 1
 
 
+def facing(count: int, frame: float) -> np.ndarray:
+    return stages.vectors(np.tile([0.0, np.sin(frame), np.cos(frame)], (count, 1)))
+
+
+def add_normals(stage):
+    """Of frames of the mesh that moves, and of the one that does not."""
+    for path in (MESH, STILL):
+        mesh = UsdGeom.Mesh(stage.GetPrimAtPath(path))
+        for frame in FRAMES:
+            mesh.CreateNormalsAttr().Set(facing(49, frame), frame)
+        mesh.SetNormalsInterpolation("vertex")
+
+
+def add_tangents(stage):
+    primvar = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath(MESH)).CreatePrimvar(
+        "tangents", Sdf.ValueTypeNames.Vector3fArray, "vertex"
+    )
+    for frame in FRAMES:
+        primvar.Set(facing(49, frame), frame)
+
+
+def add_st(stage):
+    primvars = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath(MESH))
+    primvars.CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, "vertex").Set(
+        Vt.Vec2fArray.FromNumpy(stages.grid().points[:, :2].astype(np.float32))
+    )
+
+
+def turn(name, frame, path=MESH):
+    """An edit of vectors at one frame."""
+
+    def edit(stage):
+        attribute = stage.GetPrimAtPath(path).GetAttribute(name)
+        attribute.Set(stages.vectors(np.array(attribute.Get(frame))[:, ::-1] + 1), frame)
+
+    return edit
+
+
+def both(*edits):
+    def edit(stage):
+        for each in edits:
+            each(stage)
+
+    return edit
+
+
+def move_st(stage):
+    st = stage.GetPrimAtPath(MESH).GetAttribute("primvars:st")
+    st.Set(Vt.Vec2fArray.FromNumpy(np.array(st.Get())[:, ::-1].copy()))
+
+
+def of_the_whole(stage):
+    UsdGeom.Mesh(stage.GetPrimAtPath(MESH)).SetNormalsInterpolation("uniform")
+
+
+VECTORS = [
+    ("normals", add_normals, turn("normals", FRAMES[4]), MESH),
+    ("normals that stand no more for vertices", add_normals, of_the_whole, MESH),
+    ("normals over points that stay", add_normals, turn("normals", FRAMES[1], STILL), STILL),
+    ("tangents", add_tangents, turn("primvars:tangents", FRAMES[4]), MESH),
+    ("velocities", lambda stage: None, turn("velocities", FRAMES[4]), MESH),
+]
+
+
+@pytest.mark.parametrize(("begin", "edit", "where"), [row[1:] for row in VECTORS], ids=[row[0] for row in VECTORS])
+def test_chunks_of_other_vectors(begin, edit, where, tmp_path):
+    shot = saved_shot(tmp_path / "shot.usda", begin)
+    (first,) = ranges(shot, tmp_path, "1001-1004")
+    saved_shot(shot, both(begin, edit))
+    (second,) = ranges(shot, tmp_path, "1005-1008")
+    what = "were baked from other normals, velocities or other vectors"
+    refused([first, second], tmp_path, f"{where}: {first} and {second} {what}")
+
+
+@pytest.mark.parametrize("diagnostics", [True, False])
+def test_chunks_of_other_texture_coordinates(diagnostics, tmp_path):
+    """Which are read for diagnostics alone."""
+    shot, first, second = saved_shot(tmp_path / "shot.usda", add_st), tmp_path / "1.usdc", tmp_path / "2.usdc"
+    bake_to_file(shot, first, chunk="1/2", diagnostics=diagnostics)
+    saved_shot(shot, both(add_st, move_st))
+    bake_to_file(shot, second, chunk="2/2", diagnostics=diagnostics)
+    if diagnostics:
+        what = "were baked from other texture coordinates"
+        refused([first, second], tmp_path, f"{MESH}: {first} and {second} {what}")
+    else:
+        stitch([first, second], tmp_path / "out.usdc")
+    assert bake_to_file(shot, first, chunk="1/2", diagnostics=diagnostics, resume=True).resumed != diagnostics
+
+
 def test_chunks_of_other_options(shot, tmp_path):
     bake_to_file(shot, tmp_path / "a.usdc", frames="1001-1004", diagnostics=True)
     bake_to_file(shot, tmp_path / "b.usdc", frames="1005-1008")
@@ -318,18 +406,6 @@ def text_of(content: bytes, like) -> str:
     return text(path)
 
 
-def test_a_chunk_that_is_being_written(shot, tmp_path, monkeypatch):
-    chunks = ranges(shot, tmp_path, "1001-1004", "1005-1008")
-    stitch_layers = UsdUtils.StitchLayers
-
-    def meanwhile(*layers):
-        os.utime(chunks[0], (1, 1))
-        stitch_layers(*layers)
-
-    monkeypatch.setattr(UsdUtils, "StitchLayers", meanwhile)
-    refused(chunks, tmp_path, f"{chunks[0]} is being written")
-
-
 # ---- Which need not be baked again ----
 
 
@@ -385,6 +461,71 @@ def test_a_chunk_of_another_pose_is_baked_again(frame, shot, chunk):
     saved_shot(shot, move)
     near = held[0] - 1 <= frame <= held[-1] + 1
     assert resumed(shot, chunk) == (not near and frame not in (FRAMES[0], FRAMES[4], FRAMES[-1]))
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize(("begin", "name"), [(add_normals, "normals"), (add_tangents, "primvars:tangents")])
+def test_a_chunk_of_other_vectors_is_baked_again(begin, name, frame, tmp_path):
+    shot, path = saved_shot(tmp_path / "shot.usda", begin), tmp_path / "chunk.usdc"
+    bake_to_file(shot, path, chunk="2/3", max_folded=4)
+    held = record(path).frames
+    saved_shot(shot, both(begin, turn(name, frame)))
+    assert resumed(shot, path) == (frame not in {*held, FRAMES[0], FRAMES[4], FRAMES[-1]})
+
+
+def test_a_chunk_of_other_vectors_over_points_that_stay_is_baked_again(tmp_path):
+    shot, path = saved_shot(tmp_path / "shot.usda", add_normals), tmp_path / "chunk.usdc"
+    bake_to_file(shot, path, chunk="2/3", max_folded=4)
+    assert resumed(shot, path)
+    saved_shot(shot, both(add_normals, turn("normals", FRAMES[1], STILL)))
+    assert not resumed(shot, path)
+
+
+def test_a_chunk_of_vectors_that_cannot_be_recomputed_is_whole(tmp_path):
+    """Since there are too few of them at a frame."""
+
+    def shorten(stage):
+        stage.GetPrimAtPath(MESH).GetAttribute("velocities").Set(stages.vectors(np.zeros((5, 3))), FRAMES[4])
+
+    shot, path = saved_shot(tmp_path / "shot.usda", shorten), tmp_path / "chunk.usdc"
+    bake_to_file(shot, path, chunk="2/3", max_folded=4)
+    assert record(path).frames and resumed(shot, path)
+
+
+def test_a_chunk_of_another_spline_is_baked_again(tmp_path):
+    """Whose knots are where they were."""
+
+    def animate(*values):
+        def edit(stage):
+            spline = Ts.Spline("float")
+            for frame, value in zip((FRAMES[0], FRAMES[3], FRAMES[-1]), values, strict=True):
+                knot = Ts.Knot("float")
+                knot.SetTime(frame), knot.SetValue(value), knot.SetNextInterpolation(Ts.InterpLinear)
+                spline.SetKnot(knot)
+            name = f"skinSlide:{PATCH}:envelope"
+            stage.GetPrimAtPath(MESH).CreateAttribute(name, Sdf.ValueTypeNames.Float).SetSpline(spline)
+
+        return edit
+
+    shot, path = saved_shot(tmp_path / "shot.usda", animate(1.0, 0.5, 1.0)), tmp_path / "chunk.usdc"
+    bake_to_file(shot, path, chunk="2/3", max_folded=4)
+    assert resumed(shot, path)
+    saved_shot(shot, animate(1.0, 0.25, 1.0))
+    assert not resumed(shot, path)
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda stage: stage.SetTimeCodesPerSecond(30),
+        lambda stage: stage.SetStartTimeCode(1000),
+        lambda stage: UsdGeom.SetStageMetersPerUnit(stage, 1.0),
+    ],
+)
+def test_a_chunk_of_another_clock_is_baked_again(edit, shot, chunk):
+    assert resumed(shot, chunk)
+    saved_shot(shot, edit)
+    assert not resumed(shot, chunk)
 
 
 def test_a_chunk_of_another_version_is_baked_again(shot, chunk):

@@ -12,7 +12,6 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import Lookup
@@ -20,12 +19,12 @@ from skinslide.arrays.records import PatchResult
 from skinslide.arrays.slider import version
 from skinslide.problems import FrameProblem, Problem, UsageError
 from skinslide.shot.advice import advice
-from skinslide.shot.derived import Derived
+from skinslide.shot.derived import Cached, Derived
 from skinslide.shot.diagnostics import MeshDiagnostics, Primvar
 from skinslide.shot.frames import AUTHORED
 from skinslide.shot.loop import slide
 from skinslide.shot.options import ChunkOptions, Frames, LayerOptions, Prims, SlideOptions
-from skinslide.shot.origins import is_whole, pose_digest, record_of
+from skinslide.shot.origins import frame_digest, is_whole, record_of
 from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame, SlidFrames, given_products
 from skinslide.shot.report import MEASURES, BakeReport, MeshReport, roughness_text, stretch_text
@@ -228,8 +227,8 @@ class _Baking(Making):
         with self._place as self.overs:
             yield
 
-    def note_poses(self, _mesh: str, _poses: Iterable[np.ndarray]) -> None:
-        """Learns of what cached poses the samples of a mesh's next frame come."""
+    def note_frame(self, _mesh: str, *_read: Iterable[Any] | None) -> None:
+        """Learns what the samples of a mesh's next frame come of, as `frame_digest` takes it."""
 
 
 class _BakingFile(_Baking):
@@ -250,8 +249,8 @@ class _BakingFile(_Baking):
             yield
             self._record.posed(self._poses).write(self.overs.layer)
 
-    def note_poses(self, mesh: str, poses: Iterable[np.ndarray]) -> None:
-        self._poses.setdefault(mesh, []).append(pose_digest(poses))
+    def note_frame(self, mesh: str, *read: Any) -> None:
+        self._poses.setdefault(mesh, []).append(frame_digest(*read))
 
 
 def _given(options: SlideOptions | LayerOptions) -> dict[str, Any]:
@@ -283,15 +282,21 @@ class _MeshBake(MeshMaking):
     def take(self, time: Usd.TimeCode, frames: SlidFrames, made: list[tuple[Primvar, Any]]) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim
         self._check_limits(time, frame)
-        if not time.IsDefault():
-            self._baking.note_poses(self._mesh.path, (frames[at].cached for at in sorted(self._needed[time])))
         geometry, points = UsdGeom.PointBased(prim), Vt.Vec3fArray.FromNumpy(frame.slid)
         overs.set(geometry.GetPointsAttr(), points, time)
         overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
         for primvar, values in made:
             overs.set_primvar(prim.GetPath(), primvar.name, (primvar.kind, primvar.interpolation), values, time)
-        for attribute, sample, value in self._derived.values(time, frames):
+        for attribute, sample, value in self._derived.values(time, self._cached(time, frames), frames):
             overs.set(attribute, value, sample)
+
+    def _cached(self, time: Usd.TimeCode, frames: SlidFrames) -> Iterable[Cached]:
+        """What is derived at a time comes of; noted with all else that was read of a frame."""
+        if time.IsDefault():
+            return self._derived.cached(time)
+        cached, poses = list(self._derived.cached(time)), (frames[at].cached for at in sorted(self._needed[time]))
+        self._baking.note_frame(self._mesh.path, poses, frames[time].controls, cached)
+        return cached
 
     def end(self) -> list[Problem]:
         self._check_roughness()

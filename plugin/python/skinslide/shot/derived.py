@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -23,6 +23,14 @@ class Value(NamedTuple):
     attribute: Usd.Attribute
     time: Usd.TimeCode
     value: Any
+
+
+class Cached(NamedTuple):
+    """What the cache has of an output at a sample; a Fault where that cannot be read."""
+
+    output: Output
+    sample: Usd.TimeCode
+    value: CachedValue | Fault | None
 
 
 class Derived:
@@ -50,6 +58,7 @@ class Derived:
                 self._recomputed.append(output)
             else:
                 self._block(output.name, reason=output.reason and f": {output.reason}")
+        self._read = list(self._recomputed)
 
     @property
     def carries(self) -> bool:
@@ -60,17 +69,35 @@ class Derived:
         """The times that must be slid before the values at `time` are known; it is one of them."""
         return {time}.union(*(self._times_of(output, time) for output in self._recomputed))
 
-    def values(self, time: Usd.TimeCode, frames: SlidFrames) -> Iterator[Value]:
-        """Everything recomputed at a time; `frames` holds the times it needs."""
-        for output in list(self._recomputed):
+    def outline(self) -> Iterator[tuple[Any, ...]]:
+        """What is known of each output without its values, with its samples."""
+        for output in self._meaning.outputs():
+            source = self._sources.get(output.name)  # indices have none of their own
+            yield (*output[:-1], source.samples() if source else [])  # the last is a pointer
+
+    def cached(self, time: Usd.TimeCode) -> Iterator[Cached]:
+        """What the values at a time come of, beside poses."""
+        return (self._cached(output, sample) for output in self._read for sample in self._samples(output, time))
+
+    def cached_at(self, chosen: Callable[[Sequence[float]], Sequence[float]]) -> Iterator[Cached]:
+        """The same at some of the samples of each output; at its only value where it has none."""
+        for output in self._read:
+            for sample in map(Usd.TimeCode, chosen(self._sources[output.name].samples()) or [FIRST]):
+                yield self._cached(output, sample)
+
+    def values(self, time: Usd.TimeCode, cached: Iterable[Cached], frames: SlidFrames) -> Iterator[Value]:
+        """Everything recomputed at a time from what is cached then; `frames` holds the times it needs."""
+        for each in cached:
+            if each.output not in self._recomputed:
+                continue
             try:
-                yield from self._values_of(output, time, frames)
+                yield self._value(each, time, frames)
             except Fault as fault:
                 # Where a sample is missing, its neighbours would be taken instead.
-                self._recomputed.remove(output)
-                self._block(output.name, time, f" at all frames: {fault}")
-                if output.hidden:
-                    self._block(output.hidden)
+                self._recomputed.remove(each.output)
+                self._block(each.output.name, time, f" at all frames: {fault}")
+                if each.output.hidden:
+                    self._block(each.output.hidden)
 
     def sample_faults(self) -> list[Problem]:
         """What is not finite in all samples of the cache."""
@@ -95,17 +122,26 @@ class Derived:
             return [time]
         return [Usd.TimeCode(each) for each in self._meaning.times(output, time.GetValue())]
 
-    def _values_of(self, output: Output, time: Usd.TimeCode, frames: SlidFrames) -> Iterator[Value]:
-        source = self._sources[output.name]
+    def _samples(self, output: Output, time: Usd.TimeCode) -> list[Usd.TimeCode]:
+        """Those that are written at a time: normals may move over points that do not."""
+        samples = self._sources[output.name].samples() if time.IsDefault() else []
+        return [Usd.TimeCode(each) for each in samples] or [time]
+
+    def _cached(self, output: Output, sample: Usd.TimeCode) -> Cached:
+        try:
+            return Cached(output, sample, self._sources[output.name].at(sample))
+        except Fault as fault:
+            return Cached(output, sample, fault)
+
+    def _value(self, cached: Cached, time: Usd.TimeCode, frames: SlidFrames) -> Value:
+        output, sample, value = cached
+        if isinstance(value, Fault):
+            raise value
         poses = [_pose(each, frames) for each in self._times_of(output, time)]
-        # Normals may move over points that do not.
-        samples = source.samples() if time.IsDefault() else []
+        recomputed = self._meaning.value(output, value, poses)
+        self._note_faults(output, value, sample)
         array = Vt.Vec3dArray if output.is_double else Vt.Vec3fArray
-        for sample in map(Usd.TimeCode, samples or [time]):
-            cached = source.at(sample)
-            recomputed = self._meaning.value(output, cached, poses)
-            self._note_faults(output, cached, sample)
-            yield Value(source.attribute, sample, array.FromNumpy(recomputed))
+        return Value(self._sources[output.name].attribute, sample, array.FromNumpy(recomputed))
 
     def _block(self, name: str, time: Usd.TimeCode = FIRST, reason: str | None = None) -> None:
         self.blocked.append(self._mesh.prim.GetAttribute(name))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
+from skinslide.arrays.meaning import Value
 from skinslide.arrays.strain import Rest, Strain, measure_strain
 from skinslide.problems import Fault, Problem, StageProblems
 from skinslide.shot.products import SlidFrame
@@ -37,12 +38,17 @@ PRIMVARS = (
 )
 
 
+def texture_coordinates(mesh: PatchedMesh, st: str = _ST) -> Value | None:
+    """Those by which directions are told, as authored. Raises Fault."""
+    return primvar_source(mesh.prim, st).at(FIRST)
+
+
 class MeshStrain:
     """Measures poses of a mesh by the faces of its patches."""
 
     def __init__(self, mesh: PatchedMesh, st: str = _ST):
         """Raises Fault for texture coordinates that cannot be; without any there are no directions."""
-        value = primvar_source(mesh.prim, st).at(FIRST)
+        value = texture_coordinates(mesh, st)
         corners = None if value is None else mesh.meaning.coordinates(value)
         self._rest = Rest(mesh.face_counts, mesh.face_indices, mesh.rest_points, mesh.weld.vertices, corners)
         self._faces = np.unique(np.concatenate([patch.faces for patch in mesh.patches])).astype(np.int32)

@@ -15,11 +15,15 @@ from typing import Any
 import numpy as np
 from pxr import Sdf, Tf, Usd
 
+from skinslide.arrays.meaning import Value
+from skinslide.arrays.native import Controls
 from skinslide.problems import Fault, FrameProblem
-from skinslide.shot.derived import Derived
+from skinslide.shot.derived import Cached, Derived
+from skinslide.shot.diagnostics import texture_coordinates
 from skinslide.shot.frames import Chunk
 from skinslide.shot.plan import Plan, PlannedMesh
 from skinslide.stage.mesh import PatchedMesh
+from skinslide.write.overs import clock_for, clock_of
 from skinslide.write.record import MeshRecord, Record
 
 _BYTES = 8
@@ -27,7 +31,8 @@ _BYTES = 8
 
 def record_of(plan: Plan, chunk: Chunk | None, options: dict[str, Any]) -> Record:
     """The record of a layer with all that is planned, but for poses, which are known as they are slid."""
-    meshes = {planned.mesh.path: MeshRecord(origins_of(planned.mesh), tuple(planned.frames)) for planned in plan.meshes}
+    told = bool(options.get("diagnostics"))
+    meshes = {each.mesh.path: MeshRecord(origins_of(each, told), tuple(each.frames)) for each in plan.meshes}
     record = Record(meshes, options)
     if chunk:
         record = replace(record, chunk=str(chunk), wanted=tuple(plan.wanted))
@@ -47,49 +52,79 @@ def is_whole(file: Path, record: Record, plan: Plan) -> bool:
         layer = Sdf.Layer.OpenAsAnonymous(str(file))
         found = Record.read(layer)
         poses = {path: mesh.poses for path, mesh in found.meshes.items()}
-        same = record.posed(poses) == found and not found.lacking(layer)
-        return same and all(poses[each.mesh.path] == tuple(_poses_of(each)) for each in plan.meshes)
+        same = record.posed(poses) == found and not found.lacking(layer) and _clock(plan) == clock_of(layer)
+        return same and all(poses[each.mesh.path] == tuple(_frames_of(each)) for each in plan.meshes)
     except (Tf.ErrorException, Fault, FrameProblem):
         return False
 
 
-def _poses_of(planned: PlannedMesh) -> Iterator[int]:
-    derived = Derived(planned.mesh, between=planned.between)
-    for frame in planned.frames:
-        needed = sorted(derived.times_needed(Usd.TimeCode(frame)))
-        yield pose_digest(planned.mesh.points_at(time) for time in needed)
+def _clock(plan: Plan) -> dict[str, Any]:
+    prims = [planned.mesh.prim for planned in plan.meshes]
+    return clock_for(prims[0].GetStage(), [prim.GetPath() for prim in prims])
 
 
-def pose_digest(poses: Iterable[np.ndarray]) -> int:
-    """Of all poses (V, 3) of the cache that the samples at a frame come of, in the order of their times."""
-    return int.from_bytes(bytes.fromhex(_digest(*poses)), "little", signed=True)
+def _frames_of(planned: PlannedMesh) -> Iterator[int]:
+    mesh, derived = planned.mesh, Derived(planned.mesh, between=planned.between)
+    for time in map(Usd.TimeCode, planned.frames):
+        poses = (mesh.points_at(needed) for needed in sorted(derived.times_needed(time)))
+        yield frame_digest(poses, mesh.controls_at(time), derived.cached(time))
 
 
-def origins_of(mesh: PatchedMesh) -> dict[str, str]:
-    """A digest of topology, of rest, of settings and paint at every time, and of three poses of the cache."""
-    return {
+def frame_digest(poses: Iterable[np.ndarray], controls: Sequence[Controls] | None, cached: Iterable[Cached]) -> int:
+    """Of all that the samples at a frame come of.
+
+    Args:
+        poses: Of the cache (V, 3), in the order of their times.
+        controls: Of each patch at the frame; None where none is animated.
+        cached: What is derived comes of, beside poses.
+    """
+    digest = _digest(*poses, controls, *(each.value for each in cached))
+    return int.from_bytes(bytes.fromhex(digest), "little", signed=True)
+
+
+def origins_of(planned: PlannedMesh, with_coordinates: bool) -> dict[str, str]:
+    """A digest of topology, of rest, of settings and paint at every time, and of some samples of what is cached."""
+    mesh = planned.mesh
+    found = {
         "topology": _digest(mesh.face_counts, mesh.face_indices, mesh.left_handed, mesh.subdivision),
         "rest": _digest(mesh.rest_points, mesh.weld.vertices, mesh.space),
         "setup": _digest(mesh.patches, *_animated(mesh)),
         "cache": _digest(mesh.points_times(), *_poses(mesh)),
+        "vectors": _digest(*_vectors(planned)),
     }
+    return {**found, "coordinates": _digest(_coordinates(mesh))} if with_coordinates else found
 
 
 def _animated(mesh: PatchedMesh) -> Iterator[Any]:
     """What is animated on the patches, wherever in the shot."""
-    for index, patch in enumerate(mesh.animation):
-        for time in patch.samples():
+    for index, times in enumerate(mesh.animated_times()):
+        for time in times:
             with suppress(FrameProblem):  # said of that frame, where it is slid
                 yield time, mesh.patch_controls_at(index, Usd.TimeCode(time))
 
 
 def _poses(mesh: PatchedMesh) -> Iterator[np.ndarray]:
-    """The first, the middle and the last: to read all would take each chunk as long as the shot."""
-    times = mesh.points_times()
-    chosen = [times[0], times[len(times) // 2], times[-1]] if times else []
-    for time in map(Usd.TimeCode, chosen) if chosen else [Usd.TimeCode.Default()]:
+    for time in map(Usd.TimeCode, _some(mesh.points_times())) if mesh.points_times() else [Usd.TimeCode.Default()]:
         with suppress(FrameProblem):
             yield mesh.points_at(time)
+
+
+def _vectors(planned: PlannedMesh) -> Iterator[Any]:
+    derived = Derived(planned.mesh, between=planned.between)
+    yield from derived.outline()
+    for each in derived.cached_at(_some if planned.frames else list):
+        yield each.value
+
+
+def _some(times: Sequence[float]) -> list[float]:
+    """The first, the middle and the last: to read all would take each chunk as long as the shot."""
+    return [times[0], times[len(times) // 2], times[-1]] if times else []
+
+
+def _coordinates(mesh: PatchedMesh) -> Value | None:
+    with suppress(Fault):  # which stops the bake
+        return texture_coordinates(mesh)
+    return None
 
 
 def _digest(*values: Any) -> str:

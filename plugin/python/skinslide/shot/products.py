@@ -51,18 +51,18 @@ class SlidFrame:
         frame = slider.slide(points, controls, turns=turns)
         self.cached, self.slid, self.patches, self.turns = points, frame.points, frame.patches, frame.turns
         self.told = slider.check_points(points)
-        self._slider, self._controls = slider, controls
+        self.controls, self._slider = controls, slider
         self._measured: dict[tuple[bool, ...], Diagnostics] = {}
 
     def by(self, slider: Slider) -> SlidFrame:
         """The same time slid by another slider of the mesh."""
-        return SlidFrame(slider, self.cached, self._controls, turns=False)
+        return SlidFrame(slider, self.cached, self.controls, turns=False)
 
     def measured(self, chosen: Sequence[bool] | None = None) -> Diagnostics:
         """What was done to each vertex by the set-ups chosen, None by all: measured once, by one thread at a time."""
         key = () if chosen is None or all(chosen) else tuple(chosen)
         if key not in self._measured:
-            self._measured[key] = self._slider.diagnose(self.cached, self.slid, self._controls, chosen=key or None)
+            self._measured[key] = self._slider.diagnose(self.cached, self.slid, self.controls, chosen=key or None)
         return self._measured[key]
 
 

@@ -24,14 +24,18 @@ from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
 from skinslide.write.clips import Clip, block, manifest_of, write_clips
-from skinslide.write.overs import EXTENSIONS
+from skinslide.write.overs import EXTENSIONS, clock_of
 from skinslide.write.place import check_output, given_output, replacing, saved, state, writing
 from skinslide.write.record import Record, joined
 
-# Fields of a chunk that say what is in it.
-_OWN_FIELDS = {"primChildren", "comment", "customLayerData"}
-
-_ORIGINS = {"topology": "topology", "rest": "rest points", "setup": "set-ups or paint", "cache": "caches"}
+_ORIGINS = {
+    "topology": "topology",
+    "rest": "rest points",
+    "setup": "set-ups or paint",
+    "cache": "caches",
+    "vectors": "normals, velocities or other vectors",
+    "coordinates": "texture coordinates",
+}
 _LIMIT = "max_"  # how options begin on which no sample depends
 _MOST_PARTS = 6  # of a spec in a sentence
 
@@ -164,11 +168,6 @@ class _Chunk:
         if spec:
             self.attributes[path] = spec
 
-    def clock(self) -> dict[str, Any]:
-        """Everything that says how the layer is to be read."""
-        root = self.layer.pseudoRoot
-        return {field: root.GetInfo(field) for field in sorted(set(root.ListInfoKeys()) - _OWN_FIELDS)}
-
 
 def _open(path: Path) -> Sdf.Layer:
     try:
@@ -246,7 +245,7 @@ def _differences(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> Iterator[P
     first = chunks[0]
     for chunk in chunks[1:]:
         pair = f"{first.path} and {chunk.path}"
-        for field in _unequal(first.clock(), chunk.clock()):
+        for field in _unequal(clock_of(first.layer), clock_of(chunk.layer)):
             yield Problem("error", "", None, None, f"{pair} differ in {field}")
         for path in sorted((first.attributes.keys() ^ chunk.attributes.keys()) - blocked):
             if not (first.has(path) and chunk.has(path)):

@@ -24,7 +24,16 @@ from skinslide.arrays.meaning import (
 from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, core_problem, counted
+from skinslide.problems import (
+    Fault,
+    FrameProblem,
+    Problem,
+    SliderError,
+    StageProblems,
+    UsageError,
+    core_problem,
+    counted,
+)
 from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.following import carried, offered
 from skinslide.stage.patch import Animation, Painted, read_patch
@@ -107,6 +116,16 @@ class PatchedMesh:
         animated = (time for patch in self.animation for time in patch.times(self._span()))
         # Points first: where times differ by noise, theirs gives a sample as it was authored.
         return merge_times([*self.points_times(), *animated])
+
+    def animated_times(self) -> list[list[float]]:
+        """When controls of each patch were authored; those of a spline that is too long to list are left out."""
+        found: list[list[float]] = []
+        for patch in self.animation:
+            try:
+                found.append(patch.times(self._span()))
+            except UsageError:
+                found.append(patch.samples())
+        return found
 
     @property
     def interpolates(self) -> bool:

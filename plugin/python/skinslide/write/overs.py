@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ _INFLUENCES = (
     UsdSkel.Tokens.primvarsSkelJointWeights,
     UsdSkel.Tokens.skelBlendShapes,
 )
+_OWN_FIELDS = {"primChildren", "comment", "customLayerData"}  # of a layer, that say what is in it
 _UNSAVED_BYTES = 64 << 20  # a crate file takes what is saved out of memory
 
 
@@ -164,6 +165,21 @@ def _attribute_for(spec: Sdf.AttributeSpec, stage: Usd.Stage) -> Usd.Attribute:
         return stage.GetAttributeAtPath(spec.path)
     prim, name = stage.GetPrimAtPath(spec.path.GetPrimPath()), spec.name.removeprefix("primvars:")
     return UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, spec.typeName, spec.GetInfo("interpolation")).GetAttr()
+
+
+def clock_of(layer: Sdf.Layer) -> dict[str, Any]:
+    """Everything that says how a layer is to be read."""
+    root = layer.pseudoRoot
+    return {field: root.GetInfo(field) for field in sorted(set(root.ListInfoKeys()) - _OWN_FIELDS)}
+
+
+def clock_for(stage: Usd.Stage, prims: Iterable[Sdf.Path]) -> dict[str, Any]:
+    """That of a layer with overs of prims, as a bake writes it."""
+    layer = Sdf.Layer.CreateAnonymous()
+    for prim in prims:
+        Sdf.CreatePrimInLayer(layer, prim)
+    _describe(layer, stage)
+    return clock_of(layer)
 
 
 def _describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:

@@ -23,9 +23,9 @@ _FORM = 1  # of the record itself
 class MeshRecord:
     """One mesh of a layer.
 
-    origins  a digest of each of: its topology, its rest, its set-up, its cache
+    origins  a digest of each of: its topology, its rest, its set-up, its cache, and what else it is baked from
     frames   that its points have samples at, ascending; none: they have a default
-    poses    a digest of the cache at each of them
+    poses    a digest of what was read for each of them
     """
 
     origins: Mapping[str, str]
