@@ -59,9 +59,9 @@ class Ground:
 
     def fill(self, folder: Path, command: Command | None, fresh: bool) -> None:
         shutil.copytree(self.work / "template", folder, dirs_exist_ok=True)
-        for name in command.outputs if command and fresh else ():
-            if (folder / name).is_file():
-                (folder / name).unlink()
+        for pattern in command.outputs if command and fresh else ():
+            for file in filter(Path.is_file, list(folder.glob(pattern))):
+                file.unlink()
 
     def unhurt(self, command: Command, fresh: bool) -> Unhurt:
         if (command, fresh) not in self._unhurt:

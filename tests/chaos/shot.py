@@ -19,7 +19,7 @@ _PICTURES = ("--pictures", "pictures", "--html", "page.html")
 
 @dataclass(frozen=True)
 class Command:
-    """A command of the tool: its words, and the files and folders that it writes in its working folder."""
+    """A command of the tool: its words, and patterns of the files and folders that it writes in its working folder."""
 
     words: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -45,7 +45,8 @@ COMMANDS = [
         ("preview", "shot.usda", "-o", "pictures", "--html", "page.html", *_SMALL, *_QUICK), ("pictures", "page.html")
     ),
     Command(
-        ("stitch", "a.usdc", "b.usdc", "-o", "clips.usda", "--clips", "--quiet"), ("clips.usda", "clips.manifest.usda")
+        ("stitch", "a.usdc", "b.usdc", "-o", "clips.usda", "--clips", "--quiet"),
+        ("clips.usda", "clips.manifest.*.usda"),
     ),
     Command(("farm", "shot.usda", "-o", "job.usdc", "--chunk", "3", "--quiet"), ("job.openjd.json",)),
 ]
@@ -59,7 +60,7 @@ def sheet_of(frame: float) -> np.ndarray:
 
 
 def lay_out(folder: Path) -> None:
-    """The shot, a set-up, two chunks of a bake, and older files where commands write."""
+    """The shot, a set-up, chunks of bakes, and older files where commands write."""
     stage = new_stage()
     stage.SetEndTimeCode(FRAMES[-1])
     mesh = add_mesh(stage, quads(sheet_of(FRAMES[0]), SIDE, SIDE), frames=())
@@ -73,6 +74,8 @@ def lay_out(folder: Path) -> None:
     skinslide.bake_to_file(shot, folder / "b.usdc", frames="1005-1008")
     for older in ("out.usdc", "out.usda"):
         skinslide.bake_to_file(shot, folder / older, frames="1001")
+    skinslide.bake_to_file(shot, folder / "c.usdc", frames="1001", diagnostics=True)
+    skinslide.stitch([folder / "c.usdc"], folder / "clips.usda", clips=True)
     (folder / "page.html").write_text("an older page")
 
 

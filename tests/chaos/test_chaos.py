@@ -34,6 +34,7 @@ FOUND = {
     "USD's own file beside ours": (COMMANDS[1], ("rename", 2, errno.ENOSPC)),
     "a job that is beside its layer": (COMMANDS[-1], ("rename", 1, -signal.SIGTERM)),
     "a manifest that is beside its clips": (COMMANDS[-2], ("rename", -1, -signal.SIGTERM)),
+    "a manifest that comes before its clips": (COMMANDS[-2], ("rename", -2, -signal.SIGTERM)),
     **{f"roughness, {-number} before the last": (ALONE, ("ours", number, errno.ENOMEM)) for number in range(-8, 0)},
 }
 

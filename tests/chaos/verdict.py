@@ -3,6 +3,7 @@
 import re
 import signal
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from pathlib import Path
 
 from chaos.shot import Command, snapshot
@@ -41,7 +42,7 @@ def faults(
 
 
 def _outputs(command: Command, files: Files) -> list[str]:
-    return [name for name in files if name.split("/")[0] in command.outputs]
+    return [name for name in files if any(fnmatch(name.split("/")[0], pattern) for pattern in command.outputs)]
 
 
 def _fault_of(name: str, now: str | bytes | None, allowed: tuple, killed: bool) -> Iterator[str]:

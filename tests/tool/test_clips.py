@@ -1,10 +1,14 @@
 """Value clips over chunks: USD reads through them what it reads of the layer that copies all samples."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd
+from pxr import Sdf, Usd, UsdUtils
 from test_chunks import FRAMES, SHORT, STILL, parts, ranges, saved_shot
 
 import stages
@@ -94,8 +98,66 @@ def test_what_does_not_fit_is_refused(shot, tmp_path):
         stitch([tmp_path / "out.usda"], tmp_path / "more.usda")
 
 
+# Ends the process at once, as a machine that goes down would, when files were put in place so many times.
+KILLED = """
+import os, signal, sys
+from skinslide import stitch
+
+count, output, *chunks = sys.argv[1:]
+left, replace = [int(count)], os.replace
+
+def replacing(*names):
+    replace(*names)
+    left[0] -= 1
+    if not left[0]:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+os.replace = replacing
+stitch(chunks, output, clips=True)
+"""
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_kill_leaves_all_as_it_was_or_whole(count, shot, tmp_path):
+    """Though the older layer has more than the new one, of which a manifest says nothing."""
+    folders = [tmp_path / name for name in ("older", "newer")]
+    older, newer = (parts(shot, make(folder), diagnostics=folder.name == "older") for folder in folders)
+    read = []
+    for chunks in (newer, older):
+        stitch(chunks, tmp_path / "out.usda", clips=True)
+        read.append(values(above(tmp_path / "out.usda", shot)))
+    words = [str(count), str(tmp_path / "out.usda"), *map(str, newer)]
+    killed = subprocess.run([sys.executable, "-c", KILLED, *words], capture_output=True)
+    assert killed.returncode == -signal.SIGKILL, killed.stderr
+    assert values(above(tmp_path / "out.usda", shot)) == read[count == 1]
+    stitch(newer, tmp_path / "out.usda", clips=True)
+    assert values(above(tmp_path / "out.usda", shot)) == read[0] != read[1]
+
+
+def make(folder):
+    folder.mkdir()
+    return folder
+
+
+@pytest.mark.parametrize("clips", [True, False])
+def test_a_chunk_that_is_being_written(clips, shot, tmp_path, monkeypatch):
+    chunks = parts(shot, tmp_path)
+    stitch_layers = UsdUtils.StitchLayers
+
+    def meanwhile(*layers):
+        os.utime(chunks[0], (1, 1))
+        stitch_layers(*layers)
+
+    monkeypatch.setattr(UsdUtils, "StitchLayers", meanwhile)
+    with pytest.raises(StageProblems, match=f"{chunks[0]} is being written"):
+        stitch(chunks, tmp_path / "out.usda", clips=clips)
+    assert not list(tmp_path.glob("out.*"))
+
+
 def test_a_chunk_called_as_the_manifest_stays(shot, tmp_path):
-    manifest, rest = tmp_path / "out.manifest.usda", tmp_path / "rest.usda"
+    stitch(parts(shot, tmp_path), tmp_path / "out.usda", clips=True)
+    (manifest,), rest = tmp_path.glob("out.manifest.*.usda"), tmp_path / "rest.usda"
+    (tmp_path / "out.usda").unlink()
     bake_to_file(shot, manifest, chunk="1/2")
     bake_to_file(shot, rest, chunk="2/2")
     before = manifest.read_bytes()
@@ -109,4 +171,5 @@ def test_command(shot, tmp_path, capfd):
     out = tmp_path / "out.usda"
     assert main(["stitch", *map(str, chunks), "-o", str(out), "--clips", "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["frames"] == FRAMES
-    assert sorted(path.name for path in tmp_path.glob("out.*")) == ["out.manifest.usda", "out.usda"]
+    (manifest,) = tmp_path.glob("out.manifest.*")
+    assert sorted(tmp_path.glob("out.*")) == [manifest, out] and manifest.name in out.read_text()

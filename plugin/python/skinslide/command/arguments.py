@@ -376,7 +376,8 @@ def _add_stitch(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--clips",
         action="store_true",
-        help="write value clips over the chunks, which stay, instead of copying their samples, with OUT.manifest.usda",
+        help="write value clips over the chunks, which stay, instead of copying their samples, with "
+        "OUT.manifest.DIGEST.usda",
     )
     _add_printing(command)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import glob
 import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import fields
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -59,7 +61,7 @@ def _is_json(word: str) -> bool:
 
 # ---- What a command left behind ----
 
-_BESIDE = (".openjd.json", ".slurm.sh", ".manifest.usda")  # jobs of farm, and what clips of stitch need
+_BESIDE = (".openjd.json", ".slurm.sh", ".manifest.*.usda")  # jobs of farm, and what clips of stitch need
 
 
 def _state(given: dict[str, Any]) -> dict[str, tuple[int, ...]]:
@@ -78,8 +80,9 @@ def _written_by(given: dict[str, Any]) -> Iterator[str]:
     """Those that are named, and those beside the output that have its name."""
     yield from filter(None, (given.get("output"), given.get("html"), given.get("payload")))
     if given.get("output"):
-        stem = os.path.splitext(given["output"])[0]
-        yield from (stem + suffix for suffix in _BESIDE)
+        stem = glob.escape(os.path.splitext(given["output"])[0])
+        with suppress(ValueError):  # a null character
+            yield from (file for suffix in _BESIDE for file in glob.glob(stem + suffix))
 
 
 def _outcome(given: dict[str, Any], before: dict[str, tuple[int, ...]]) -> str:

@@ -23,7 +23,7 @@ from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
-from skinslide.write.clips import Clip, block, manifest_of, write_clips
+from skinslide.write.clips import Clip, ClipLayer, block, manifest_of
 from skinslide.write.overs import EXTENSIONS, clock_of
 from skinslide.write.place import check_output, given_output, replacing, saved, state, writing
 from skinslide.write.record import Record, joined
@@ -76,7 +76,8 @@ def stitch(
         frames: Those that the chunks must have, no more and no less; None: those of which they say that they are
             parts, or else all of the shot from the first to the last that they have.
         clips: Writes value clips over the chunks, which stay where they are, instead of copying what they hold; and a
-            manifest beside the layer, of its name and .manifest.usda. USD reads the same samples.
+            manifest beside the layer, of its name and .manifest.DIGEST.usda, which stays until somebody removes it.
+            USD reads the same samples.
 
     Returns:
         What the layer holds.
@@ -93,9 +94,7 @@ def stitch(
         check_output(file, EXTENSIONS)
     opened = [_Chunk(file) for file in files]
     _refuse_repeated(files)
-    for output_file in filter(Path.exists, written):
-        if any(file.samefile(output_file) for file in files):
-            raise UsageError(f"output {output_file}: is one of the chunks")
+    _refuse_chunk(stitched, files)
     blocked = {path for chunk in opened for path in chunk.blocked}
     alone = [problem for chunk in opened for problem in chunk.problems()]
     among = [*_mixtures(opened), *_differences(opened, blocked), *_overlaps(opened, blocked)]
@@ -103,10 +102,8 @@ def stitch(
     if problems:
         raise StageProblems(problems)
     opened.sort(key=lambda chunk: chunk.record.frames)
-    if clips:
-        write_clips([Clip(chunk.path, chunk.layer, chunk.record) for chunk in opened], sorted(blocked), stitched)
-    else:
-        _write(opened, sorted(blocked), stitched)
+    write = _write_clips if clips else _write
+    write(opened, sorted(blocked), stitched)
     return _report(opened, blocked)
 
 
@@ -126,6 +123,12 @@ def _refuse_repeated(files: Sequence[Path]) -> None:
             if file.samefile(other):
                 same = "" if file == other else f", as {other}"
                 raise UsageError(f"chunk {file}: is given twice{same}")
+
+
+def _refuse_chunk(output: Path, files: Sequence[Path]) -> None:
+    """Raises UsageError for an output that is a chunk."""
+    if output.exists() and any(file.samefile(output) for file in files):
+        raise UsageError(f"output {output}: is one of the chunks")
 
 
 class _Chunk:
@@ -287,9 +290,21 @@ def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) 
         block(layer, blocked)
         joined([chunk.record for chunk in chunks]).write(layer)
         _save(layer, output)
-        changed = [problem for chunk in chunks for problem in chunk.changes()]
-        if changed:
-            raise StageProblems(changed)
+        _refuse_changed(chunks)
+
+
+def _write_clips(chunks: Sequence[_Chunk], blocked: Sequence[Sdf.Path], output: Path) -> None:
+    made = ClipLayer([Clip(chunk.path, chunk.layer, chunk.record) for chunk in chunks], blocked, output)
+    _refuse_chunk(made.manifest_file, [chunk.path for chunk in chunks])
+    with made.in_place():
+        _refuse_changed(chunks)
+
+
+def _refuse_changed(chunks: Sequence[_Chunk]) -> None:
+    """Raises StageProblems where a chunk is another than it was when it was read."""
+    changed = [problem for chunk in chunks for problem in chunk.changes()]
+    if changed:
+        raise StageProblems(changed)
 
 
 def _save(layer: Sdf.Layer, output: Path) -> None:

@@ -2,11 +2,14 @@
 
 for each mesh: the chunks that have it, each active from the first frame that it has and the one before has not
 manifest: every attribute that has samples; the layer: all that does not vary
+put the manifest in place, under a name of its content, which no other layer means; then the layer
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import hashlib
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,6 +19,7 @@ from skinslide.write.place import asset_path, replacing, saved, writing
 from skinslide.write.record import Record, joined
 
 _SAMPLES = "timeSamples"
+_BYTES = 4  # of a digest
 
 
 class Clip(NamedTuple):
@@ -34,26 +38,41 @@ def block(layer: Sdf.Layer, attributes: Iterable[Sdf.Path]) -> None:
         spec.default = Sdf.ValueBlock()
 
 
-def manifest_of(output: Path) -> Path:
-    """What is written beside a layer of clips."""
-    return output.with_name(f"{output.stem}.manifest.usda")
+def manifest_of(output: Path, content: str = "") -> Path:
+    """What is written beside a layer of clips: each content under a name of its own, as long as any other's."""
+    token = hashlib.blake2b(content.encode(), digest_size=_BYTES).hexdigest()
+    return output.with_name(f"{output.stem}.manifest.{token}.usda")
 
 
-def write_clips(clips: Sequence[Clip], blocked: Sequence[Sdf.Path], output: Path) -> None:
-    """Writes the layer and its manifest. Clips come in the order of their frames."""
-    manifest_file = manifest_of(output)
-    layer, manifest = Sdf.Layer.CreateAnonymous(".usda"), Sdf.Layer.CreateAnonymous(".usda")
-    for clip in clips:
-        UsdUtils.StitchLayers(layer, _still(clip.layer, manifest))
-    block(layer, blocked)
-    for path in joined([clip.record for clip in clips]).meshes:
-        own = [clip for clip in clips if path in clip.record.meshes and clip.record.meshes[path].frames]
-        if own:
-            _author(layer, path, own, manifest_file, output)
-    joined([clip.record for clip in clips]).write(layer)
-    for each, file in ((manifest, manifest_file), (layer, output)):
-        with replacing(file) as partial, writing(file):
-            saved(each.Export(str(partial)))
+class ClipLayer:
+    """A layer of clips and its manifest, before they are written."""
+
+    def __init__(self, clips: Sequence[Clip], blocked: Sequence[Sdf.Path], output: Path):
+        """Clips come in the order of their frames."""
+        self._output, self._layer = output, Sdf.Layer.CreateAnonymous(".usda")
+        manifest = Sdf.Layer.CreateAnonymous(".usda")
+        for clip in clips:
+            UsdUtils.StitchLayers(self._layer, _still(clip.layer, manifest))
+        block(self._layer, blocked)
+        self._manifest = manifest.ExportToString()
+        self.manifest_file = manifest_of(output, self._manifest)
+        record = joined([clip.record for clip in clips])
+        for path in record.meshes:
+            own = [clip for clip in clips if path in clip.record.meshes and clip.record.meshes[path].frames]
+            if own:
+                _author(self._layer, path, own, self.manifest_file, output)
+        record.write(self._layer)
+
+    @contextmanager
+    def in_place(self) -> Iterator[None]:
+        """Writes both; puts them in place when the block ends. An exception leaves the output as it was."""
+        with replacing(self._output) as partial:
+            with writing(self._output):
+                saved(self._layer.Export(str(partial)))
+            with replacing(self.manifest_file) as partial_manifest:
+                with writing(self.manifest_file):
+                    partial_manifest.write_text(self._manifest, encoding="utf-8")
+                yield
 
 
 def _still(chunk: Sdf.Layer, manifest: Sdf.Layer) -> Sdf.Layer:
