@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import slurm
-from jobs import content, kill_baking, tool, wait_until
+from jobs import baking, content, kill_baking, tool, wait_until
 
 pytestmark = pytest.mark.skipif(bool(slurm.why_not()), reason=f"Slurm: {slurm.why_not()}")
 
@@ -80,8 +80,10 @@ def test_tasks_that_are_killed_and_requeued(job, whole):
     kill_baking(job.folder, "slid.chunk1.usdc")
     job.wait(job.task(1), "FAILED")
     job.requeue(job.task(1))
-    wait_until(lambda: job.states()[job.task(3)] == "RUNNING", "task 3", 0.02)
+    wait_until(lambda: baking(job.chunk(3)), "task 3", 0.02)
+    earlier = set(baking(job.chunk(3)))
     job.requeue(job.task(3))
+    wait_until(lambda: not earlier.intersection(baking(job.chunk(3))), "end of what was requeued")
     job.wait(job.ids["stitch"], "COMPLETED")
     assert content(job.folder / "slid.usdc") == whole
     assert job.said(job.task(2)).count("frames/s") and not job.said(job.task(2)).count("whole already")
@@ -101,6 +103,29 @@ def test_a_task_that_fails_is_named_and_tried_again(job, whole):
     again.wait(again.ids["stitch"], "COMPLETED")
     assert [job.chunk(number).stat().st_ino for number in (1, 2, 3)] == before
     assert content(job.folder / "slid.usdc") == whole
+
+
+def test_more_chunks_than_an_array_has_tasks(shot, whole, environment):
+    """A task bakes several: what it has baked before it is killed, it does not bake again."""
+    count = 2 * slurm.MOST_TASKS
+    job = Submitted(shot, environment, "--chunk", "1")
+    kill_baking(job.folder, f"slid.chunk{slurm.MOST_TASKS + 1}.usdc")
+    job.wait(job.task(1), "FAILED")
+    assert f"/slid.chunk{count}.usdc" in (job.folder / "slid.slurm.sh").read_text()
+    first = job.chunk(1).stat().st_ino
+    job.requeue(job.task(1))
+    job.wait(job.ids["stitch"], "COMPLETED")
+    assert job.chunk(1).stat().st_ino == first and job.said(job.task(1)).count("is whole already") == 1
+    assert len(list(job.folder.glob("slid.chunk*.usdc"))) == count
+    assert job.task(slurm.MOST_TASKS + 1) not in job.states()
+    assert content(job.folder / "slid.usdc") == whole
+
+
+def test_a_chunk_that_fails_does_not_keep_a_task_from_the_others(shot, environment):
+    job = Submitted(shot, environment, "--chunk", "1")
+    job.chunk(slurm.MOST_TASKS).mkdir()
+    job.wait(job.task(slurm.MOST_TASKS), "FAILED")
+    assert job.chunk(2 * slurm.MOST_TASKS).is_file()
 
 
 def test_pictures_are_drawn_though_stitching_failed(shot, environment):

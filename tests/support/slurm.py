@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
+MOST_TASKS = 4  # of an array
 _LATE = 30  # seconds
 
 _CONFIGURATION = """\
@@ -36,6 +37,7 @@ MpiDefault=none
 SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,bf_interval=1
 ReturnToService=2
 NodeName={host} NodeAddr=127.0.0.1 CPUs=2
+MaxArraySize={array}
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE
 """
 
@@ -62,7 +64,8 @@ def _running(folder: Path) -> Iterator[dict[str, str]]:
     (folder / "key").write_bytes(os.urandom(1024))
     (folder / "key").chmod(0o400)
     host = socket.gethostname().split(".")[0]
-    (folder / "slurm.conf").write_text(_CONFIGURATION.format(folder=folder, host=host, ports=_free_ports(2)))
+    values = {"folder": folder, "host": host, "ports": _free_ports(2), "array": MOST_TASKS + 1}
+    (folder / "slurm.conf").write_text(_CONFIGURATION.format(**values))
     environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf")}
     files = {"key-file": "key", "socket": "munge.socket", "pid-file": "munge.pid", "log-file": "munge.log"}
     munge = [f"--{option}={folder / name}" for option, name in {**files, "seed-file": "seed"}.items()]

@@ -2,6 +2,9 @@
 
 Each step waits until what is before it has ended, however: stitching names what is not there, and is run again with
 `scontrol requeue`, as a task is. After `afterok` a step would wait for ever for one that failed and was requeued.
+
+Slurm has no task of a number that is not below its MaxArraySize, 1001 unless it was set up otherwise: where there are
+more chunks, each task bakes several, one after the other.
 """
 
 from __future__ import annotations
@@ -11,20 +14,27 @@ from collections.abc import Sequence
 
 from skinslide.queues.steps import Job
 
-_TASK = "$SLURM_ARRAY_TASK_ID"
+_CHUNK = "$skinslide_chunk"
 
 _SCRIPT = """\
 #!/usr/bin/env bash
-# {name}: {count} tasks, each a chunk of frames, then one that puts them together.
+# {name}: {count} chunks of frames, each baked by a task, or several where Slurm has no more tasks; then one that puts
+# them together.
 #     bash {file} [options of sbatch, such as --partition=long]
 # Prints the ids of the jobs. A task that failed, and then stitch, is run again by: scontrol requeue ID
 set -euo pipefail
 
 submit() {{ sbatch --parsable --chdir={folder} --requeue --open-mode=append "$@"; }}
 
-bake=$(submit --job-name={bake} --array=1-{count} --output={log}.%A_%a.log "$@" <<'TASK'
+tasks=$(scontrol show config | sed -n 's/^MaxArraySize *= *//p')
+tasks=$((tasks - 1 < {count} ? tasks - 1 : {count}))
+bake=$(submit --job-name={bake} --array=1-"$tasks" --output={log}.%A_%a.log "$@" <<'TASK'
 #!/usr/bin/env bash
-exec {bake_words}
+code=0
+for ((skinslide_chunk = SLURM_ARRAY_TASK_ID; skinslide_chunk <= {count}; skinslide_chunk += SLURM_ARRAY_TASK_MAX)); do
+    {bake_words} || code=$?
+done
+exit $code
 TASK
 )
 bake=${{bake%%;*}}
@@ -46,7 +56,7 @@ echo "{step} ${step}"
 def script(job: Job) -> str:
     folder, stem = str(job.folder), job.layer.stem
     log = shlex.quote(f"{stem}.slurm".replace("%", "%%"))
-    bake = job.bake(str(job.stage), folder, _TASK)
+    bake = job.bake(str(job.stage), folder, _CHUNK)
     after = _after(job, "stitch", "bake", job.stitch(folder), log)
     if job.drawing:
         after += _after(job, "draw", "stitch", job.preview(str(job.stage), folder), log)
@@ -69,8 +79,8 @@ def _after(job: Job, step: str, waits: str, words: Sequence[str], log: str) -> s
 
 
 def _line(tool: str, words: Sequence[str]) -> str:
-    """A command for a shell that knows the number of the task."""
-    return " ".join(f'"{_TASK}"'.join(map(_quoted, word.split(_TASK))) for word in [tool, *words])
+    """A command for a shell that knows the number of the chunk."""
+    return " ".join(f'"{_CHUNK}"'.join(map(_quoted, word.split(_CHUNK))) for word in [tool, *words])
 
 
 def _quoted(part: str) -> str:
