@@ -21,6 +21,17 @@ ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front) {
     return s;
 }
 
+/* Where column c of an update begins, so that row r is r further: columns are stored from their own tile of four on. */
+static ptrdiff_t place_in_update(const ss_shape *s, int32_t c) {
+    ptrdiff_t tile = c / 4, height = (ptrdiff_t)s->height;
+    return 4 * tile * height - 8 * tile * (tile - 1) + c % 4 * (height - 4 * tile) - 4 * tile;
+}
+
+/* How many numbers it is. */
+static int64_t size_of_update(const ss_shape *s) {
+    return 4 * (int64_t)s->below_tiles * (int64_t)s->height - 8 * (int64_t)s->below_tiles * (s->below_tiles - 1);
+}
+
 /* Where a row of a front begins in its panel: its columns come first, then those below. */
 static size_t place_in_panel(const ss_front *front, const ss_shape *s, int32_t block, int32_t row) {
     uint32_t place = (uint32_t)(row < front->count ? block * row : s->columns + block * (row - front->count));
@@ -42,7 +53,7 @@ static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2], wanted *
     ss_shape s = ss_shape_of(frontal, &frontal->system->fronts[f]);
     int64_t size = 4 * (int64_t)s.columns * s.tiles, *own = &end[frontal->odd[f]];
     frontal->panel[f] = room->panels, room->panels += size;
-    frontal->update[f] = *own, *own += 4 * (int64_t)s.below_tiles * (int64_t)s.height;
+    frontal->update[f] = *own, *own += size_of_update(&s);
     room->panel = most(size, room->panel);
     room->stack[frontal->odd[f]] = most(*own, room->stack[frontal->odd[f]]);
     room->columns = (int32_t)most(s.columns, room->columns);
@@ -90,8 +101,8 @@ static bool allocate_room(ss_frontal *frontal, const wanted *room) {
     frontal->force = SS_NEW(memory, double, room->panel);
     for (int k = 0; k < 2; k++)
         frontal->stack[k] = SS_NEW(memory, double, room->stack[k]);
-    frontal->to_panel = SS_NEW(memory, size_t, room->below);
-    frontal->to_update = SS_NEW(memory, int32_t, room->below);
+    frontal->to_panel = SS_NEW(memory, ptrdiff_t, room->below);
+    frontal->to_update = SS_NEW(memory, ptrdiff_t, room->below);
     frontal->x = SS_NEW(memory, double, 2 * (int64_t)room->columns);
     frontal->below = SS_NEW(memory, double, 2 * (int64_t)room->below);
     return !memory->failed;
@@ -128,6 +139,8 @@ void ss_frontal_destroy(ss_frontal *frontal) {
 
 /* ---- Assembly ---- */
 
+#define INLINE static inline __attribute__((always_inline)) /* so that block is a constant */
+
 static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const double *entries, double *panel) {
     for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++)
         panel[frontal->at[i]] = entries[frontal->system->entries[i].edge];
@@ -146,32 +159,39 @@ static void assemble_extras(const ss_front *front, const ss_shape *s, const doub
 static int32_t list_rows(ss_frontal *frontal, const ss_front *child, const ss_front *front, const ss_shape *s) {
     const int32_t *place = frontal->system->place + child->row_start;
     int32_t block = frontal->block, inside = 0;
-    for (int32_t i = 0; i < child->row_count; i++)
-        for (int32_t k = 0, to = block * i; k < block; k++, to++) {
-            frontal->to_panel[to] = place_in_panel(front, s, block, place[i]) + (size_t)k;
-            frontal->to_update[to] = block * (place[i] - front->count) + k;
-            inside += place[i] < front->count;
-        }
+    for (int32_t i = 0; i < child->row_count; i++) {
+        frontal->to_panel[i] = (ptrdiff_t)place_in_panel(front, s, block, place[i]);
+        frontal->to_update[i] = block * ((ptrdiff_t)place[i] - front->count);
+        inside += place[i] < front->count;
+    }
     return inside;
 }
 
-/* Adds a child's update where its rows are, column by column. */
-static void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, double *panel,
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
+/* Adds a column of a child's update, from a row on. */
+INLINE void add_column(int block, const double *column, int32_t begin, int32_t end, const ptrdiff_t *place, double *to) {
+    for (int32_t i = begin; i < end; i++)
+        if (block == 2)
+            *(pair *)(to + place[i]) += *(const pair *)(column + 2 * i);
+        else
+            to[place[i]] += column[i];
+}
+
+/* Adds a child's update where its rows are, column by column. What is above the diagonal of a block is added, too, and not read. */
+INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
                    double *update) {
     const ss_front *own = &frontal->system->fronts[child];
     ss_shape from = ss_shape_of(frontal, own);
-    int32_t inside = list_rows(frontal, own, front, s), base = frontal->block * front->count;
-    const double *column = frontal->stack[frontal->odd[child]] + frontal->update[child];
-    for (int32_t j = 0; j < from.below; j++, column += from.height) {
-        bool is_inside = j < inside;
-        double *to = is_inside ? panel + 4 * (ptrdiff_t)(base + frontal->to_update[j])
-                               : update + frontal->to_update[j] * (ptrdiff_t)s->height;
-        if (is_inside)
-            for (int32_t i = j; i < from.below; i++)
-                to[frontal->to_panel[i]] += column[i];
-        else
-            for (int32_t i = j; i < from.below; i++)
-                to[frontal->to_update[i]] += column[i];
+    int32_t inside = list_rows(frontal, own, front, s);
+    const double *origin = frontal->stack[frontal->odd[child]] + frontal->update[child];
+    for (int32_t j = 0; j < from.below; j++) {
+        int32_t row = j / block;
+        bool is_inside = row < inside;
+        const double *column = origin + place_in_update(&from, j);
+        ptrdiff_t there = frontal->to_update[row] + j % block;
+        double *to = is_inside ? panel + 4 * (block * front->count + there) : update + place_in_update(s, (int32_t)there);
+        add_column(block, column, row, own->row_count, is_inside ? frontal->to_panel : frontal->to_update, to);
         double *extras = is_inside ? to + 4 * (size_t)s->columns * (size_t)(s->tiles - 1) : to + s->height - 4;
         for (int k = 0; k < 3 && frontal->dominant; k++)
             extras[k] += column[from.height - 4 + (size_t)k];
@@ -181,12 +201,16 @@ static void extend(ss_frontal *frontal, int32_t child, const ss_front *front, co
 static bool eliminate(ss_frontal *frontal, int32_t f, const ss_shape *s) {
     const ss_front *front = &frontal->system->fronts[f];
     double *panel = frontal->L + frontal->panel[f], *update = frontal->stack[frontal->odd[f]] + frontal->update[f];
-    memset(update, 0, 4 * (size_t)s->below_tiles * s->height * sizeof *update);
+    if (front->child >= 0)
+        memset(update, 0, (size_t)size_of_update(s) * sizeof *update);
     for (int32_t child = front->child; child >= 0; child = frontal->system->fronts[child].next)
-        extend(frontal, child, front, s, panel, update);
+        if (frontal->block == 2)
+            extend(frontal, child, front, s, 2, panel, update);
+        else
+            extend(frontal, child, front, s, 1, panel, update);
     bool good = frontal->kernels->factor(s, frontal->dominant, panel, frontal->force);
     if (s->below_tiles > 0)
-        frontal->kernels->update(s, panel, frontal->force, update);
+        frontal->kernels->update(s, panel, frontal->force, front->child < 0, update);
     return good;
 }
 

@@ -81,15 +81,16 @@ typedef struct ss_shape {
     int32_t used, columns;                 /* its columns, and with those that pad them */
     int32_t below;                         /* rows below */
     int32_t own_tiles, below_tiles, tiles; /* of the columns' own rows, of those below; all */
-    size_t height;                         /* of its update */
+    size_t height;                         /* of the first column of its update */
 } ss_shape;
 
 typedef struct ss_kernels {
     /* Factors a panel; force, of its size, keeps what it was before it was divided by its pivots. False where one is not a number
      * to divide by. */
     bool (*factor)(const ss_shape *s, bool dominant, double *panel, double *force);
-    /* Adds to an update, by columns, what a factored panel leaves there. */
-    void (*update)(const ss_shape *s, const double *panel, const double *force, double *update);
+    /* Adds to an update what a factored panel leaves there; a new one holds nothing yet. It is stored by columns, each from its
+     * own tile on. */
+    void (*update)(const ss_shape *s, const double *panel, const double *force, bool is_new, double *update);
     /* Of 1 or 2 right sides. Eliminates x [count][columns]; below [count][rows below] is out what that leaves there. */
     void (*forward[2])(const ss_shape *s, const double *panel, double *x, double *below);
     /* x [count][columns]: in what forward made, over the pivots; out the solution, which is given below. */
@@ -111,11 +112,11 @@ typedef struct ss_frontal {
     int64_t *panel, *update; /* [front_count] where the columns of each front are in L, and its update is in a stack */
     uint8_t *odd;            /* [front_count] in which of the two */
     double *L, *stack[2];
-    double *force;      /* [largest panel] a panel before it was divided by its pivots */
-    size_t *at;         /* [edge_count] where the entries of the matrix are in the panels of their fronts */
-    size_t *to_panel;   /* [most rows below] where rows of a child go, in a panel ... */
-    int32_t *to_update; /* ... and in an update, below 0 where they are columns */
-    double *x, *below;  /* [2][most columns], [2][most rows below] */
+    double *force;        /* [largest panel] a panel before it was divided by its pivots */
+    size_t *at;           /* [edge_count] where the entries of the matrix are in the panels of their fronts */
+    ptrdiff_t *to_panel;  /* [most rows below] where rows of a child go, in a panel ... */
+    ptrdiff_t *to_update; /* ... and in an update, below 0 where they are columns */
+    double *x, *below;    /* [2][most columns], [2][most rows below] */
 } ss_frontal;
 
 skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, ss_frontal **out,
