@@ -22,10 +22,8 @@ static double doubled_area(const double a[2], const double b[2], const double c[
     return x1 * y2 - y1 * x2;
 }
 
-/* Returns whether its fan turns left beyond doubt: each area is above a rounding that, in an embedding of size 1, is also above that
- * of the area itself. */
-static bool count_face(const ss_faces *faces, int32_t face, const double (*uv)[2], ss_layout *layout) {
-    bool folded = false, collapsed = true, left = true;
+static void count_face(const ss_faces *faces, int32_t face, const double (*uv)[2], ss_layout *layout) {
+    bool folded = false, collapsed = true;
     for (int32_t t = 0; t < ss_fan_size(faces, face); t++) {
         int32_t v[3];
         double rounding;
@@ -33,11 +31,21 @@ static bool count_face(const ss_faces *faces, int32_t face, const double (*uv)[2
         double area = doubled_area(uv[v[0]], uv[v[1]], uv[v[2]], &rounding);
         folded |= area < -rounding;
         collapsed &= fabs(area) <= rounding;
-        left &= area > rounding;
     }
     layout->folded += folded;
     layout->collapsed += collapsed;
-    return left;
+}
+
+/* Whether all triangles turn left beyond doubt: each area is above a rounding that, in an embedding of size 1, is also above that of
+ * the area itself. */
+static bool clearly_turn_left(const ss_triangles *triangles, const double (*uv)[2]) {
+    int32_t doubtful = 0;
+    for (int32_t t = 0; t < triangles->count; t++) {
+        const int32_t *v = triangles->vertex[t];
+        double rounding, area = doubled_area(uv[v[0]], uv[v[1]], uv[v[2]], &rounding);
+        doubtful += !(area > rounding);
+    }
+    return doubtful == 0;
 }
 
 /* Exactly, or straight on, every triangle of the fan: so the face does not go round twice. */
@@ -62,11 +70,14 @@ static bool corners_turn_left(const ss_faces *faces, int32_t face, const double 
 }
 
 ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]) {
+    const ss_faces *faces = &patch->faces;
     ss_layout layout = {.regular = patch->loop_count == 1 || patch->setup->holes == SKINSLIDE_HOLES_PINNED};
-    for (int32_t f = 0; f < patch->faces.face_count; f++) {
-        bool left = count_face(&patch->faces, f, uv, &layout);
-        bool convex = (left || fan_turns_left(&patch->faces, f, uv)) && corners_turn_left(&patch->faces, f, uv);
-        layout.regular = layout.regular && convex;
+    bool clear = clearly_turn_left(&patch->triangles, uv);
+    for (int32_t f = 0; f < faces->face_count && !clear; f++) {
+        count_face(faces, f, uv, &layout);
+        layout.regular = layout.regular && fan_turns_left(faces, f, uv);
     }
+    for (int32_t f = 0; f < faces->face_count && layout.regular; f++)
+        layout.regular = corners_turn_left(faces, f, uv);
     return layout;
 }

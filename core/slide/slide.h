@@ -55,7 +55,7 @@ typedef struct ss_edge_paint {
 typedef struct ss_patch_work {
     ss_slide *slide;
     ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
-    double *lengths;                  /* [edge_count] */
+    double *lengths, *slid_lengths;   /* [edge_count] */
     double *own_paint;                /* [edge_count] */
     ss_edge_paint *edge_paint;        /* [edge_count] scratch */
     double *own_weights, *own_limits; /* [free_count] */

@@ -156,27 +156,31 @@ static skinslide_status write_points(const skinslide_workspace *workspace, const
 /* ---- Measures of the result ---- */
 
 static void measure_slide(const ss_patch *patch, const double (*displacement)[4], skinslide_patch_result *result) {
+    double largest = 0; /* squared */
     for (int32_t i = 0; i < patch->free_count; i++) {
         const double *d = displacement[patch->mesh_vertex[patch->free_vertex[i]]];
-        double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         result->slid_vertices += moves(d);
-        result->largest_slide = length > result->largest_slide ? length : result->largest_slide;
+        largest = ss_most(ss_dot(d, d), largest);
     }
+    result->largest_slide = sqrt(largest);
 }
 
-/* RMS over edges of log(length / rest length). */
-static double stretch(const ss_patch *patch, const double *lengths) {
+/* RMS over edges of log(length / rest length), of the cache and slid: side by side, since each sum waits for its last term. */
+static void measure_stretch(const ss_patch *patch, const double *cached, const double *slid, skinslide_patch_result *result) {
     enum { AT_ONCE = 256 };
-    double sum = 0, stretched[AT_ONCE];
+    double before[AT_ONCE], after[AT_ONCE], sum[2] = {0, 0};
     for (int32_t begin = 0; begin < patch->faces.edge_count; begin += AT_ONCE) {
         int32_t left = patch->faces.edge_count - begin, count = left < AT_ONCE ? left : AT_ONCE;
+        for (int32_t i = 0; i < count; i++) {
+            before[i] = cached[begin + i] / patch->rest_length[begin + i];
+            after[i] = slid[begin + i] / patch->rest_length[begin + i];
+        }
+        ss_logs(count, before), ss_logs(count, after);
         for (int32_t i = 0; i < count; i++)
-            stretched[i] = lengths[begin + i] / patch->rest_length[begin + i];
-        ss_logs(count, stretched);
-        for (int32_t i = 0; i < count; i++)
-            sum += stretched[i] * stretched[i];
+            sum[0] += before[i] * before[i], sum[1] += after[i] * after[i];
     }
-    return sqrt(sum / patch->faces.edge_count);
+    result->stretch_before = sqrt(sum[0] / patch->faces.edge_count);
+    result->stretch_after = sqrt(sum[1] / patch->faces.edge_count);
 }
 
 /* ---- One frame ---- */
@@ -216,20 +220,19 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         if ((status = ss_go_on(workspace, start_patch(workspace, p, before, own, error), error)))
             return status;
     }
-    for (int32_t p = 0; p < slider->part_count; p++) {
+    for (int32_t p = 0; p < slider->part_count; p++)
         if ((status = ss_go_on(workspace, slide_patch(workspace, p, error), error)))
             return status;
-        workspace->results[p].stretch_before = stretch(slider->parts[p].patch, workspace->patches[p].lengths);
-    }
     blend(workspace);
     if ((status = write_points(workspace, points, slid, error)))
         return status;
     ss_bring(slider, &after, workspace->after);
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
+        ss_patch_work *work = &workspace->patches[p];
         measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
-        ss_edge_lengths(patch, after, workspace->patches[p].lengths);
-        workspace->results[p].stretch_after = stretch(patch, workspace->patches[p].lengths);
+        ss_edge_lengths(patch, after, work->slid_lengths);
+        measure_stretch(patch, work->lengths, work->slid_lengths, &workspace->results[p]);
     }
     if (results)
         ss_give_all(workspace->results, slider->part_count, sizeof *workspace->results, results);

@@ -10,6 +10,7 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     ss_patch_work *work = &workspace->patches[p];
     int32_t edges = part->patch->faces.edge_count, free_count = part->patch->free_count;
     work->lengths = SS_NEW(memory, double, edges);
+    work->slid_lengths = SS_NEW(memory, double, edges);
     work->own_paint = SS_NEW(memory, double, edges);
     work->edge_paint = SS_NEW(memory, ss_edge_paint, edges);
     work->own_weights = SS_NEW(memory, double, free_count);
