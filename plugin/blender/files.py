@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import bpy
@@ -15,12 +15,14 @@ from skinslide.arrays.meaning import Value, inputs
 from skinslide.problems import Fault
 
 from . import settings
+from .cache import export_frame
 from .fetch import EDGES, edge_keys, edges_of, fetch
+from .joining import Joined
 from .patches import check_fits, remove_paint, write_attribute, write_primvar, write_weights
 from .reading import Sliding
 from .rest import REST
 from .usd import Keys, Read, read_setup, write_setup
-from .work import Waiting
+from .work import Steps, Waiting, Work
 
 EXTENSION = ".skinslide"
 _PRIM = {"name": "Prim", "description": "The mesh in the stage; empty: the one with these faces"}
@@ -164,57 +166,39 @@ class SKINSLIDE_OT_export_setup(Waiting, ExportHelper):
     with_cache: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Export Cache",
         default=True,
-        description="Exports the animated mesh there first, by Blender's own exporter",
+        description="Exports the animated mesh there too, frame by frame, by Blender's own exporter",
     )
     prim: bpy.props.StringProperty(**_PRIM)  # type: ignore[valid-type]
 
-    def fetch(self, context: bpy.types.Context) -> Callable[[], str]:
-        """The set-up, and the cache where it is to be made."""
-        thing = context.active_object
+    def steps(self, context: bpy.types.Context) -> Steps:
+        """The cache frame by frame, where it is to be made, and the set-up; both are put in place together."""
+        thing, scene = context.active_object, context.scene
         fetched, keys = fetch(thing, context.evaluated_depsgraph_get()), fetch_keys(thing)
         path = bpy.path.abspath(self.filepath)
         cache = bpy.path.abspath(self.cache) if self.cache else path.removesuffix(EXTENSION) + ".usdc"
         prim = self.prim or (settings.of(thing).prim if not self.with_cache else "")
         bpy.utils.expose_bundled_modules()
-        if not self.with_cache and not os.path.exists(cache):
-            raise Fault(f"there is no cache {cache}")
+        rest = (yield lambda: Sliding(fetched)).rest_points
+        setup = partial(write_setup, path, cache, prim, fetched, rest, keys)
         if self.with_cache:
-            Sliding(fetched)  # before anything is written
-            _export_cache(context, thing, cache)
-        return lambda: write_setup(path, cache, prim, fetched, Sliding(fetched).rest_points, keys)
-
-    def write(self, context: bpy.types.Context, found: str) -> str:
-        """Keeps where it was written."""
+            found = yield from self._with_cache(context, range(scene.frame_start, scene.frame_end + 1), cache, setup)
+        elif os.path.exists(cache):
+            self.too_late = True
+            found = yield setup
+        else:
+            raise Fault(f"there is no cache {cache}")
         own = settings.of(context.active_object)
         own.file, own.prim = self.filepath, found
         return f"{len(own.patches)} patches of {found}"
 
-
-def _export_cache(context: bpy.types.Context, thing: bpy.types.Object, path: str) -> None:
-    with _selected_alone(context, thing):
-        bpy.ops.wm.usd_export(
-            filepath=path,
-            check_existing=False,
-            selected_objects_only=True,
-            export_animation=True,
-            export_shapekeys=False,
-            export_armatures=False,
-            evaluation_mode="VIEWPORT",
-        )
-
-
-@contextmanager
-def _selected_alone(context: bpy.types.Context, thing: bpy.types.Object) -> Iterator[None]:
-    before = [each for each in context.view_layer.objects if each.select_get()]
-    for each in before:
-        each.select_set(False)
-    thing.select_set(True)
-    try:
-        yield
-    finally:
-        thing.select_set(False)
-        for each in before:
-            each.select_set(True)
+    def _with_cache(self, context: bpy.types.Context, frames: range, cache: str, setup: Work) -> Steps:
+        with (yield partial(Joined, cache)) as joined:
+            for frame in frames:
+                self.tell(context, f"Exporting frame {frame} of {frames[-1]}; Esc ends it")
+                export_frame(context, joined.part, frame, materials=frame == frames[0])
+                yield partial(joined.add, frame)
+            self.too_late = True
+            return (yield lambda: joined.put(setup))
 
 
 _CLASSES = (SKINSLIDE_OT_import_setup, SKINSLIDE_OT_export_setup)

@@ -6,7 +6,9 @@ they can be slid, the last one counts.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,7 +61,18 @@ class Session:
 
 _sessions: dict[str, Session] = {}
 _shades: list[np.ndarray] = []
-_showing = False  # what changes now is what is shown
+_unheard = False  # what changes now is not the scene
+
+
+@contextmanager
+def unheard() -> Iterator[None]:
+    """Has no frame or change refresh what is shown: that itself changes, or another view of the scene."""
+    global _unheard
+    before, _unheard = _unheard, True
+    try:
+        yield
+    finally:
+        _unheard = before
 
 
 def live_objects() -> list[bpy.types.Object]:
@@ -141,11 +154,9 @@ def shades() -> np.ndarray:
 
 def show(thing: bpy.types.Object, slid: Slid) -> None:
     """Puts slid points, and stretch in false colours, on the object that shows them."""
-    global _showing
     own = settings.of(thing)
     mesh = own.slid.data
-    _showing = True
-    try:
+    with unheard():
         if len(mesh.vertices) != len(slid.points):
             _copy_mesh(thing, own.slid)
             mesh = own.slid.data
@@ -159,8 +170,6 @@ def show(thing: bpy.types.Object, slid: Slid) -> None:
         if own.slid.matrix_world != thing.matrix_world:
             own.slid.matrix_world = thing.matrix_world
         _dress(thing, own.slid)
-    finally:
-        _showing = False
 
 
 def _copy_mesh(thing: bpy.types.Object, shown: bpy.types.Object) -> None:
@@ -283,14 +292,14 @@ class SKINSLIDE_OT_say(bpy.types.Operator):
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_frame(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    for thing in live_objects():
+    for thing in () if _unheard else live_objects():
         refresh(thing, depsgraph)
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Of a mesh: what is painted may be other; of an object: its points may."""
-    if _showing:
+    if _unheard:
         return
     changed = {each.id.original for each in depsgraph.updates if each.is_updated_geometry}
     for thing in live_objects():

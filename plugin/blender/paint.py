@@ -52,9 +52,10 @@ class SKINSLIDE_OT_paint(Waiting):
         name="From", description="The vertex group or attribute whose values are taken; empty: the value"
     )
 
-    def _fetched(self, context: bpy.types.Context) -> None:
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Begins, of what is selected in edit mode."""
         self._editing = context.mode == "EDIT_MESH"
-        super()._fetched(context)
+        return super().execute(context)
 
     def fetch(self, context: bpy.types.Context) -> None:
         """What there will be."""

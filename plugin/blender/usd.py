@@ -7,7 +7,8 @@ in which all stays that Blender does not hold.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -33,11 +34,20 @@ from .reading import Fetched, FetchedPatch
 Keys = dict[tuple[str, str], list[tuple[float, float]]]  # of a patch and a setting: times and numbers
 
 
-def _import_usd() -> None:
+def import_usd() -> None:
     """Has pxr imported, with the schema; the file format is for another USD, and such files are read as text."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         from pxr import Usd  # noqa: F401
+
+
+@contextmanager
+def as_fault() -> Iterator[None]:
+    """Raises Fault for whatever cannot be opened, read or written."""
+    try:
+        yield
+    except (UsageError, StageError, StageProblems, OSError) as error:
+        raise Fault(str(error)) from error
 
 
 @dataclass
@@ -58,7 +68,7 @@ def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarra
 
     prim_path: where the mesh is; empty: wherever its faces are.
     """
-    _import_usd()
+    import_usd()
     from skinslide.stage.finding import patched_prims
     from skinslide.stage.mesh import take_mesh
     from skinslide.stage.opening import open_stage, read_text_layer
@@ -160,13 +170,11 @@ def _expanded(value: Value, mesh: MeshMeaning) -> Value:
 
 def write_setup(path: str, cache: str, prim_path: str, fetched: Fetched, rest: np.ndarray, keys: Keys) -> str:
     """Writes a set-up beside a cache, and gives the path of the mesh in it. Raises Fault, having written nothing."""
-    _import_usd()
+    import_usd()
     from skinslide.author.layer import author_layer
 
-    try:
+    with as_fault():
         return author_layer(cache, path, False, lambda stage: _author(stage, prim_path, fetched, rest, keys))
-    except (UsageError, StageError, StageProblems, OSError) as error:
-        raise Fault(str(error)) from error
 
 
 def _author(stage: Any, prim_path: str, fetched: Fetched, rest: np.ndarray, keys: Keys) -> str:

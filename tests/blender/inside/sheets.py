@@ -53,6 +53,20 @@ def select(thing: bpy.types.Object, held: str, chosen) -> None:
     made.free()
 
 
+def line(*through: tuple[float, float, float]) -> bpy.types.Object:
+    """A drawn curve of straight pieces."""
+    curve = bpy.data.curves.new("drawn", "CURVE")
+    curve.dimensions = "3D"
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(through) - 1)
+    for point, place in zip(spline.points, through, strict=True):
+        point.co = (*place, 1)
+    drawn = bpy.data.objects.new("drawn", curve)
+    bpy.context.scene.collection.objects.link(drawn)
+    bpy.context.view_layer.update()
+    return drawn
+
+
 def inner(thing: bpy.types.Object, margin: int = 1) -> np.ndarray:
     """The faces of a sheet but for those at its border."""
     side = round(len(thing.data.polygons) ** 0.5)

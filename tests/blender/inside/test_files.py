@@ -80,6 +80,61 @@ def test_export_again_changes_what_is_blenders_alone(tmp_path):
     assert "SkinSlideAPI:a" in text and "SkinSlideAPI:b" not in text and ":b:" not in text and "kept" in text
 
 
+def sampled(path) -> dict:
+    """Every attribute of a layer at each frame."""
+    from pxr import Sdf, Usd
+
+    layer = Sdf.Layer.OpenAsAnonymous(str(path))  # what Blender's USD holds of the path may be older
+    stage = Usd.Stage.Open(layer)
+    found = {"frames": (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond())}
+    for prim in stage.TraverseAll():
+        for attribute in prim.GetAuthoredAttributes():
+            found[str(attribute.GetPath())] = [attribute.Get(frame) for frame in (1001, 1002, 1003)]
+            found[f"{attribute.GetPath()} varies"] = attribute.ValueMightBeTimeVarying()
+    return found
+
+
+def test_the_cache_is_that_of_blenders_exporter(scene, tmp_path):
+    """Joined of frames, it says at each what one export of all of them says: points, normals, a parent that moves."""
+    thing = sheet()
+    make_patch(thing)
+    thing.data.uv_layers.new(name="st")
+    thing.data.materials.append(bpy.data.materials.new("skin"))
+    above = bpy.data.objects.new("above", None)
+    scene.collection.objects.link(above)
+    thing.parent = above
+    for frame in (1002, 1003):
+        above.location = (frame, 0, 1)
+        above.keyframe_insert("location", frame=frame)
+    assert bpy.ops.skinslide.export_setup(filepath=str(tmp_path / "x.skinslide")) == {"FINISHED"}
+    assert (scene.frame_start, scene.frame_end, scene.frame_current) == (1001, 1003, 1001)
+    thing.select_set(True)
+    bpy.ops.wm.usd_export(
+        filepath=str(tmp_path / "whole.usdc"), selected_objects_only=True, export_animation=True,
+        export_shapekeys=False, export_textures_mode="KEEP", convert_world_material=False,
+    )  # fmt: skip
+    ours, whole = (sampled(tmp_path / name) for name in ("x.usdc", "whole.usdc"))
+    assert ours.keys() == whole.keys() and ours["/root/above/sheet/sheet.points varies"]
+    for name, wanted in whole.items():
+        if "xformOp:" in name and "varies" not in name:  # which Blender leaves out where they are nearly the last one's
+            assert np.allclose(ours[name], wanted, rtol=0, atol=1e-6), name
+        elif "xformOp:" not in name:
+            assert ours[name] == wanted, name
+
+
+def test_a_cache_is_exported_again(tmp_path):
+    """Of other faces, under the same name, in the same session."""
+    path = tmp_path / "x.skinslide"
+    for side in (6, 12):
+        thing = sheet(side, "thing")
+        make_patch(thing)
+        assert bpy.ops.skinslide.export_setup(filepath=str(path)) == {"FINISHED"}
+        assert len(sampled(tmp_path / "x.usdc")[f"{thing.skinslide.prim}.faceVertexCounts"][0]) == side**2
+        bpy.data.objects.remove(thing)
+        path.unlink()
+    assert [each.name for each in tmp_path.iterdir()] == ["x.usdc"]
+
+
 def test_an_import_is_undone(tmp_path):
     thing = sheet()
     painted(thing)
@@ -124,9 +179,15 @@ def test_what_cannot_be_exported(tmp_path):
     with pytest.raises(RuntimeError, match="there is no cache"):
         bpy.ops.skinslide.export_setup(filepath=str(path), with_cache=False)
     path.write_text("#usda 1.0\n")
-    with pytest.raises(RuntimeError, match="does not sublayer"):
-        bpy.ops.skinslide.export_setup(filepath=str(path))
-    assert path.read_text() == "#usda 1.0\n"
+    for others in ([], [tmp_path / "x.usdc"]):
+        for each in others:
+            each.write_text('#usda 1.0\n(doc = "another")\n')
+        before = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in tmp_path.iterdir()}
+        with pytest.raises(RuntimeError, match="does not sublayer"):
+            bpy.ops.skinslide.export_setup(filepath=str(path))
+        assert {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in tmp_path.iterdir()} == before
+    with pytest.raises(RuntimeError, match=r"the folder .* does not exist"):
+        bpy.ops.skinslide.export_setup(filepath=str(tmp_path / "none" / "x.skinslide"))
 
 
 @pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world"])

@@ -9,7 +9,7 @@ from bl_ext.user_default.skinslide import settings
 from bl_ext.user_default.skinslide.fetch import fetch
 from bl_ext.user_default.skinslide.reading import Sliding
 
-from sheets import SIDE, animated, inner, make_patch, points, select, sheet, values
+from sheets import SIDE, animated, inner, line, make_patch, points, select, sheet, values
 
 
 def fetched(thing):
@@ -160,17 +160,9 @@ def test_edges():
 def test_a_curve(direction):
     """A straight one, along a row of the flat sheet: the edges along it, those across it, or both."""
     thing = sheet(height=0)
-    curve = bpy.data.curves.new("drawn", "CURVE")
-    curve.dimensions = "3D"
-    spline = curve.splines.new("POLY")
-    spline.points.add(1)
-    for point, x in zip(spline.points, (-0.5, 0.5), strict=True):
-        point.co = (x, 0, 0, 1)
-    drawn = bpy.data.objects.new("drawn", curve)
-    bpy.context.scene.collection.objects.link(drawn)
+    drawn = line((-0.5, 0, 0), (0.5, 0, 0))
     make_patch(thing, rule="unit")
-    bpy.context.view_layer.update()
-    arguments = {"curve": "drawn", "distance": 0.6 / SIDE, "direction": direction, "value": 8.0}
+    arguments = {"curve": drawn.name, "distance": 0.6 / SIDE, "direction": direction, "value": 8.0}
     assert bpy.ops.skinslide.paint_curve(**arguments) == {"FINISHED"}
     edges = Sliding(fetched(thing))._base[0].get().edges
     steps = set(np.abs(edges[:, 1] - edges[:, 0]).tolist())
