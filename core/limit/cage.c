@@ -158,7 +158,31 @@ static skinslide_status restrict_to_free(ss_cage *cage, skinslide_error *error) 
 
 /* ---- Creation ---- */
 
-static skinslide_status build(ss_cage *cage, skinslide_error *error) {
+/* Gathers what makes the surface of a patch face, in offsets from one of its vertices, for scratch. */
+static void prepare_face(const ss_cage *cage, int32_t face, const float *points, double origin[3], double *scratch) {
+    const ss_faces *faces = &cage->patch->faces;
+    const float *near = points + 3 * (int64_t)cage->patch->mesh_vertex[faces->corner_vertex[faces->face_start[face]]];
+    for (int k = 0; k < 3; k++)
+        origin[k] = near[k];
+    ss_limit_prepare(cage->surfaces, face, points, origin, scratch);
+}
+
+static skinslide_status create_fit(ss_cage *cage, const float *rest_points, skinslide_error *error) {
+    ss_memory memory = {0};
+    double(*normal)[3] = ss_new(&memory, cage->sample_count, sizeof *normal), origin[3], point[3];
+    double *scratch = SS_NEW(&memory, double, ss_limit_surfaces_scratch(cage->surfaces));
+    for (int32_t s = 0; s < cage->sample_count && !memory.failed; s++) {
+        prepare_face(cage, cage->samples[s].face, rest_points, origin, scratch);
+        ss_limit_normal(cage->surfaces, cage->samples[s].face, &cage->samples[s].at, scratch, point, normal[s]);
+    }
+    skinslide_status status = memory.failed ? ss_out_of_memory(error)
+                                            : ss_fit_create(cage->patch, cage->free_index, &cage->free_rows,
+                                                            (const double(*)[3])normal, &cage->fit, error);
+    ss_free(&memory);
+    return status;
+}
+
+static skinslide_status build(ss_cage *cage, const float *rest_points, skinslide_error *error) {
     cage->sample_count = cage->patch->free_count + cage->patch->faces.face_count;
     cage->samples = SS_NEW(&cage->memory, sample, cage->sample_count);
     cage->free_index = SS_NEW(&cage->memory, int32_t, cage->patch->vertex_count);
@@ -168,11 +192,11 @@ static skinslide_status build(ss_cage *cage, skinslide_error *error) {
     skinslide_status status = list_stencils(cage, error);
     if (!status)
         status = restrict_to_free(cage, error);
-    return status ? status : ss_fit_create(cage->patch, cage->free_index, &cage->free_rows, &cage->fit, error);
+    return status ? status : create_fit(cage, rest_points, error);
 }
 
-skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
-                                skinslide_error *error) {
+skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, const float *rest_points, bool loop,
+                                ss_cage **out, skinslide_error *error) {
     ss_cage *cage = calloc(1, sizeof *cage);
     if (!cage)
         return ss_out_of_memory(error);
@@ -180,7 +204,7 @@ skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *pat
     skinslide_status status =
         ss_limit_surfaces_create(topology, patch->mesh_face, patch->faces.face_count, patch->label, &cage->surfaces, error);
     if (!status)
-        status = build(cage, error);
+        status = build(cage, rest_points, error);
     if (status)
         ss_cage_destroy(cage);
     else
@@ -271,16 +295,14 @@ static void list_target(const ss_cage_work *work, const float *points, const ss_
 }
 
 static void list_targets(ss_cage_work *work, const ss_frame *frame, const ss_slide *slide) {
-    const ss_patch *patch = work->cage->patch;
-    const ss_faces *faces = &patch->faces;
+    int32_t faces = work->cage->patch->faces.face_count;
+    double origin[3];
     ss_middles_set(work->middles, slide);
     sort_samples(work, slide);
-    for (int32_t f = 0; f < faces->face_count && !ss_is_set(frame->stop); f++) {
-        const float *near = frame->points + 3 * (int64_t)patch->mesh_vertex[faces->corner_vertex[faces->face_start[f]]];
-        double origin[3] = {near[0], near[1], near[2]};
+    for (int32_t f = 0; f < faces && !ss_is_set(frame->stop); f++) {
         int32_t end = work->face_start[f + 1];
         if (work->face_start[f] < end)
-            ss_limit_prepare(work->cage->surfaces, f, frame->points, origin, work->scratch);
+            prepare_face(work->cage, f, frame->points, origin, work->scratch);
         for (int32_t i = work->face_start[f]; i < end; i++)
             list_target(work, frame->points, &slide->flat, work->by_face[i], f, origin);
     }

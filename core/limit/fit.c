@@ -13,10 +13,13 @@
  *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                N = nn', u = e / |e|
  *
  * which differs from frame to frame. The preconditioner is factored once a shot, from scalar matrices, the first of them, which is
- * near to a mass matrix, incompletely. It takes a vertex apart
- * across and along the plane of its own sample, since normals turn little from one vertex to the next:
+ * near to a mass matrix, incompletely. It takes a vertex apart across and along the plane of its own sample:
  *
- *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D)^-1 (1 - nn')      1/2 the mean of uu' in the plane
+ *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D + C)^-1 (1 - nn')      1/2 the mean of uu' in the plane
+ *
+ * On a rim, as of lips, normals turn from one vertex to the next, so that samples around hold a vertex along its plane too. C, which
+ * is diagonal, is how much they do at rest, rows of L'NL summed: of a vertex half the sum of L (1 - (n.n of its own sample)^2).
+ * Without it the first step overshoots on rims, and all others are spent on undoing that.
  *
  * Where no vertex is held, as on a closed patch, D'D would let all of them go together: there it has 4 pi / n more of the n vertices'
  * own, which is the least that a sphere's first waves have of it.
@@ -169,15 +172,30 @@ static skinslide_status factor_across(ss_fit *fit, const char *label, skinslide_
     return status;
 }
 
-/* s (1/2 + t) D'D, and more where no vertex is held. */
-static skinslide_status factor_along(ss_fit *fit, const ss_patch *patch, skinslide_error *error) {
-    double stiffness = edge_stiffness * (0.5 + direction_stiffness);
-    bool is_held = patch->free_count < patch->vertex_count;
+/* C of a free vertex. */
+static double turn_around(const ss_fit *fit, int32_t i, const double (*normal)[3]) {
+    double sum = 0;
+    for (int32_t k = fit->share_start[i]; k < fit->share_start[i + 1]; k++) {
+        int32_t s = fit->shares[k].term;
+        double cosine = s < fit->samples->row_count ? ss_dot(normal[s], normal[i]) : 1;
+        sum += 0.5 * fabs(fit->share_weight[k]) * (1 - cosine * cosine);
+    }
+    return sum;
+}
+
+/* s (1/2 + t) D'D + C, and more where no vertex is held. */
+static skinslide_status factor_along(ss_fit *fit, const ss_patch *patch, const double (*normal)[3], skinslide_error *error) {
+    ss_memory scratch = {0};
     ss_net net = ss_net_of(patch, patch->fixed);
-    skinslide_status status = ss_springs_create(&net, patch->label, stiffness,
-                                                is_held ? 0 : 4 * SS_PI / patch->free_count * stiffness, &fit->along, error);
+    double stiffness = edge_stiffness * (0.5 + direction_stiffness), *own = SS_NEW(&scratch, double, patch->vertex_count);
+    double least = patch->free_count < patch->vertex_count ? 0 : 4 * SS_PI / patch->free_count * stiffness;
+    for (int32_t i = 0; i < fit->free_count && own; i++)
+        own[patch->free_vertex[i]] = least + ss_most(turn_around(fit, i, normal), 0);
+    skinslide_status status =
+        own ? ss_springs_create(&net, patch->label, stiffness, own, &fit->along, error) : ss_out_of_memory(error);
     for (int32_t i = 0; i < fit->free_count && !status; i++)
         fit->unknown[i] = ss_springs_unknown(fit->along, patch->free_vertex[i]);
+    ss_free(&scratch);
     return status;
 }
 
@@ -203,8 +221,8 @@ static skinslide_status list_terms(ss_fit *fit, const ss_patch *patch, const int
     return SKINSLIDE_OK;
 }
 
-skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index, const ss_rows *samples, ss_fit **out,
-                               skinslide_error *error) {
+skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index, const ss_rows *samples,
+                               const double (*normal)[3], ss_fit **out, skinslide_error *error) {
     ss_fit *fit = calloc(1, sizeof *fit);
     if (!fit)
         return ss_out_of_memory(error);
@@ -213,7 +231,7 @@ skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index,
     if (!status)
         status = factor_across(fit, patch->label, error);
     if (!status)
-        status = factor_along(fit, patch, error);
+        status = factor_along(fit, patch, normal, error);
     if (status)
         ss_fit_destroy(fit);
     else

@@ -63,9 +63,10 @@ typedef struct ss_fit ss_fit;           /* samples, edges and factors of a patch
 typedef struct ss_fit_work ss_fit_work; /* one a thread */
 
 /* samples has a row for each sample of a surface, of the weights with which free vertices, its columns, make it: first, in the
- * order of free_vertex, one near each free vertex. It is kept. free_index [vertex_count] is the place in free_vertex, or -1. */
-skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index, const ss_rows *samples, ss_fit **out,
-                               skinslide_error *error);
+ * order of free_vertex, one near each free vertex. It is kept. normal [row_count] has those of the samples at rest, of which 0 is
+ * none. free_index [vertex_count] is the place in free_vertex, or -1. */
+skinslide_status ss_fit_create(const ss_patch *patch, const int32_t *free_index, const ss_rows *samples,
+                               const double (*normal)[3], ss_fit **out, skinslide_error *error);
 void ss_fit_destroy(ss_fit *fit);
 skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinslide_error *error);
 void ss_fit_work_destroy(ss_fit_work *work);
@@ -90,8 +91,9 @@ ss_place ss_middle(const ss_middles *middles, int32_t face);
 typedef struct ss_cage ss_cage;           /* limit surfaces and samples of a patch: immutable */
 typedef struct ss_cage_work ss_cage_work; /* one a thread */
 
-skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, bool loop, ss_cage **out,
-                                skinslide_error *error);
+/* rest_points is the whole mesh's. */
+skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, const float *rest_points, bool loop,
+                                ss_cage **out, skinslide_error *error);
 void ss_cage_destroy(ss_cage *cage);
 skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, skinslide_error *error);
 void ss_cage_work_destroy(ss_cage_work *work);

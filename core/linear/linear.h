@@ -184,9 +184,9 @@ void ss_blocks_solve(ss_blocks *blocks);
 
 typedef struct ss_springs ss_springs; /* factored: immutable */
 
-/* Every edge is as stiff, and every free vertex is held by a spring of its own as stiff as own says. label begins messages. Fails
- * with SINGULAR. */
-skinslide_status ss_springs_create(const ss_net *net, const char *label, double stiffness, double own, ss_springs **out,
+/* Every edge is as stiff, and every free vertex is held by a spring of its own as stiff as own [vertex_count] says. label begins
+ * messages. Fails with SINGULAR. */
+skinslide_status ss_springs_create(const ss_net *net, const char *label, double stiffness, const double *own, ss_springs **out,
                                    skinslide_error *error);
 void ss_springs_destroy(ss_springs *springs);
 /* The place of a vertex in right sides, -1 where it is fixed. */

@@ -1,4 +1,4 @@
-/* A net whose edges are springs, all alike, and whose vertices each may be held by one more: factored once in doubles, and solved
+/* A net whose edges are springs, all alike, and whose vertices may each be held by one more: factored once in doubles, and solved
  * with in floats, four right sides at a time: one is a vector, which an entry of the factor is multiplied with.
  *
  * The factor is in tiles of four rows as kernels.c has them, without extras: [tile][column][4]. */
@@ -17,10 +17,11 @@ struct ss_springs {
 
 /* ---- Creation ---- */
 
-static void fill(const ss_system *system, double stiffness, double own, ss_factor *factor) {
+static void fill(const ss_system *system, double stiffness, const double *own, ss_factor *factor) {
     ss_factor_clear(factor);
-    for (int32_t k = 0; k < system->n; k++)
-        factor->slack[k] = own;
+    for (int32_t v = 0; v < system->vertex_count; v++)
+        if (system->unknown[v] >= 0)
+            factor->slack[system->unknown[v]] = own[v];
     for (int32_t e = 0; e < system->edge_count; e++) {
         int32_t a = system->unknown[system->edge_vertex[e][0]], b = system->unknown[system->edge_vertex[e][1]];
         factor->entry[e] = stiffness;
@@ -51,7 +52,7 @@ static skinslide_status keep(const ss_frontal *frontal, ss_springs *springs, ski
     return SKINSLIDE_OK;
 }
 
-static skinslide_status build(const ss_net *net, const char *label, double stiffness, double own, ss_springs *springs,
+static skinslide_status build(const ss_net *net, const char *label, double stiffness, const double *own, ss_springs *springs,
                               skinslide_error *error) {
     ss_factor *factor = NULL;
     skinslide_status status = ss_system_create(net, label, &springs->system, error);
@@ -66,7 +67,7 @@ static skinslide_status build(const ss_net *net, const char *label, double stiff
     return status;
 }
 
-skinslide_status ss_springs_create(const ss_net *net, const char *label, double stiffness, double own, ss_springs **out,
+skinslide_status ss_springs_create(const ss_net *net, const char *label, double stiffness, const double *own, ss_springs **out,
                                    skinslide_error *error) {
     ss_springs *springs = calloc(1, sizeof *springs);
     if (!springs)

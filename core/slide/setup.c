@@ -173,8 +173,8 @@ static skinslide_status add_cage(const skinslide_slider *slider, const skinslide
                                  skinslide_error *error) {
     if (part->patch->setup->interpolation != SKINSLIDE_INTERPOLATION_LIMIT)
         return SKINSLIDE_OK;
-    return ss_cage_create(slider->topology, part->patch, mesh->subdivision->scheme == SKINSLIDE_SCHEME_LOOP, &part->cage,
-                          error);
+    return ss_cage_create(slider->topology, part->patch, mesh->rest_points, mesh->subdivision->scheme == SKINSLIDE_SCHEME_LOOP,
+                          &part->cage, error);
 }
 
 /* Appends a part to the slider for one piece of a set-up. */

@@ -58,7 +58,7 @@ static void fill_problem(problem *p, int32_t columns, int32_t rows, uint64_t see
         for (int axis = 0; axis < 3; axis++)
             p->linear[i][axis] = roll_between(&d, -0.2, 0.2);
     skinslide_error error;
-    assert_ok(ss_fit_create(p->patch, p->free_index, &p->samples, &p->fit, &error), &error);
+    assert_ok(ss_fit_create(p->patch, p->free_index, &p->samples, (const double(*)[3])p->normal, &p->fit, &error), &error);
     assert_ok(ss_fit_work_create(p->fit, &p->work, &error), &error);
     free(faces);
 }

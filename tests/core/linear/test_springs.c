@@ -6,11 +6,11 @@
 #include <string.h>
 
 /* What is left of b [vertices][4] when every spring pulls by x, over the largest force. */
-static double residual_of(const ss_net *net, double stiffness, double own, const float (*x)[4], const float (*b)[4]) {
+static double residual_of(const ss_net *net, double stiffness, const double *own, const float (*x)[4], const float (*b)[4]) {
     double(*left)[4] = malloc((size_t)net->vertex_count * sizeof *left), off = 0, most = 0;
     for (int32_t v = 0; v < net->vertex_count; v++)
         for (int k = 0; k < 4; k++)
-            left[v][k] = (double)b[v][k] - own * (double)x[v][k];
+            left[v][k] = (double)b[v][k] - own[v] * (double)x[v][k];
     for (int32_t e = 0; e < net->edge_count; e++)
         for (int k = 0; k < 4; k++) {
             const int32_t *v = net->edge_vertex[e];
@@ -25,11 +25,15 @@ static double residual_of(const ss_net *net, double stiffness, double own, const
     return off / most;
 }
 
-static double solve_random(const ss_net *net, double stiffness, double own) {
+/* Each vertex is held as stiff as least, or up to twice as stiff. */
+static double solve_random(const ss_net *net, double stiffness, double least) {
     ss_springs *springs;
     ss_memory memory = {0};
     skinslide_error error;
     dice d = {7};
+    double *own = SS_NEW(&memory, double, net->vertex_count);
+    for (int32_t v = 0; v < net->vertex_count; v++)
+        own[v] = roll_between(&d, 1, 2) * least;
     assert_ok(ss_springs_create(net, "net", stiffness, own, &springs, &error), &error);
     float(*b)[4] = ss_new(&memory, net->vertex_count, sizeof *b), (*x)[4] = ss_new(&memory, net->vertex_count, sizeof *x);
     float(*right)[4] = ss_new(&memory, net->vertex_count, sizeof *right);
@@ -70,10 +74,11 @@ static void what_nothing_holds_is_refused(void **state) {
     (void)state;
     const int32_t edges[2][2] = {{0, 1}, {1, 2}};
     const uint8_t fixed[3] = {0, 0, 0};
+    const double own[3] = {0, 0, 0};
     const ss_net net = {3, 2, edges, fixed};
     ss_springs *springs = NULL;
     skinslide_error error;
-    assert_fails(ss_springs_create(&net, "net", 1, 0, &springs, &error), &error, SKINSLIDE_SINGULAR,
+    assert_fails(ss_springs_create(&net, "net", 1, own, &springs, &error), &error, SKINSLIDE_SINGULAR,
                  "net: nothing holds its vertices");
     assert_null(springs);
 }
