@@ -84,7 +84,8 @@ static int exact_side(const ss_paving *paving, const ss_slab *slab, const double
     return -1;
 }
 
-/* A side that p is outside of; -1 where it is outside of none. */
+/* The side that p is farthest outside of, by the area of the triangle that it makes with it, since walks that leave by the first
+ * may go round; -1 where it is outside of none. */
 static inline int side_to_leave_by(const ss_paving *paving, const ss_slab *slab, const double p[2], bool *on_border) {
     double x[3], y[3], turn[3], sum = 0;
     for (int k = 0; k < 3; k++)
@@ -94,12 +95,12 @@ static inline int side_to_leave_by(const ss_paving *paving, const ss_slab *slab,
         turn[k] = left - right;
         sum += fabs(left) + fabs(right);
     }
-    double doubt = SS_ORIENT_DOUBT * sum; /* no less than that of each */
-    for (int k = 0; k < 3; k++)
-        if (turn[k] < -doubt)
-            return k;
-    bool inside = turn[0] > doubt && turn[1] > doubt && turn[2] > doubt;
-    return inside ? -1 : exact_side(paving, slab, p, on_border);
+    int least = turn[0] < turn[1] ? 0 : 1;
+    least = turn[least] < turn[2] ? least : 2;
+    double doubt = SS_ORIENT_DOUBT * sum;
+    if (turn[least] > doubt)
+        return -1;
+    return turn[least] < -doubt ? least : exact_side(paving, slab, p, on_border);
 }
 
 int32_t ss_paving_walk(const ss_paving *paving, int32_t from, const double p[2], bool *on_border, int64_t *steps) {
