@@ -23,6 +23,7 @@ struct ss_face_tree {
     const ss_patch *patch;
     const double (*uv)[2];
     key *keys;   /* [face_count] in Z-order */
+    key *others; /* [face_count] scratch */
     node *nodes; /* node i has children 2i + 1 and 2i + 2, each with half of its keys */
 };
 
@@ -39,6 +40,7 @@ skinslide_status ss_face_tree_create(const ss_patch *patch, ss_face_tree **out, 
         return ss_out_of_memory(error);
     tree->patch = patch;
     tree->keys = SS_NEW(&tree->memory, key, patch->faces.face_count);
+    tree->others = SS_NEW(&tree->memory, key, patch->faces.face_count);
     tree->nodes = SS_NEW(&tree->memory, node, node_count(patch->faces.face_count));
     if (tree->memory.failed) {
         ss_face_tree_destroy(tree);
@@ -79,11 +81,21 @@ static uint64_t z_order(const ss_face_tree *tree, int32_t face) {
     return spread(quantized(sum[0] / (end - begin))) | spread(quantized(sum[1] / (end - begin))) << 1;
 }
 
-static int by_code(const void *a, const void *b) {
-    const key *x = a, *y = b;
-    if (x->code != y->code)
-        return x->code < y->code ? -1 : 1;
-    return x->face < y->face ? -1 : x->face > y->face;
+/* By code, and those of one code as they were: by each byte, from the lowest on. */
+static void sort_keys(ss_face_tree *tree) {
+    enum { BITS = 8, DIGITS = 1 << BITS };
+    int32_t count = tree->patch->faces.face_count;
+    for (int shift = 0; shift < 64; shift += BITS) {
+        int32_t start[DIGITS + 1] = {0};
+        key *from = tree->keys, *to = tree->others;
+        for (int32_t i = 0; i < count; i++)
+            start[(from[i].code >> shift) % DIGITS + 1]++;
+        for (int32_t digit = 0; digit < DIGITS; digit++)
+            start[digit + 1] += start[digit];
+        for (int32_t i = 0; i < count; i++)
+            to[start[(from[i].code >> shift) % DIGITS]++] = from[i];
+        tree->keys = to, tree->others = from;
+    }
 }
 
 static node empty_node(void) {
@@ -128,7 +140,7 @@ void ss_face_tree_build(ss_face_tree *tree, const double (*uv)[2]) {
     tree->uv = uv;
     for (int32_t f = 0; f < tree->patch->faces.face_count; f++)
         tree->keys[f] = (key){z_order(tree, f), f};
-    qsort(tree->keys, (size_t)tree->patch->faces.face_count, sizeof *tree->keys, by_code);
+    sort_keys(tree);
     build_node(tree, 0, 0, tree->patch->faces.face_count);
 }
 

@@ -56,6 +56,8 @@ static skinslide_status check_edges(const skinslide_slider *slider, int32_t setu
                                     skinslide_error *error) {
     const char *name = slider->setups[setup].name;
     ss_memory scratch = {0};
+    if (controls->edge_count == 0)
+        return SKINSLIDE_OK;
     int32_t(*pairs)[2] = ss_new(&scratch, controls->edge_count, sizeof *pairs);
     skinslide_status status = scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t i = 0; i < controls->edge_count && !status; i++) {
