@@ -2,6 +2,7 @@
 
 import subprocess
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -23,10 +24,10 @@ def environment():
 class Submitted:
     """A job of four tasks, and what comes after them."""
 
-    def __init__(self, shot: Path, environment: dict[str, str], *words: str | Path):
+    def __init__(self, shot: Path, environment: dict[str, str], *words: str | Path, sbatch: Sequence[str] = ()):
         self.folder, self._environment, self._requeued = shot.parent, environment, dict[str, float]()
         tool("farm", shot, "-o", self.folder / "slid.usdc", "--chunk", "2", "--format", "slurm", *words)
-        lines = self.run("bash", self.folder / "slid.slurm.sh").splitlines()
+        lines = self.run("bash", self.folder / "slid.slurm.sh", *sbatch).splitlines()
         self.ids = dict(line.split() for line in lines)
 
     def run(self, *words: str | Path) -> str:
@@ -126,6 +127,13 @@ def test_a_chunk_that_fails_does_not_keep_a_task_from_the_others(shot, environme
     job.chunk(slurm.MOST_TASKS).mkdir()
     job.wait(job.task(slurm.MOST_TASKS), "FAILED")
     assert job.chunk(2 * slurm.MOST_TASKS).is_file()
+
+
+def test_a_task_out_of_range(shot, environment):
+    job = Submitted(shot, environment, "--chunk", "4", sbatch=["--array=3"])
+    job.wait(job.task(3), "FAILED")
+    assert "error: --chunk 3/2: of 2 there are 1 to 2" in job.said(job.task(3))
+    assert not job.chunk(3).exists()
 
 
 def test_pictures_are_drawn_though_stitching_failed(shot, environment):

@@ -30,10 +30,11 @@ tasks=$(scontrol show config | sed -n 's/^MaxArraySize *= *//p')
 tasks=$((tasks - 1 < {count} ? tasks - 1 : {count}))
 bake=$(submit --job-name={bake} --array=1-"$tasks" --output={log}.%A_%a.log "$@" <<'TASK'
 #!/usr/bin/env bash
-code=0
-for ((skinslide_chunk = SLURM_ARRAY_TASK_ID; skinslide_chunk <= {count}; skinslide_chunk += SLURM_ARRAY_TASK_MAX)); do
+skinslide_chunk=$SLURM_ARRAY_TASK_ID code=0
+while
     {bake_words} || code=$?
-done
+    (((skinslide_chunk += SLURM_ARRAY_TASK_MAX) <= {count}))
+do :; done
 exit $code
 TASK
 )
