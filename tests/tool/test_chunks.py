@@ -274,6 +274,17 @@ VECTORS = [
 ]
 
 
+def test_chunks_of_another_stage(shot, tmp_path):
+    """Whose frames are as many, and of which no mesh is in both."""
+    stage, other = stages.new_stage(), "/World/prop/other_GEO"
+    stages.add_patch(stages.add_mesh(stage, stages.grid(), other, frames=FRAMES, rest="Pref"), stages.annulus())
+    first, second = tmp_path / "1.usdc", tmp_path / "2.usdc"
+    bake_to_file(shot, first, chunk="1/2")
+    bake_to_file(stages.save(stage, tmp_path / "other.usda"), second, chunk="2/2")
+    said = refused([first, second], tmp_path, f"{MESH}: {first} and {second} were baked from stages of other meshes")
+    assert len(said.splitlines()) == 1
+
+
 @pytest.mark.parametrize(("begin", "edit", "where"), [row[1:] for row in VECTORS], ids=[row[0] for row in VECTORS])
 def test_chunks_of_other_vectors(begin, edit, where, tmp_path):
     shot = saved_shot(tmp_path / "shot.usda", begin)
@@ -352,6 +363,7 @@ def test_a_chunk_that_is_not_finished(shot, tmp_path):
         ("options", None),
         ("options", 3),
         ("version", None),
+        ("asked", None),
         ("wanted", "words"),
         ("before", "words"),
     ],

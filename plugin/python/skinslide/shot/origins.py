@@ -33,7 +33,7 @@ def record_of(plan: Plan, chunk: Chunk | None, options: dict[str, Any]) -> Recor
     """The record of a layer with all that is planned, but for poses, which are known as they are slid."""
     told = bool(options.get("diagnostics"))
     meshes = {each.mesh.path: MeshRecord(origins_of(each, told), tuple(each.frames)) for each in plan.meshes}
-    record = Record(meshes, options)
+    record = Record(meshes, options, asked=tuple(sorted(plan.paths)))
     if chunk:
         record = replace(record, chunk=str(chunk), wanted=tuple(plan.wanted))
     frames = record.frames

@@ -34,6 +34,7 @@ class Plan:
     """Slides that are known to be possible."""
 
     meshes: list[PlannedMesh]
+    paths: list[str]  # of the meshes of all chunks
     problems: list[Problem]  # warnings
     wanted: list[float]  # every frame of any mesh, of which a chunk takes a part
     own: list[float]  # those of the shot, whatever was asked for
@@ -50,7 +51,8 @@ class Plan:
         wanted = sorted({frame for mesh in planned for frame in mesh.frames})
         problems += _outside(planned, options.named)
         own = sorted({frame for mesh, *_ in planned for frame in _own_frames(mesh)}) if options.named else wanted
-        return cls(_part(planned, set(chunk.of(wanted))) if chunk else planned, problems, wanted, own)
+        paths = [each.mesh.path for each in planned]
+        return cls(_part(planned, set(chunk.of(wanted))) if chunk else planned, paths, problems, wanted, own)
 
     def check_patches(self, wanted: Sequence[str] | None) -> None:
         """Raises UsageError for no names, and StageProblems for those that no mesh has."""

@@ -190,6 +190,8 @@ def _mixtures(chunks: Sequence[_Chunk]) -> Iterator[Problem]:
             yield Problem("error", "", None, None, message)
         for name in _unequal(_written_by(one), _written_by(other)):
             yield Problem("error", "", None, None, f"{pair} were baked with another option {name}")
+        for prim in sorted(set(one.asked) ^ set(other.asked))[:1]:
+            yield Problem("error", prim, None, None, f"{pair} were baked from stages of other meshes")
         if one.wanted != other.wanted:
             yield Problem("error", "", None, None, f"{pair} are parts of other frames")
         for prim in sorted(one.meshes.keys() & other.meshes.keys()):

@@ -41,6 +41,7 @@ class Record:
     options  of the bake, those that are not as they are by default
     before   the frame of the shot before the first in the layer; None: there is none
     after    the one after the last
+    asked    the paths of all meshes that were asked for, be they in this layer or in other chunks
     chunk    which of how many parts of `wanted` it is, such as 3/8; empty: it is all that was asked for
     wanted   all frames that were asked for, of which it is a part
     """
@@ -49,6 +50,7 @@ class Record:
     options: Mapping[str, Any] = field(default_factory=dict)
     before: float | None = None
     after: float | None = None
+    asked: tuple[str, ...] = ()
     chunk: str = ""
     wanted: tuple[float, ...] = ()
     version: str = field(default_factory=version)
@@ -83,6 +85,7 @@ class Record:
             for path, mesh in self.meshes.items()
         }
         told: dict[str, Any] = {"form": _FORM, "version": self.version, "meshes": meshes, "options": dict(self.options)}
+        told["asked"] = Vt.StringArray(list(self.asked))
         told |= {name: at for name in ("before", "after") if (at := getattr(self, name)) is not None}
         if self.chunk:
             told |= {"chunk": self.chunk, "wanted": _array(self.wanted)}
@@ -105,10 +108,9 @@ class Record:
     def _of(cls, told: Mapping[str, Any]) -> Record:
         meshes = {_prim(path): _mesh(dict(mesh)) for path, mesh in told["meshes"].items()}
         before, after = (None if told.get(end) is None else float(told[end]) for end in ("before", "after"))
-        wanted = _frames(told.get("wanted", ()))
-        return cls(
-            meshes, dict(told["options"]), before, after, str(told.get("chunk", "")), wanted, str(told["version"])
-        )
+        asked, wanted = tuple(map(str, told["asked"])), _frames(told.get("wanted", ()))
+        part = (asked, str(told.get("chunk", "")), wanted)
+        return cls(meshes, dict(told["options"]), before, after, *part, str(told["version"]))
 
 
 def joined(records: Sequence[Record]) -> Record:
