@@ -285,13 +285,13 @@ static void list_target(const ss_cage_work *work, const float *points, const ss_
     const ss_rows *stencils = &cage->stencils;
     bool stays = place->triangle == SS_STAYS;
     ss_parameter at = stays ? cage->samples[s].at : ss_parametrise(cage->patch, cage->loop, flat, place);
-    double *residual = work->residual[s];
+    double residual[3];
     ss_limit_normal(cage->surfaces, face, &at, work->scratch, residual, work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
             residual[axis] -= stencils->value[k] * (points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
-    for (int axis = 0; axis < 3 && stays; axis++)
-        residual[axis] = 0;
+    for (int axis = 0; axis < 3; axis++)
+        work->residual[s][axis] = stays ? 0 : residual[axis];
 }
 
 static void list_targets(ss_cage_work *work, const ss_frame *frame, const ss_slide *slide) {

@@ -47,13 +47,14 @@ static bool stays(const ss_middles *middles, int32_t vertex) {
 /* From where one of its corners was found. */
 static ss_place look_up(const ss_middles *middles, int32_t face) {
     const ss_patch *patch = middles->patch;
-    int32_t begin = patch->faces.face_start[face], end = patch->faces.face_start[face + 1], near = face;
+    int32_t begin = patch->faces.face_start[face], end = patch->faces.face_start[face + 1];
+    int32_t near = patch->triangles.first_triangle[face];
     double mean[2] = {0, 0};
     for (int32_t c = begin; c < end; c++) {
         int32_t vertex = patch->faces.corner_vertex[c], i = middles->free_index[vertex];
         const double *at = i < 0 ? middles->slide->flat.uv[vertex] : middles->slide->asked[i];
         if (!stays(middles, vertex))
-            near = patch->triangles.face[middles->slide->places[i].triangle];
+            near = middles->slide->places[i].triangle;
         for (int k = 0; k < 2; k++)
             mean[k] += at[k] / (end - begin);
     }

@@ -32,9 +32,9 @@ struct Quad {
     }
 };
 
-/* How far off a solution is, as a share of the quad; where it is no number, as far as can be. */
-double miss(const Quad &quad, dvec2 st, dvec2 p) {
-    double share = glm::length(quad.at(st) - p) / quad.size();
+/* How far off a solution is, as a share of the quad's size; where it is no number, as far as can be. */
+double miss(const Quad &quad, double size, dvec2 st, dvec2 p) {
+    double share = glm::length(quad.at(st) - p) / size;
     return std::isfinite(share) ? share : INFINITY;
 }
 
@@ -52,11 +52,12 @@ dvec2 inverse_bilinear(const Quad &quad, dvec2 p, double *missed) {
     dvec2 e = quad.corners[1] - quad.corners[0], f = quad.corners[3] - quad.corners[0], h = p - quad.corners[0];
     dvec2 g = quad.corners[2] - quad.corners[1] - f;
     dvec2 both = roots(cross(f, g), cross(f, e) - cross(h, g), -cross(h, e)), best(0);
+    double size = quad.size();
     *missed = INFINITY;
     for (int k = 0; k < 2; k++) {
         dvec2 along = e + both[k] * g;
         dvec2 st = glm::clamp(dvec2(glm::dot(h - both[k] * f, along) / glm::dot(along, along), both[k]), 0.0, 1.0);
-        double own = miss(quad, st, p);
+        double own = miss(quad, size, st, p);
         if (own < *missed)
             *missed = own, best = st;
     }

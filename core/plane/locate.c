@@ -200,11 +200,10 @@ static int32_t walk_to(ss_locator *locator, int32_t from, const double p[2], int
     return slab;
 }
 
-ss_place ss_locate_near(ss_locator *locator, int32_t face, const double p[2]) {
+ss_place ss_locate_near(ss_locator *locator, int32_t triangle, const double p[2]) {
     ss_located located = {0};
     ss_place place;
-    int32_t from = locator->paving.slab_of[locator->patch->triangles.first_triangle[face]];
-    if (!locator->regular || walk_to(locator, from, p, &located.steps, &place) < 0)
+    if (!locator->regular || walk_to(locator, locator->paving.slab_of[triangle], p, &located.steps, &place) < 0)
         search(locator, p, &place, &located);
     return place;
 }

@@ -130,8 +130,8 @@ ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, c
 
 /* The embedding that single places are asked of next. regular: its layout is. */
 void ss_locator_set(ss_locator *locator, const double (*uv)[2], bool regular);
-/* The place of p as ss_locate finds it for a vertex inside. face is one near by, any at all. */
-ss_place ss_locate_near(ss_locator *locator, int32_t face, const double p[2]);
+/* The place of p as ss_locate finds it for a vertex inside. triangle is one near by, any at all. */
+ss_place ss_locate_near(ss_locator *locator, int32_t triangle, const double p[2]);
 
 /* ---- interpolate.c ---- */
 
