@@ -48,6 +48,9 @@ def _frame_alone(scene: bpy.types.Scene, frame: int) -> Iterator[None]:
 @contextmanager
 def _selected_alone(context: bpy.types.Context) -> Iterator[None]:
     before = [each for each in context.view_layer.objects if each.select_get()]
+    if before == [context.active_object]:  # so nothing is drawn anew
+        yield
+        return
     for each in before:
         each.select_set(False)
     context.active_object.select_set(True)

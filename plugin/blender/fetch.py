@@ -41,8 +41,8 @@ DEFORMING = {
 }  # fmt: skip
 
 
-def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Fetched:
-    """All that there is to slide an object by. Raises Fault for one that cannot be."""
+def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None) -> Fetched:
+    """All that there is to slide an object by; None: without modifiers. Raises Fault for one that cannot be."""
     check(thing)
     own, mesh = settings.of(thing), thing.data
     primvars = {value.name: value for value in (*_attributes(mesh), *_groups(thing))}
@@ -54,7 +54,8 @@ def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Fetched:
         values["skinSlide:restPoints"] = rest._replace(name="skinSlide:restPoints")
     patches = tuple(_patch(mesh, each) for each in own.patches)
     folder = os.path.dirname(bpy.path.abspath(own.file or "//"))
-    poses = basis_points(mesh), evaluated_points(thing, depsgraph)
+    basis = basis_points(mesh)
+    poses = basis, evaluated_points(thing, depsgraph) if depsgraph else basis
     to_world = np.array(thing.matrix_world.transposed(), np.float64)
     return Fetched(thing.name, folder, *_faces(mesh), *poses, to_world, values, primvars, patches)
 
@@ -67,10 +68,8 @@ def _faces(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     return counts, indices
 
 
-def check(thing: bpy.types.Object | None) -> None:
-    """Raises Fault for what is no mesh, or has a scale of its own, by which lengths would differ from what is meant."""
-    if thing is None or thing.type != "MESH":
-        raise Fault("the active object is no mesh")
+def check(thing: bpy.types.Object) -> None:
+    """Raises Fault for what has a scale of its own, by which lengths would differ from what is meant."""
     if any(abs(scale - 1) > 1e-6 for scale in thing.scale):
         scale = ", ".join(f"{each:g}" for each in thing.scale)
         raise Fault(f"{thing.name} has the scale {scale}; apply it first (Object, Apply, Scale)")

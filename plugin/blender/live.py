@@ -255,6 +255,14 @@ def _veil(thing: bpy.types.Object, veiled: bool) -> None:
         setattr(thing, f"visible_{ray}", not veiled)
 
 
+def _make_way(thing: bpy.types.Object) -> None:
+    """Has the slid skin drawn as wires while Blender draws the mesh itself to be painted, in the same place."""
+    drawn = "WIRE" if thing.mode in ("WEIGHT_PAINT", "VERTEX_PAINT", "SCULPT") else "TEXTURED"
+    shown = settings.of(thing).slid
+    if shown.display_type != drawn:
+        shown.display_type = drawn
+
+
 def _summary(slid: Slid) -> str:
     before, after = (
         np.mean([getattr(each, name) for each in slid.patches]) for name in ("stretch_before", "stretch_after")
@@ -303,6 +311,7 @@ def _on_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         return
     changed = {each.id.original for each in depsgraph.updates if each.is_updated_geometry}
     for thing in live_objects():
+        _make_way(thing)
         if thing.data in changed:
             _stale(thing)
         elif thing in changed:

@@ -3,42 +3,68 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import bpy
 import numpy as np
 
 from skinslide.arrays.geometry import Curves, edges_near
-from skinslide.arrays.meaning import inputs
+from skinslide.arrays.meaning import Value, inputs
 from skinslide.problems import NO_EDGE, Fault
 
 from . import settings
-from .fetch import EDGES, check, edge_keys, edges_of, fetch, group_weights
+from .fetch import EDGES, INTERPOLATIONS, edge_keys, edges_of, fetch, group_weights
 from .patches import write_attribute, write_weights
-from .reading import Fetched, Surface
-from .work import Waiting
+from .reading import CHOOSING, Fetched, Surface, check_paint
+from .work import Waiting, asked
 
-CHOOSING = ("paintChannel", "patch", "forceDensityRule", "grow")  # what the faces of a patch depend on
-
-
-# What is painted on points.
-PAINTED = tuple(each.name for each in inputs("controls") if each.is_primvar)
-_PAINTED = [(name, name, "") for name in PAINTED]
+# What is painted, and what it does.
+PAINTED = {each.name: each for each in inputs("controls") if each.is_primvar}
+_SAYS = {
+    "weight": "How far the skin slides: 0 leaves it where the cache has it, 1 slides it fully",
+    "forceDensity": "How strongly edges pull: skin with more of it stretches less. Only ratios count",
+    "hold": "How alike neighbours must slide, under the rules even and relaxed: 0 not at all, 1 as they would",
+    "maxDistance": "The farthest that the skin may slide, in the units of the mesh",
+}
+_PAINTED = [(name, settings.title(name), _SAYS.get(name, "")) for name in PAINTED]
 
 
 def active_name(context: bpy.types.Context) -> str:
     """The name of the patch that is painted. Raises Fault where there is none."""
-    patch = settings.active_patch(context.active_object) if context.active_object else None
+    patch = settings.active_patch(context.active_object)
     if patch is None:
         raise Fault("there is no patch to paint; make one of selected faces first")
     return str(patch.name)
 
 
-class SKINSLIDE_OT_paint(Waiting):
+def _sources(_operator: Any, context: bpy.types.Context, _text: str) -> list[str]:
+    """What can be painted from."""
+    thing = context.active_object
+    floats = [
+        each.name for each in thing.data.attributes if each.data_type == "FLOAT" and each.domain in ("POINT", "FACE")
+    ]
+    return [*(group.name for group in thing.vertex_groups), *floats]
+
+
+class _Paint(Waiting):
+    @classmethod
+    def need(cls, context: bpy.types.Context) -> None:
+        """Raises Fault where there is no patch."""
+        super().need(context)
+        active_name(context)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Asks for what is painted."""
+        return asked(self, context)
+
+
+class SKINSLIDE_OT_paint(_Paint):
     """Paints a value, in edit mode on what is selected, else on all. Blender's own brushes go on from there."""
 
     bl_idname, bl_label = "skinslide.paint", "Paint"
-    what: bpy.props.EnumProperty(items=_PAINTED)  # type: ignore[valid-type]
-    value: bpy.props.FloatProperty(name="Value", default=1.0)  # type: ignore[valid-type]
+    what: bpy.props.EnumProperty(name="What", items=_PAINTED, options={"SKIP_SAVE"})  # type: ignore[valid-type]
+    value: bpy.props.FloatProperty(name="Value", default=1.0, min=0.0)  # type: ignore[valid-type]
     store: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="On",
         items=[
@@ -46,26 +72,44 @@ class SKINSLIDE_OT_paint(Waiting):
             ("POINT", "Point Attribute", "Of any value"),
             ("FACE", "Face Attribute", "Of any value, by face"),
         ],
+        options={"SKIP_SAVE"},
     )
 
     source: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="From", description="The vertex group or attribute whose values are taken; empty: the value"
+        name="From",
+        search=_sources,
+        options={"SKIP_SAVE"},
+        description="The vertex group or attribute whose values are taken; empty: the value",
     )
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: Any) -> str:
+        """What is said of a button."""
+        return f"{_SAYS.get(properties.what, '')}.\n{cls.__doc__}"
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Asks for the value. What may be above 1 is painted on an attribute."""
+        if not self.properties.is_property_set("store"):
+            self.store = "GROUP" if self.what == "weight" else "POINT"
+        return super().invoke(context, event)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Begins, of what is selected in edit mode."""
         self._editing = context.mode == "EDIT_MESH"
         return super().execute(context)
 
-    def fetch(self, context: bpy.types.Context) -> None:
+    def fetch(self, context: bpy.types.Context) -> Callable[[], np.ndarray]:
         """What there will be."""
-        thing = context.active_object
-        check(thing)
-        self._name = f"skinSlide:{active_name(context)}:{self.what}"
-        self._values = _merged(thing, self._name, self.store, self._given(thing), self._editing)
-        least, most = self._values.min(initial=0), self._values.max(initial=0)
+        thing, patch = context.active_object, active_name(context)
+        fetched, source = fetch(thing, None), PAINTED[self.what]
+        self._name = f"skinSlide:{patch}:{self.what}"
+        values = _merged(thing, self._name, self.store, self._given(thing), self._editing)
+        least, most = values.min(initial=0), values.max(initial=0)
         if self.store == "GROUP" and not 0 <= least <= most <= 1:
             raise Fault(f"a vertex group holds 0 to 1, not {least if least < 0 else most:g}; paint on an attribute")
+        value = Value(source.property(patch), values, "float[]", INTERPOLATIONS[_DOMAINS[self.store]])
+        check = partial(check_paint, fetched, patch, source, value)
+        return lambda: check() or values
 
     def _given(self, thing: bpy.types.Object) -> np.ndarray:
         """A value for each point or face. Raises Fault."""
@@ -73,19 +117,19 @@ class SKINSLIDE_OT_paint(Waiting):
             return _values_of(thing, self.source, _DOMAINS[self.store])
         return np.full(len(getattr(thing.data, _ELEMENTS[_DOMAINS[self.store]])), self.value, np.float32)
 
-    def write(self, context: bpy.types.Context, _found: None) -> str:
+    def write(self, context: bpy.types.Context, found: np.ndarray) -> str:
         """Paints."""
         thing, mesh = context.active_object, context.active_object.data
         group, attribute = thing.vertex_groups.get(self._name), mesh.attributes.get(self._name)
         if self.store == "GROUP":
             if attribute:
                 mesh.attributes.remove(attribute)
-            thing.vertex_groups.active = write_weights(thing, self._name, self._values)
+            thing.vertex_groups.active = write_weights(thing, self._name, found)
         else:
             if group:
                 thing.vertex_groups.remove(group)
             domain = _DOMAINS[self.store]
-            mesh.attributes.active = write_attribute(mesh, self._name, domain, ("FLOAT", "value"), self._values)
+            mesh.attributes.active = write_attribute(mesh, self._name, domain, ("FLOAT", "value"), found)
         return ""
 
 
@@ -124,7 +168,7 @@ def _merged(thing: bpy.types.Object, name: str, store: str, given: np.ndarray, e
 # ---- Edges ----
 
 
-class _PaintEdges(Waiting):
+class _PaintEdges(_Paint):
     """Gives edges of the patch a force density."""
 
     value: bpy.props.FloatProperty(  # type: ignore[valid-type]
@@ -166,7 +210,7 @@ def _chosen(
     count = surface.topology.vertex_count
     chosen = choose(surface, edges) & np.isin(edge_keys(edges, count), edge_keys(own, count))
     if not chosen.any():
-        raise Fault(f"what is selected {NO_EDGE}")
+        raise Fault(f"what is selected, or near the curve, {NO_EDGE}")
     return chosen
 
 
@@ -185,12 +229,21 @@ class SKINSLIDE_OT_paint_edges(_PaintEdges):
         return lambda _surface, _edges: selected
 
 
+def _curves(_operator: Any, context: bpy.types.Context, _text: str) -> list[str]:
+    """The objects that are curves."""
+    return [each.name for each in context.scene.objects if each.type == "CURVE"]
+
+
 class SKINSLIDE_OT_paint_curve(_PaintEdges):
     """Gives edges of the patch near a curve, drawn on the mesh at rest, a force density."""
 
     bl_idname, bl_label = "skinslide.paint_curve", "Paint Along Curve"
-    curve: bpy.props.StringProperty(name="Curve", description="The object that is the curve")  # type: ignore[valid-type]
-    distance: bpy.props.FloatProperty(name="Distance", default=0.05, min=0.0, unit="LENGTH")  # type: ignore[valid-type]
+    curve: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Curve", search=_curves, description="The object that is the curve"
+    )
+    distance: bpy.props.FloatProperty(  # type: ignore[valid-type]
+        name="Distance", default=0.05, min=0.0, description="From the curve, in the units of the mesh"
+    )
     direction: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="Edges",
         items=[

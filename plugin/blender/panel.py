@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
 from typing import Any
 
 import bpy
@@ -10,10 +11,18 @@ from . import settings
 from .paint import PAINTED
 from .rest import REST
 
-# Settings that the panel shows, those of maps and of the plane's outline folded away.
-_SHOWN = ("forceDensityRule", "interpolation", "holes", "grow", "envelope", "stretchResponse", "compressionResponse")
-_FOLDED = ("paintChannel", "boundary", "weightMap", "weightMapChannel", "forceDensityMap", "forceDensityMapChannel",
-           "holdMap", "holdMapChannel", "mapSt")  # fmt: skip
+_CHARACTER = 8  # pixels, about
+# Settings that the panel shows, with names that fit, and those that are folded away.
+_SHOWN = {
+    "forceDensityRule": "Rule", "interpolation": "Interp.", "holes": "Holes", "grow": "Grow",
+    "envelope": "Envelope",
+}  # fmt: skip
+_FOLDED = {
+    "stretchResponse": "Stretch", "compressionResponse": "Compression", "boundary": "Boundary",
+    "paintChannel": "Channel", "weightMap": "Weight Map", "weightMapChannel": "Channel",
+    "forceDensityMap": "Density Map", "forceDensityMapChannel": "Channel", "holdMap": "Hold Map",
+    "holdMapChannel": "Channel", "mapSt": "UV Map",
+}  # fmt: skip
 
 
 class SKINSLIDE_UL_patches(bpy.types.UIList):
@@ -39,55 +48,71 @@ class SKINSLIDE_PT_panel(bpy.types.Panel):
         return bool(context.active_object and context.active_object.type == "MESH")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """All of it."""
+        """From top to bottom in the order of work: patches, their settings, paint, rest, what is shown, files."""
         thing = context.active_object
         own, patch = settings.of(thing), settings.active_patch(thing)
         layout = self.layout
-        layout.template_list("SKINSLIDE_UL_patches", "", own, "patches", own, "active")
-        row = layout.row(align=True)
-        row.operator("skinslide.patch_from_faces", text="From Faces")
-        row.operator("skinslide.patch_from_group", text="From Group")
+        row = layout.row()
+        row.template_list("SKINSLIDE_UL_patches", "", own, "patches", own, "active", rows=3)
         row.operator("skinslide.remove_patch", text="", icon="REMOVE")
+        row = layout.row(align=True)
+        row.operator("skinslide.patch_from_faces", text="From Faces", icon="FACESEL")
+        row.operator("skinslide.patch_from_group", text="From Group", icon="GROUP_VERTEX")
         if patch:
-            _draw_patch(layout, thing, patch)
-        rest = layout.row(align=True)
-        rest.label(text="Rest: " + ("kept" if REST in thing.data.attributes else "the mesh itself"))
-        rest.operator("skinslide.rest_from_basis", text="Basis")
-        rest.operator("skinslide.rest_from_frame", text="Frame").frame = context.scene.frame_current
+            _draw_settings(layout, patch)
+            _draw_paint(layout, thing, patch)
+        _draw_rest(layout, thing, context.scene)
         layout.operator("skinslide.live", text="Live", depress=bool(own.slid), icon="PLAY")
         if own.slid:
-            row = layout.row()
-            row.prop(own, "false_colours")
-            row.prop(own, "most_stretch")
-        if own.problem:
-            problem = layout.column()
-            problem.alert = True
-            for line in own.problem.splitlines():
-                problem.label(text=line, icon="ERROR")
+            row = layout.row(align=True)
+            row.prop(own, "false_colours", text="Stretch, up to", toggle=True)
+            row.prop(own, "most_stretch", text="")
+        _draw_problem(layout, own.problem, context)
         row = layout.row(align=True)
-        row.operator("skinslide.import_setup", text="Import")
-        row.operator("skinslide.export_setup", text="Export")
+        row.operator("skinslide.import_setup", text="Import", icon="IMPORT")
+        row.operator("skinslide.export_setup", text="Export", icon="EXPORT")
 
 
-def _draw_patch(layout: Any, thing: bpy.types.Object, patch: Any) -> None:
+def _draw_settings(layout: Any, patch: Any) -> None:
     column = layout.column(align=True)
-    for name in _SHOWN:
-        column.prop(patch, name)
+    for name, text in _SHOWN.items():
+        column.prop(patch, name, text=text)
     header, body = layout.panel("skinslide_more", default_closed=True)
-    header.label(text="More")
-    for name in _FOLDED if body else ():
-        body.prop(patch, name)
-    paint = layout.column(align=True)
+    header.label(text="More Settings")
+    for name, text in _FOLDED.items() if body else ():
+        body.prop(patch, name, text=text)
+
+
+def _draw_paint(layout: Any, thing: bpy.types.Object, patch: Any) -> None:
+    column = layout.column(align=True)
+    column.label(text="Paint")
     for what in PAINTED:
         name = f"skinSlide:{patch.name}:{what}"
-        row = paint.row(align=True)
-        row.label(
-            text=what, icon="CHECKMARK" if name in thing.vertex_groups or name in thing.data.attributes else "DOT"
+        is_painted = name in thing.vertex_groups or name in thing.data.attributes
+        button = column.operator(
+            "skinslide.paint", text=settings.title(what), icon="CHECKMARK" if is_painted else "DOT"
         )
-        row.operator("skinslide.paint", text="Paint").what = what
-    row = layout.row(align=True)
-    row.operator("skinslide.paint_edges", text="Edges")
-    row.operator("skinslide.paint_curve", text="Curve")
+        button.what = what
+    row = column.row(align=True)
+    row.operator("skinslide.paint_edges", text="Edges", icon="EDGESEL")
+    row.operator("skinslide.paint_curve", text="Curve", icon="CURVE_DATA")
+
+
+def _draw_rest(layout: Any, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    column = layout.column(align=True)
+    column.label(text="Rest: " + ("kept" if REST in thing.data.attributes else "the mesh itself"))
+    row = column.row(align=True)
+    row.operator("skinslide.rest_from_basis", text="Basis", icon="SHAPEKEY_DATA")
+    row.operator("skinslide.rest_from_frame", text="Frame", icon="TIME").frame = scene.frame_current
+
+
+def _draw_problem(layout: Any, problem: str, context: bpy.types.Context) -> None:
+    """As many lines as the width of the sidebar asks for."""
+    column = layout.column(align=True)
+    column.alert = True
+    width = max(20, context.region.width // _CHARACTER) if context.region else 40
+    for index, line in enumerate(line for said in problem.splitlines() for line in wrap(said, width)):
+        column.label(text=line, icon="BLANK1" if index else "ERROR")
 
 
 _CLASSES = (SKINSLIDE_UL_patches, SKINSLIDE_PT_panel)

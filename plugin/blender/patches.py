@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from itertools import count
 from typing import Any
 
 import bpy
@@ -16,7 +18,7 @@ from skinslide.problems import NO_PATCH_NAME, Fault
 from . import settings
 from .fetch import EDGES, fetch, group_weights
 from .reading import Fetched, FetchedPatch, check_one_piece
-from .work import Waiting
+from .work import Waiting, asked
 
 RULE = "even"  # of patches that are new
 _LONGEST = 63  # bytes of the name of a vertex group
@@ -38,10 +40,23 @@ def check_name(thing: bpy.types.Object, name: str) -> None:
         raise Fault(f"{thing.name} has a patch {name} already")
 
 
+def free_name(thing: bpy.types.Object, wanted: str) -> str:
+    """A name that a patch can have and no other has, like one that is wanted."""
+    word = re.sub(r"\W", "_", wanted, flags=re.ASCII)
+    word = word if word.isidentifier() else f"patch_{word}"
+    names = (f"{word}_{number}" if number > 1 else word for number in count(1))
+    return next(name for name in names if name not in settings.of(thing).patches)
+
+
 class _NewPatch(Waiting):
     """Makes a patch, once it is known that it can slide."""
 
-    name: bpy.props.StringProperty(name="Name", default="patch")  # type: ignore[valid-type]
+    name: bpy.props.StringProperty(name="Name", default="patch", options={"SKIP_SAVE"})  # type: ignore[valid-type]
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Asks for the name, having found one."""
+        self.name = free_name(context.active_object, self.name)
+        return asked(self, context)
 
     def chosen(self, context: bpy.types.Context) -> Value:
         """What chooses the faces. Raises Fault."""
@@ -96,11 +111,24 @@ class SKINSLIDE_OT_patch_from_faces(_NewPatch):
         return Value(FACES.property(self.name), selected, "bool[]", "uniform")
 
 
+def _groups(_operator: Any, context: bpy.types.Context, _text: str) -> list[str]:
+    return [group.name for group in context.active_object.vertex_groups]
+
+
 class SKINSLIDE_OT_patch_from_group(_NewPatch):
     """Makes a patch of the faces whose points are all in a group of vertices, with weights above 0."""
 
     bl_idname, bl_label = "skinslide.patch_from_group", "Patch from Vertex Group"
-    group: bpy.props.StringProperty(name="Vertex Group", description="Empty: the active one")  # type: ignore[valid-type]
+    group: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Vertex Group", search=_groups, options={"SKIP_SAVE"}, description="Empty: the active one"
+    )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Asks for the group and the name, by default that of the active group."""
+        active = context.active_object.vertex_groups.active
+        if active:
+            self.group = self.name = active.name
+        return super().invoke(context, event)
 
     def chosen(self, context: bpy.types.Context) -> Value:
         """The weights of the group."""
@@ -117,10 +145,15 @@ class SKINSLIDE_OT_remove_patch(Waiting):
 
     bl_idname, bl_label = "skinslide.remove_patch", "Remove Patch"
 
-    def fetch(self, context: bpy.types.Context) -> None:
-        """Nothing is worked out."""
+    @classmethod
+    def need(cls, context: bpy.types.Context) -> None:
+        """Raises Fault where there is none."""
+        super().need(context)
         if not settings.active_patch(context.active_object):
             raise Fault("there is no patch")
+
+    def fetch(self, context: bpy.types.Context) -> None:
+        """Nothing is worked out."""
 
     def write(self, context: bpy.types.Context, _found: None) -> str:
         """Takes it away."""

@@ -28,6 +28,7 @@ from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, SliderError
 
+CHOOSING = ("paintChannel", "patch", "forceDensityRule", "grow")  # what the faces of a patch depend on
 Numbers = Sequence[Sequence[tuple[Input, Value]]]
 
 
@@ -120,6 +121,16 @@ class Surface:
             with _noting(faults):
                 give_files(controls, self.fetched.folder)
         return controls
+
+
+def check_paint(fetched: Fetched, name: str, source: Input, value: Value) -> None:
+    """Raises Fault for what cannot be painted on a patch."""
+    surface = Surface(fetched)
+    patch = next(each for each in fetched.patches if each.name == name)
+    with joined(name) as faults, _noting(faults):
+        controls = ControlsMeaning(surface.patch(patch, only=CHOOSING))
+        controls.take(source, value)
+        controls.get()
 
 
 _AT_REST = next(each for each in inputs("mesh") if each.when == DEFAULT_TIME)  # the points that are rest without others

@@ -29,12 +29,18 @@ class SKINSLIDE_OT_rest_from_basis(_Rest):
 
     bl_idname, bl_label = "skinslide.rest_from_basis", "Rest from Basis"
 
+    @classmethod
+    def need(cls, context: bpy.types.Context) -> None:
+        """Raises Fault where there is none."""
+        super().need(context)
+        if not context.active_object.data.shape_keys:
+            said = "has no shape keys; without a rest of its own the mesh itself is at rest"
+            raise Fault(f"{context.active_object.name} {said}")
+
     def fetch(self, context: bpy.types.Context) -> Any:
         """Its points."""
         thing = context.active_object
         fetch.check(thing)
-        if not thing.data.shape_keys:
-            raise Fault(f"{thing.name} has no shape keys; without a rest of its own the mesh itself is at rest")
         points = fetch.basis_points(thing.data)
         return lambda: points
 

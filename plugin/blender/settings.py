@@ -27,7 +27,8 @@ def tell(thing: bpy.types.Object) -> None:
         call(thing)
 
 
-def _title(name: str) -> str:
+def title(name: str) -> str:
+    """A name of the core's as Blender shows names."""
     return re.sub(r"(?<!^)([A-Z])", r" \1", name).title()
 
 
@@ -49,7 +50,7 @@ def _property(source: Input) -> Any:
     if source.is_primvar or source.name in ("points", "restPoints", "edges", "edgeForceDensities"):
         return None
     if source.tokens:
-        items = [(token, _title(token), "") for token in source.tokens]
+        items = [(token, title(token), "") for token in source.tokens]
         return bpy.props.EnumProperty(items=items, default=source.fallback or source.tokens[0], **words)
     if source.type_name == "float":
         return bpy.props.FloatProperty(default=float(source.fallback or 0), precision=3, **words)
@@ -87,7 +88,8 @@ class SkinslideObject(bpy.types.PropertyGroup):
             name="Stretch",
             default=True,
             update=_changed,
-            description="Colours the slid skin by the RMS of log(length / rest length) around each point",
+            description="Colours the slid skin by the RMS of log(length / rest length) around each point; seen in Material "
+            "Preview, and in Solid view by attribute",
         ),
         "most_stretch": bpy.props.FloatProperty(
             name="Most Stretch", default=0.5, min=1e-3, update=_changed, description="What has the hottest colour"

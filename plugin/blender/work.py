@@ -63,6 +63,11 @@ def _active(context: bpy.types.Context) -> tuple[str, tuple[int, ...]]:
     return thing.name if thing else "", (len(mesh.vertices), len(mesh.edges), len(mesh.polygons)) if mesh else ()
 
 
+def asked(operator: bpy.types.Operator, context: bpy.types.Context) -> set[str]:
+    """Has Blender ask for the properties of an operator, and then do it."""
+    return set(context.window_manager.invoke_props_dialog(operator))
+
+
 class Waiting(bpy.types.Operator):
     """An operator in steps, with work apart between them.
 
@@ -72,6 +77,22 @@ class Waiting(bpy.types.Operator):
 
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
     _steps: Steps | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether its button is of any use, or why not."""
+        try:
+            cls.need(context)
+        except Fault as fault:
+            cls.poll_message_set(str(fault))
+            return False
+        return True
+
+    @classmethod
+    def need(cls, context: bpy.types.Context) -> None:
+        """Raises Fault where there is nothing to do it with."""
+        if context.active_object is None or context.active_object.type != "MESH":
+            raise Fault("the active object is no mesh")
 
     def steps(self, context: bpy.types.Context) -> Steps:
         """Yields work, for what it gives, and gives what was done in the end. Whatever it began ends with it."""
@@ -93,7 +114,7 @@ class Waiting(bpy.types.Operator):
         self._begun_on: tuple[str, tuple[int, ...]] | None = None
         self._unwanted = self.too_late = False  # the latter once files are put in place
         state = self._go_on(context, lambda: None)
-        if state == RUNNING and self.options.is_invoke and interactive():
+        if state == RUNNING and self._may_wait() and interactive():
             self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
             context.window_manager.modal_handler_add(self)
             return state
@@ -118,6 +139,10 @@ class Waiting(bpy.types.Operator):
         if self._steps:
             wait([self._future])
             self._end(context, "CANCELLED")
+
+    def _may_wait(self) -> bool:
+        """Not of a script, nor where Blender repeats it, which it takes to be done then."""
+        return self.options.is_invoke and not (self.options.is_repeat or self.options.is_repeat_last)
 
     def tell(self, context: bpy.types.Context, text: str | None) -> None:
         """Shows how far it is in the status bar."""

@@ -69,6 +69,27 @@ def test_it_follows_paint_and_settings(scene):
     assert np.array_equal(points(shown), fetch(thing, bpy.context.evaluated_depsgraph_get()).points)
 
 
+def test_it_makes_way_for_brushes(scene):
+    """Drawn as wires over what is painted; strokes are followed there."""
+    thing = sheet()
+    make_patch(thing)
+    bpy.ops.skinslide.paint(what="weight", value=1.0, store="GROUP")
+    bpy.ops.skinslide.live()
+    scene.frame_set(1003)
+    bpy.context.view_layer.objects.active = thing
+    shown, before = thing.skinslide.slid, points(thing.skinslide.slid)
+    bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+    bpy.context.view_layer.update()
+    assert shown.display_type == "WIRE"
+    thing.vertex_groups["skinSlide:patch:weight"].add([84], 0.0, "REPLACE")
+    thing.data.update_tag()
+    bpy.context.view_layer.update()
+    assert points(shown).tobytes() == slid_now(thing).tobytes() != before.tobytes()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    assert shown.display_type == "TEXTURED"
+
+
 def test_it_follows_patches(scene):
     """Those that are made, and those that are taken away; without any nothing can be slid, which is said."""
     thing = sheet()

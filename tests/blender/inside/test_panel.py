@@ -10,10 +10,23 @@ import bpy
 import numpy as np
 import pytest
 from bl_ext.user_default.skinslide import files, live, work
+from bl_ext.user_default.skinslide.paint import PAINTED
 from bl_ext.user_default.skinslide.panel import SKINSLIDE_PT_panel
 
 from sheets import inner, line, make_patch, points, select, sheet
 from skinslide.problems import Fault
+
+
+class Properties:
+    """Those of an operator's button, which notes what is painted by it."""
+
+    def __init__(self, names: set[str], shown: list[str]):
+        self.__dict__.update(names=names, shown=shown)
+
+    def __setattr__(self, name: str, value):
+        assert name in self.names
+        if name == "what":
+            self.shown.append(value)
 
 
 class Layout:
@@ -41,9 +54,9 @@ class Layout:
         room, _, own = name.partition(".")
         properties = getattr(getattr(bpy.ops, room), own).get_rna_type().properties
         self.shown.append(name)
-        return type("Properties", (), {each.identifier: None for each in properties})()
+        return Properties({each.identifier for each in properties}, self.shown)
 
-    def template_list(self, kind: str, _identifier: str, data, held: str, _active_data, _active: str):
+    def template_list(self, kind: str, _identifier: str, data, held: str, _active_data, _active: str, **_):
         assert hasattr(bpy.types, kind)
         self.shown += [item.name for item in getattr(data, held)]
 
@@ -62,7 +75,8 @@ def test_it_lists_patches_and_what_is_wrong():
     make_patch(thing, "knee_L")
     shown = drawn()
     assert shown[:2] == ["elbow_L", "knee_L"]
-    assert {"forceDensityRule", "interpolation", "weight", "forceDensity", "hold", "skinslide.live"} <= set(shown)
+    assert {"forceDensityRule", "interpolation", "skinslide.live"} <= set(shown)
+    assert [each for each in shown if each in PAINTED] == list(PAINTED)
     thing.skinslide.problem = "one\ntwo"
     assert {"one", "two"} <= set(drawn())
 
@@ -121,12 +135,12 @@ class Operator:
     """What Waiting does, on an object of ours: Blender makes operators itself, of events, of which there are none."""
 
     bl_label = "Some Operator"
-    for _name in ("execute", "modal", "cancel", "tell", "_go_on", "_check", "_end", "_steps"):
+    for _name in ("execute", "modal", "cancel", "tell", "_may_wait", "_go_on", "_check", "_end", "_steps"):
         locals()[_name] = getattr(work.Waiting, _name)
 
     def __init__(self, *works):
         self.works, self.written, self.ended, self.reports = works, [], False, []
-        self.options = SimpleNamespace(is_invoke=True)
+        self.options = SimpleNamespace(is_invoke=True, is_repeat=False, is_repeat_last=False)
 
     def steps(self, _context):
         try:
@@ -196,6 +210,15 @@ def test_an_operator_leaves_blender_in_use(window):
     go.set()
     assert ended(operator, window) == {"FINISHED"}
     assert operator.written == ["found", "more"] and operator.reports == [({"INFO"}, "done")]
+
+
+@pytest.mark.parametrize("how", ["is_repeat", "is_repeat_last"])
+def test_what_blender_repeats_is_done_at_once(how, window):
+    """Adjusted after it was done, an operator that went on would be gone by then."""
+    operator = Operator(lambda: "found")
+    setattr(operator.options, how, True)
+    assert operator.execute(window) == {"FINISHED"}
+    assert operator.written == ["found"] and not window.waiting
 
 
 def test_what_fails_apart_is_reported(window):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from bl_ext.user_default.skinslide import settings
 from bl_ext.user_default.skinslide.fetch import fetch
+from bl_ext.user_default.skinslide.patches import check_name, free_name
 from bl_ext.user_default.skinslide.reading import Sliding
 
 from sheets import SIDE, animated, inner, line, make_patch, points, select, sheet, values
@@ -79,6 +80,15 @@ def test_a_patch_is_removed_with_its_paint():
     bpy.ops.skinslide.paint(what="forceDensity", value=2.0, store="POINT")
     assert bpy.ops.skinslide.remove_patch() == {"FINISHED"}
     assert state(thing) == before
+
+
+def test_names_that_are_free():
+    thing = sheet()
+    assert [free_name(thing, each) for each in ("arm.L", "1", "")] == ["arm_L", "patch_1", "patch_"]
+    make_patch(thing, "patch")
+    assert free_name(thing, "patch") == "patch_2"
+    for name in ("arm_L", "patch_1", "patch_", "patch_2"):
+        check_name(thing, name)
 
 
 def test_edit_mode_is_kept():
@@ -257,6 +267,24 @@ def test_paint_of_another_type():
     make_patch(thing)
     thing.data.attributes.new("skinSlide:patch:hold", "INT", "POINT")
     refused(bpy.ops.skinslide.live, thing, r"hold is int\[\]; it must be float")
+
+
+def test_what_cannot_be_painted_is_not():
+    """Paint that the core would refuse, though what else is painted is wrong already; a value of none is left alone."""
+    thing = sheet()
+    make_patch(thing)
+    thing.data.attributes.new("skinSlide:patch:weight", "FLOAT", "EDGE")
+    refused(bpy.ops.skinslide.paint, thing, "patch patch: .*hold has interpolation uniform", what="hold", store="FACE")
+    refused(bpy.ops.skinslide.paint, thing, "forceDensity", what="forceDensity", store="POINT", value=0.0)
+    assert bpy.ops.skinslide.paint(what="hold", store="POINT") == {"FINISHED"}
+
+
+def test_paint_does_not_mind_modifiers():
+    thing = sheet()
+    make_patch(thing)
+    thing.modifiers.new("Subdivision", "SUBSURF")
+    bpy.context.view_layer.update()
+    assert bpy.ops.skinslide.paint(what="hold", store="POINT") == {"FINISHED"}
 
 
 def test_a_rest_of_another_domain():
