@@ -88,8 +88,8 @@ class SkinslideObject(bpy.types.PropertyGroup):
             name="Stretch",
             default=True,
             update=_changed,
-            description="Colours the slid skin by the RMS of log(length / rest length) around each point; seen in Material "
-            "Preview, and in Solid view by attribute",
+            description="Colours the slid skin by the RMS of log(length / rest length) around each point. Material "
+            "Preview shows it, and the Solid view with its Color set to Attribute",
         ),
         "most_stretch": bpy.props.FloatProperty(
             name="Most Stretch", default=0.5, min=1e-3, update=_changed, description="What has the hottest colour"
