@@ -81,16 +81,14 @@ void ss_go_home(ss_evener *evener) {
 /* Walks anew from the vertex's own place; what is beyond the border is no slide. */
 static void slide_vertex(ss_evener *evener, int32_t v) {
     const ss_sheet *sheet = evener->sheet;
-    double *slide = evener->slide[v], way[3] = {0, 0, 0};
-    for (int j = 0; j < 2; j++) {
+    double *slide = evener->slide[v];
+    for (int j = 0; j < 2; j++)
         slide[j] += evener->step[v][j];
-        ss_add(slide[j], sheet->tangent[v][j], way);
-    }
     if (sheet->patch->vertex_loop[v] >= 0) {
         evener->place[v] = ss_place_of_vertex(sheet->patch, NULL, v);
         ss_walk_border(&sheet->ground.pose, &evener->place[v], slide[0]);
     } else {
-        double part = ss_walk_turned(&sheet->ground, v, way, NULL, &evener->place[v]);
+        double part = ss_walk_turned(&sheet->ground, v, slide, NULL, &evener->place[v]);
         for (int j = 0; j < 2 && part < 1; j++)
             slide[j] *= part;
     }
@@ -175,7 +173,7 @@ bool ss_take_step(ss_evener *evener) {
 }
 
 void ss_set_out(ss_evener *evener, const ss_frame *frame) {
-    ss_posed_set(&evener->pose, frame->points);
+    ss_take_points(evener->sheet->patch, frame->points, evener->pose.point);
     ss_go_home(evener);
     evener->scale = find_scale(evener, frame->paint);
     ss_stiffen_holds(evener, frame->holds);

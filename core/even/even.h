@@ -75,19 +75,19 @@ typedef struct ss_evener {
     double *next_weight, *next_hold; /* of the frame that begins */
     double most_weight;              /* the largest of the frame */
     double *crush;                   /* [vertex_count] how much the cache crushes skin */
-    ss_posed pose;
-    ss_place *place;     /* [vertex_count] where each vertex is */
-    double (*at)[3];     /* [vertex_count] of it in the pose */
-    double (*up)[3];     /* [vertex_count] scratch for normals */
-    double (*slide)[2];  /* [vertex_count] d */
-    double (*step)[2];   /* [vertex_count] to be added to it */
-    double *stretch;     /* [spring_count] z */
-    double scale;        /* of the frame, to be taken off z */
-    double (*whole)[2];  /* [vertex_count] the slide as if all shares were 1, where some are less */
-    double *anchor;      /* [vertex_count] */
-    double *part;        /* [vertex_count] of a step that is taken */
-    double *reach;       /* [face_count] the part that each face lets be taken */
-    ss_weighted *sorted; /* [spring_count] */
+    ss_posed pose;                   /* its facets are set where ways are limited */
+    ss_place *place;                 /* [vertex_count] where each vertex is */
+    double (*at)[3];                 /* [vertex_count] of it in the pose */
+    double (*up)[3];                 /* [vertex_count] scratch for normals */
+    double (*slide)[2];              /* [vertex_count] d */
+    double (*step)[2];               /* [vertex_count] to be added to it */
+    double *stretch;                 /* [spring_count] z */
+    double scale;                    /* of the frame, to be taken off z */
+    double (*whole)[2];              /* [vertex_count] the slide as if all shares were 1, where some are less */
+    double *anchor;                  /* [vertex_count] */
+    double *part;                    /* [vertex_count] of a step that is taken */
+    double *reach;                   /* [face_count] the part that each face lets be taken */
+    ss_weighted *sorted;             /* [spring_count] */
 } ss_evener;
 
 skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error);

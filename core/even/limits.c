@@ -12,16 +12,14 @@ static void limit_along_loop(const ss_evener *evener, int32_t vertex, double lim
 static void limit_over_surface(const ss_evener *evener, int32_t vertex, double limit, ss_place *place) {
     ss_meter meter = {&evener->pose, 0, limit};
     ss_place end;
-    double way[3] = {0, 0, 0};
-    for (int j = 0; j < 2; j++)
-        ss_add(evener->slide[vertex][j], evener->sheet->tangent[vertex][j], way);
-    ss_walk_turned(&evener->sheet->ground, vertex, way, &meter, &end);
+    ss_walk_turned(&evener->sheet->ground, vertex, evener->slide[vertex], &meter, &end);
     if (meter.walked >= limit)
         *place = end;
 }
 
 void ss_limit_ways(ss_evener *evener, const ss_frame *frame, ss_place *places) {
     const ss_patch *patch = evener->sheet->patch;
+    ss_posed_set(&evener->pose, frame->points);
     for (int32_t i = 0; i < patch->free_count; i++) {
         int32_t v = patch->free_vertex[i];
         if (places[i].triangle == SS_STAYS || isinf(frame->limits[i]))

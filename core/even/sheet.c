@@ -11,25 +11,13 @@ static bool on_free_loop(const ss_patch *patch, int32_t vertex) {
     return patch->vertex_loop[vertex] >= 0 && !patch->fixed[vertex];
 }
 
-/* The first is the axis that is least along the normal, made tangent. */
-static void set_tangents(const double normal[3], double tangent[2][3]) {
-    int axis = 0;
-    for (int k = 1; k < 3; k++)
-        axis = fabs(normal[k]) < fabs(normal[axis]) ? k : axis;
-    for (int k = 0; k < 3; k++)
-        tangent[0][k] = k == axis;
-    ss_add(-normal[axis], normal, tangent[0]);
-    ss_normalise(tangent[0]);
-    ss_cross(normal, tangent[0], tangent[1]);
-}
-
 static void set_vertex(ss_sheet *sheet, int32_t v) {
     const double *normal = sheet->ground.normal[v];
     if (on_free_loop(sheet->patch, v)) {
         ss_place own = ss_place_of_vertex(sheet->patch, NULL, v);
         ss_border_way(&sheet->ground.pose, &own, sheet->tangent[v][0]);
     } else {
-        set_tangents(normal, sheet->tangent[v]);
+        memcpy(sheet->tangent[v], sheet->ground.tangent[v], sizeof sheet->tangent[v]);
     }
     bool has_way = ss_dot(normal, normal) > 0.5 && ss_dot(sheet->tangent[v][0], sheet->tangent[v][0]) > 0.5;
     sheet->held[v] = sheet->patch->fixed[v] || !has_way;

@@ -8,9 +8,22 @@
 
 bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground) {
     ground->normal = ss_new(memory, patch->vertex_count, sizeof *ground->normal);
+    ground->tangent = ss_new(memory, patch->vertex_count, sizeof *ground->tangent);
     ground->wedges = SS_NEW(memory, ss_wedge, 3 * (int64_t)patch->triangles.count);
     ground->wedge_start = SS_NEW(memory, int32_t, (int64_t)patch->vertex_count + 1);
     return ss_posed_allocate(memory, patch, &ground->pose);
+}
+
+/* The first is the axis that is least along the normal, made tangent. */
+static void set_tangents(const double normal[3], double tangent[2][3]) {
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        axis = fabs(normal[k]) < fabs(normal[axis]) ? k : axis;
+    for (int k = 0; k < 3; k++)
+        tangent[0][k] = k == axis;
+    ss_add(-normal[axis], normal, tangent[0]);
+    ss_normalise(tangent[0]);
+    ss_cross(normal, tangent[0], tangent[1]);
 }
 
 /* False where the wedge is not seen, or has no area. */
@@ -18,18 +31,24 @@ static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_
     const ss_posed *pose = &ground->pose;
     const int32_t *v = pose->patch->triangles.vertex[triangle];
     const double *here = pose->point[v[corner]], *up = ground->normal[v[corner]];
-    double p[3], q[3], product[3];
+    double p[3], q[3], product[3], first[3], second[3];
     ss_subtract(pose->point[v[(corner + 1) % 3]], here, p);
     ss_subtract(pose->point[v[(corner + 2) % 3]], here, q);
     ss_cross(p, q, product);
     double share = 1 / ss_dot(product, up);
-    *out = (ss_wedge){.triangle = triangle, .corner = corner};
-    ss_cross(q, up, product);
-    ss_add(share, product, out->first);
-    ss_cross(up, p, product);
-    ss_add(share, product, out->second);
-    return pose->facet[triangle].has_area && share > 0 && isfinite(ss_dot(out->first, out->first)) &&
-           isfinite(ss_dot(out->second, out->second));
+    ss_cross(q, up, first);
+    ss_cross(up, p, second);
+    *out = (ss_wedge){
+        .square = {ss_dot(p, p), ss_dot(p, q), ss_dot(q, q)},
+        .triangle = triangle,
+        .corner = corner,
+    };
+    for (int j = 0; j < 2; j++) {
+        out->first[j] = share * ss_dot(first, ground->tangent[v[corner]][j]);
+        out->second[j] = share * ss_dot(second, ground->tangent[v[corner]][j]);
+    }
+    return pose->facet[triangle].has_area && share > 0 && isfinite(out->first[0] + out->first[1]) &&
+           isfinite(out->second[0] + out->second[1]);
 }
 
 static void see_wedges(ss_ground *ground) {
@@ -54,8 +73,10 @@ void ss_ground_set(ss_ground *ground, const float *points) {
     for (int32_t t = 0; t < triangles->count; t++)
         for (int k = 0; k < 3 && pose->facet[t].has_area; k++)
             ss_add(ss_half_angle(pose, t, k), pose->facet[t].normal, ground->normal[triangles->vertex[t][k]]);
-    for (int32_t v = 0; v < pose->patch->vertex_count; v++)
+    for (int32_t v = 0; v < pose->patch->vertex_count; v++) {
         ss_normalise(ground->normal[v]);
+        set_tangents(ground->normal[v], ground->tangent[v]);
+    }
     see_wedges(ground);
 }
 

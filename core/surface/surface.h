@@ -75,17 +75,55 @@ void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]);
 double ss_half_angle(const ss_posed *pose, int32_t triangle, int corner);
 void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]);
 
-/* ---- step.c ---- */
+/* ---- Steps of a walk: inside a triangle as rates at which the weights of a place change, and over a side into the next ---- */
 
-void ss_place_put(ss_place *place, int32_t triangle, const double weights[3]);
+static inline void ss_place_put(ss_place *place, int32_t triangle, const double weights[3]) {
+    place->triangle = triangle;
+    for (int k = 0; k < 3; k++)
+        place->weight[k] = weights[k];
+}
+
 /* How fast the weights change along a vector, which is projected into the plane of the triangle; and back. */
-void ss_rates_along(const ss_facet *facet, const double vector[3], double rates[3]);
-void ss_vector_along(const ss_facet *facet, const double rates[3], double vector[3]);
+static inline void ss_rates_along(const ss_facet *facet, const double vector[3], double rates[3]) {
+    double first = ss_dot(facet->first, vector), second = ss_dot(facet->second, vector);
+    rates[1] = facet->gram[0] * first + facet->gram[1] * second;
+    rates[2] = facet->gram[1] * first + facet->gram[2] * second;
+    rates[0] = -rates[1] - rates[2];
+}
+
+static inline void ss_vector_along(const ss_facet *facet, const double rates[3], double vector[3]) {
+    for (int k = 0; k < 3; k++)
+        vector[k] = rates[1] * facet->first[k] + rates[2] * facet->second[k];
+}
+
 /* The part of the rates that can be gone before a weight, but that of one corner, or -1, is 0: 1 where none gets there. *corner
  * is the weight, or -1. */
-double ss_reach(const ss_place *place, const double rates[3], int except, int *corner);
+static inline double ss_reach(const ss_place *place, const double rates[3], int except, int *corner) {
+    double most = 1;
+    *corner = -1;
+    for (int k = 0; k < 3; k++)
+        if (k != except && rates[k] < 0 && place->weight[k] < -rates[k] * most) {
+            most = place->weight[k] / -rates[k];
+            *corner = k;
+        }
+    return most;
+}
+
 /* Goes that part, which ends on the side opposite the corner where that is not -1. rates are then what is left. */
-void ss_advance(ss_place *place, double rates[3], double part, int corner);
+static inline void ss_advance(ss_place *place, double rates[3], double part, int corner) {
+    double second = ss_least(ss_most(place->weight[1] + part * rates[1], 0), 1);
+    double third = ss_least(ss_most(place->weight[2] + part * rates[2], 0), 1), sum = second + third;
+    second = corner == 1 ? 0 : second, third = corner == 2 ? 0 : third;
+    if (corner == 0 || second + third > 1)
+        second /= sum, third = 1 - second;
+    const double weights[3] = {corner == 0 ? 0 : 1 - second - third, second, third};
+    ss_place_put(place, place->triangle, weights);
+    for (int k = 0; k < 3; k++)
+        rates[k] *= 1 - part;
+}
+
+/* ---- step.c ---- */
+
 /* From the side opposite a corner into the triangle beyond it. Returns that one's corner opposite the side. */
 int ss_cross_side(const ss_patch *patch, ss_place *place, int corner);
 
@@ -109,19 +147,21 @@ double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *
 
 /* ---- ground.c: a pose with normals, blended from vertex to vertex ---- */
 
-/* A corner of a triangle as it is seen along the normal of the vertex there. A direction d tangent there is first.d of the side to
- * the next corner and second.d of that to the last: inside, where neither is less than 0. */
+/* A corner of a triangle as it is seen along the normal of the vertex there. A way along the tangents there is first.way of the side
+ * to the next corner and second.way of that to the last: inside, where neither is less than 0. */
 typedef struct ss_wedge {
+    double first[2], second[2];
+    double square[3]; /* products of these sides: of the first with itself, with the second, and of the second with itself */
     int32_t triangle;
     int corner;
-    double first[3], second[3];
 } ss_wedge;
 
 typedef struct ss_ground {
     ss_posed pose;
-    double (*normal)[3];  /* [vertex_count] of unit length; 0 where no triangle at the vertex has an area */
-    ss_wedge *wedges;     /* those that are seen, vertex by vertex, each vertex's as its triangles follow each other */
-    int32_t *wedge_start; /* [vertex_count + 1] */
+    double (*normal)[3];     /* [vertex_count] of unit length; 0 where no triangle at the vertex has an area */
+    double (*tangent)[2][3]; /* [vertex_count] at right angles to it and to each other, of unit length where it is */
+    ss_wedge *wedges;        /* those that are seen, vertex by vertex, each vertex's as its triangles follow each other */
+    int32_t *wedge_start;    /* [vertex_count + 1] */
 } ss_ground;
 
 bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground);
@@ -135,9 +175,9 @@ bool ss_turn(const double from[3], const double to[3], const double vector[3], d
 
 /* ---- turned.c ---- */
 
-/* Walks from a vertex for the length of a vector tangent there, in the direction that this has at each place that the walk comes
- * to: see turned.c. With a meter, no farther than that lets it. Returns the part that was walked. */
-double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[3], ss_meter *meter, ss_place *place);
+/* Walks from a vertex for the length of a way along the tangents there, in the direction that this has at each place that the walk
+ * comes to: see turned.c. With a meter, no farther than that lets it. Returns the part that was walked. */
+double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place);
 /* The same from a place inside a triangle, or on a side of it, by what of the vector is tangent there. */
 void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place *place);
 

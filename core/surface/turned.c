@@ -33,29 +33,30 @@ static bool aim(walker *w, const ss_facet *facet, const double normal[3], const 
 
 /* ---- From the vertex ---- */
 
-/* The first wedge that the heading is in; else the one that it is nearest to, or NULL. */
-static const ss_wedge *choose_wedge(const walker *w, int32_t vertex, double rates[2]) {
-    const ss_ground *ground = w->ground;
+/* The first wedge that the way is in; else the one that it is nearest to, or NULL. */
+static const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, const double way[2], double rates[2]) {
     const ss_wedge *chosen = NULL;
     double best = -INFINITY;
     for (int32_t i = ground->wedge_start[vertex]; i < ground->wedge_start[vertex + 1] && best < 0; i++) {
         const ss_wedge *wedge = &ground->wedges[i];
-        double first = ss_dot(wedge->first, w->heading), second = ss_dot(wedge->second, w->heading);
+        double first = wedge->first[0] * way[0] + wedge->first[1] * way[1];
+        double second = wedge->second[0] * way[0] + wedge->second[1] * way[1];
         if (ss_least(first, second) > best)
             best = ss_least(first, second), chosen = wedge, rates[0] = first, rates[1] = second;
     }
     return chosen;
 }
 
-static bool set_out(walker *w, int32_t vertex, ss_place *place) {
-    double rates[2], along[3];
-    const ss_wedge *wedge = choose_wedge(w, vertex, rates);
+static bool set_out(walker *w, int32_t vertex, const double way[2], ss_place *place) {
+    double rates[2];
+    const ss_wedge *wedge = choose_wedge(w->ground, vertex, way, rates);
     if (!wedge)
         return false;
     int k = wedge->corner, next = (k + 1) % 3, last = (k + 2) % 3;
-    w->rates[next] = rates[0], w->rates[last] = rates[1], w->rates[k] = -rates[0] - rates[1];
-    ss_vector_along(&w->ground->pose.facet[wedge->triangle], w->rates, along);
-    double scale = w->left / ss_length(along);
+    const double *square = wedge->square;
+    double along =
+        rates[0] * (square[0] * rates[0] + square[1] * rates[1]) + rates[1] * (square[1] * rates[0] + square[2] * rates[1]);
+    double scale = w->left / sqrt(along);
     w->rates[next] = ss_most(scale * rates[0], 0), w->rates[last] = ss_most(scale * rates[1], 0);
     w->rates[k] = -w->rates[next] - w->rates[last];
     ss_place_put(place, wedge->triangle, (double[3]){k == 0, k == 1, k == 2});
@@ -105,15 +106,28 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
     }
 }
 
-double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[3], ss_meter *meter, ss_place *place) {
-    double length = ss_length(way);
+/* Whether the walk ends in its first triangle, and so goes there at once. */
+static bool ends_at_once(walker *w, ss_place *place) {
+    int corner;
+    ss_reach(place, w->rates, -1, &corner);
+    if (corner >= 0)
+        return false;
+    ss_advance(place, w->rates, 1, -1);
+    place->weight[0] = ss_most(place->weight[0], 0);
+    return true;
+}
+
+double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place) {
+    double length = sqrt(way[0] * way[0] + way[1] * way[1]);
     walker w = {.ground = ground, .up = ground->normal[vertex], .left = length, .came = -1};
-    for (int k = 0; k < 3 && length > 0; k++)
-        w.heading[k] = way[k] / length;
-    if (!(length > 0) || !set_out(&w, vertex, place)) {
+    if (!(length > 0) || !set_out(&w, vertex, way, place)) {
         *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
         return !(length > 0);
     }
+    if (!meter && ends_at_once(&w, place))
+        return 1;
+    for (int j = 0; j < 2; j++)
+        ss_add(way[j] / length, ground->tangent[vertex][j], w.heading);
     walk(&w, meter, place);
     return 1 - w.left / length;
 }

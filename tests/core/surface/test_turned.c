@@ -27,6 +27,14 @@ static void free_scene(walk_scene *s) {
     free_mesh(&s->mesh);
 }
 
+/* A vector as a way along the tangents of a vertex. */
+static double walk_along(const walk_scene *s, int32_t vertex, const double vector[3], ss_meter *meter, ss_place *place) {
+    double way[2];
+    for (int j = 0; j < 2; j++)
+        way[j] = ss_dot(vector, s->ground.tangent[vertex][j]);
+    return ss_walk_turned(&s->ground, vertex, way, meter, place);
+}
+
 /* In a flat sheet a walk ends at its vector's end, to rounding in each of some triangles, or on the border. */
 static void straight_in_a_plane(void **state) {
     (void)state;
@@ -36,13 +44,13 @@ static void straight_in_a_plane(void **state) {
         double way[3] = {roll_between(&d, -3, 3), roll_between(&d, -3, 3), 0}, end[3];
         int32_t v = 10 * (3 + roll_below(&d, 4)) + 3 + roll_below(&d, 4);
         ss_place place;
-        assert_near(ss_walk_turned(&s.ground, v, way, NULL, &place), 1, 0);
+        assert_near(walk_along(&s, v, way, NULL, &place), 1, 0);
         ss_place_point(&s.ground.pose, &place, end);
         for (int k = 0; k < 3; k++)
             assert_near(end[k], s.ground.pose.point[v][k] + way[k], 1e-13);
     }
     ss_place place;
-    assert_near(ss_walk_turned(&s.ground, 44, (double[3]){10, 0, 0}, NULL, &place), 0.5, 1e-12); /* from x = 4 to 9 */
+    assert_near(walk_along(&s, 44, (double[3]){10, 0, 0}, NULL, &place), 0.5, 1e-12); /* from x = 4 to 9 */
     free_scene(&s);
 }
 
@@ -72,11 +80,11 @@ static void nothing_and_a_meter(void **state) {
     walk_scene s = scene_of(torus(9, 7));
     ss_place place;
     ss_meter meter = {&s.ground.pose, 0, 0.25};
-    assert_near(ss_walk_turned(&s.ground, 20, (double[3]){0, 0, 0}, NULL, &place), 1, 0);
+    assert_near(walk_along(&s, 20, (double[3]){0, 0, 0}, NULL, &place), 1, 0);
     assert_int_equal(s.patch->triangles.vertex[place.triangle][ss_place_corner(&place)], 20);
     double *normal = s.ground.normal[20], way[3] = {0, 0, 0}, axis[3] = {0.3, -0.5, 0.8};
     ss_cross(normal, axis, way);
-    double part = ss_walk_turned(&s.ground, 20, way, &meter, &place);
+    double part = walk_along(&s, 20, way, &meter, &place);
     assert_near(meter.walked, 0.25, 0);
     assert_near(part * ss_length(way), 0.25, 1e-12);
     free_scene(&s);
@@ -107,7 +115,7 @@ static void places_stay_places(void **state) {
             double axis[3] = {roll_between(&d, -9, 9), roll_between(&d, -9, 9), roll_between(&d, -9, 9)}, way[3];
             ss_place place;
             ss_cross(s.ground.normal[v], axis, way);
-            double part = ss_walk_turned(&s.ground, v, way, NULL, &place);
+            double part = walk_along(&s, v, way, NULL, &place);
             assert_true(part >= 0 && part <= 1);
             assert_near(place.weight[0] + place.weight[1] + place.weight[2], 1, 1e-15);
             for (int k = 0; k < 3; k++)
@@ -125,7 +133,7 @@ static void walks_go_round(void **state) {
         double *normal = s.ground.normal[v], up[3] = {0, 0, 1}, way[3], end[3];
         ss_place place;
         ss_cross(up, normal, way);
-        assert_near(ss_walk_turned(&s.ground, v, way, NULL, &place), 1, 1e-12);
+        assert_near(walk_along(&s, v, way, NULL, &place), 1, 1e-12);
         ss_place_point(&s.ground.pose, &place, end);
         assert_near(end[2], s.ground.pose.point[v][2], 0.02);
     }
