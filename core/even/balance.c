@@ -4,9 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEPS            4
-#define MOST_COMPRESSION 0.5   /* what drives skin apart comes to this at most */
-#define LEAST_SQUARE     1e-12 /* of an edge's length over that at rest */
+#define STEPS        4
+#define LEAST_SQUARE 1e-12 /* of an edge's length over that at rest */
 
 skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error) {
     ss_evener *evener = calloc(1, sizeof *evener);
@@ -18,6 +17,9 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_ev
     evener->paint = SS_NEW(memory, double, sheet->patch->faces.edge_count);
     evener->weight = SS_NEW(memory, double, vertices), evener->next_weight = SS_NEW(memory, double, vertices);
     evener->hold = SS_NEW(memory, double, vertices), evener->next_hold = SS_NEW(memory, double, vertices);
+    evener->moving = SS_NEW(memory, int32_t, vertices);
+    evener->bond = SS_NEW(memory, double, sheet->spring_count);
+    evener->load = SS_NEW(memory, double, vertices);
     evener->crush = SS_NEW(memory, double, vertices);
     evener->place = SS_NEW(memory, ss_place, vertices);
     evener->at = ss_new(memory, vertices, sizeof *evener->at);
@@ -105,42 +107,50 @@ static double find_scale(const ss_evener *evener, const double *paint) {
     return ss_find_scale(evener->sorted, count);
 }
 
-double ss_drive(const ss_frame *frame, double z, double *slope) {
-    double share = z < 0 ? z / MOST_COMPRESSION : 0, response = z < 0 ? frame->compression_response : frame->stretch_response;
-    double least = sqrt(1 + share * share);
-    *slope = response / (least * least * least);
-    return response * z / least;
+enum { AT_ONCE = 256 }; /* springs */
+
+/* J d - s of some springs from begin on. */
+static void find_forces(const ss_evener *evener, const ss_frame *frame, int32_t begin, int32_t count, double *force) {
+    double stretch_response = frame->stretch_response, compression_response = frame->compression_response;
+    double drive[AT_ONCE], slope;
+    for (int32_t i = 0; i < count; i++)
+        drive[i] = ss_drive(stretch_response, compression_response, evener->stretch[begin + i] - evener->scale, &slope);
+    for (int32_t i = 0; i < count; i++) {
+        const ss_spring *spring = &evener->sheet->springs[begin + i];
+        const double *first = evener->slide[spring->end[0]], *second = evener->slide[spring->end[1]];
+        force[i] = spring->slope[0][0] * first[0] + spring->slope[0][1] * first[1] + spring->slope[1][0] * second[0] +
+                   spring->slope[1][1] * second[1] - drive[i];
+    }
 }
 
 static void add_force(ss_evener *evener, const ss_spring *spring, double force) {
     for (int end = 0; end < 2; end++) {
-        int32_t v = spring->end[end];
-        if (evener->weight[v] == 0)
-            continue;
-        double *right = evener->K->right[ss_blocks_unknown(evener->K, v)];
-        for (int j = 0; j < 2; j++)
-            right[j] += force * spring->slope[end][j];
+        int32_t unknown = evener->moving[spring->end[end]];
+        for (int j = 0; j < 2 && unknown >= 0; j++)
+            evener->K->right[unknown][j] += force * spring->slope[end][j];
     }
 }
 
 /* Solves K goal = J' k (J d - s), and takes the way there for the step. */
 static void solve(ss_evener *evener, const ss_frame *frame) {
     const ss_sheet *sheet = evener->sheet;
+    double force[AT_ONCE];
     memset(evener->K->right, 0, (size_t)sheet->system->n * sizeof *evener->K->right);
-    for (int32_t i = 0; i < sheet->spring_count; i++) {
-        const ss_spring *spring = &sheet->springs[i];
-        double linear = 0, slope;
-        for (int end = 0; end < 2; end++)
-            for (int j = 0; j < 2; j++)
-                linear += spring->slope[end][j] * evener->slide[spring->end[end]][j];
-        add_force(evener, spring,
-                  evener->paint[spring->edge] * (linear - ss_drive(frame, evener->stretch[i] - evener->scale, &slope)));
+    for (int32_t begin = 0; begin < sheet->spring_count; begin += AT_ONCE) {
+        int32_t left = sheet->spring_count - begin, count = left < AT_ONCE ? left : AT_ONCE;
+        find_forces(evener, frame, begin, count, force);
+        for (int32_t i = 0; i < count; i++) {
+            const ss_spring *spring = &sheet->springs[begin + i];
+            add_force(evener, spring, evener->paint[spring->edge] * force[i]);
+        }
     }
     ss_pull_to_shares(evener, (const double(*)[2])evener->whole, evener->K->right);
     ss_blocks_solve(evener->K);
-    for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        for (int j = 0; j < 2 && evener->weight[v] > 0; j++)
-            evener->step[v][j] = evener->K->right[ss_blocks_unknown(evener->K, v)][j] - evener->slide[v][j];
+    for (int32_t v = 0; v < sheet->patch->vertex_count; v++) {
+        int32_t unknown = evener->moving[v];
+        for (int j = 0; j < 2 && unknown >= 0; j++)
+            evener->step[v][j] = evener->K->right[unknown][j] - evener->slide[v][j];
+    }
 }
 
 /* ---- The slide ---- */

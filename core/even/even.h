@@ -21,9 +21,9 @@
 /* An edge of which an end may slide. */
 typedef struct ss_spring {
     int32_t edge;
-    int32_t end[2];
-    double square;      /* of its length at rest; 0 where that is under the patch's shortest: such an edge only holds */
-    double slope[2][2]; /* J: of its z as either end slides along its tangents */
+    int32_t end[2], unknown[2]; /* of the system, -1 of a held end */
+    double square;              /* of its length at rest; 0 where that is under the patch's shortest: such an edge only holds */
+    double slope[2][2];         /* J: of its z as either end slides along its tangents */
 } ss_spring;
 
 /* A patch at rest, and what of that every frame needs: immutable. */
@@ -37,11 +37,12 @@ typedef struct ss_sheet {
     int32_t *degree;         /* [vertex_count] springs at the vertex */
     int32_t spring_count;
     ss_spring *springs;
-    double (*flat)[2];     /* [corner_count] faces at rest, each in its own plane */
-    double (*along)[2][2]; /* [corner_count] [axis][tangent] how a corner moves there as its vertex slides */
-    double *area;          /* [face_count] twice, in the same plane */
-    uint8_t *turned;       /* [face_count] which are turned over against the normals of their corners at rest already */
-    ss_system *system;     /* of what K joins */
+    double (*between)[2][2]; /* [spring_count] products of tangents of the first end with those of the second */
+    double (*flat)[2];       /* [corner_count] faces at rest, each in its own plane */
+    double (*along)[2][2];   /* [corner_count] [axis][tangent] how a corner moves there as its vertex slides */
+    double *area;            /* [face_count] twice, in the same plane */
+    uint8_t *turned;         /* [face_count] which are turned over against the normals of their corners at rest already */
+    ss_system *system;       /* of what K joins */
 } ss_sheet;
 
 /* rest_points is the whole mesh's. */
@@ -73,6 +74,9 @@ typedef struct ss_evener {
     double *paint;                   /* [edge_count] */
     double *weight, *hold;           /* [vertex_count]; the weight is a share of the largest, and 0 of held vertices */
     double *next_weight, *next_hold; /* of the frame that begins */
+    int32_t *moving;                 /* [vertex_count] the unknown, or -1 where it has no weight */
+    double *bond;                    /* [spring_count] what holds its ends together, over eta */
+    double *load;                    /* [vertex_count] the sum of k / l^2 over its springs */
     double most_weight;              /* the largest of the frame */
     double *crush;                   /* [vertex_count] how much the cache crushes skin */
     ss_posed pose;                   /* its facets are set where ways are limited */
@@ -112,8 +116,14 @@ void ss_scale_slide(ss_evener *evener);
 void ss_measure_stretch(ss_evener *evener);
 /* The sum of the squares of what was measured. */
 double ss_sum_stretch(const ss_evener *evener);
-/* s(z), z over the scale, and how fast that changes with z. */
-double ss_drive(const ss_frame *frame, double z, double *slope);
+/* s(z), z over the scale, by what answers stretch and compression, and how fast that changes with z. What drives skin apart comes to
+ * half at most. Without a branch or a call, so that several are found at once. */
+static inline double ss_drive(double stretch_response, double compression_response, double z, double *slope) {
+    double share = 2 * ss_least(z, 0), least = sqrt(1 + share * share);
+    double response = z < 0 ? compression_response : stretch_response;
+    *slope = response / (least * least * least);
+    return response * z / least;
+}
 /* Shortens the step, and takes it. Returns whether a face cut it short. */
 bool ss_take_step(ss_evener *evener);
 /* Where every free vertex is, in their order: [free_count]. */
@@ -133,8 +143,6 @@ skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, con
 /* Of a matrix that is a sum of squares, makes a block of the diagonal firm: it holds its unknowns by a small share of all that acts
  * on them, and wholly where nothing does, which makes the matrix positive definite. */
 void ss_firm(double own[4]);
-/* Of an edge, over eta: k / l^2 times what is painted. */
-double ss_hold_of(const ss_evener *evener, const ss_spring *spring);
 
 /* ---- weights.c ---- */
 

@@ -38,6 +38,8 @@ static void add_spring(ss_sheet *sheet, int32_t edge) {
     for (int end = 0; end < 2; end++)
         for (int j = 0; j < 2 && own.square > 0; j++)
             own.slope[end][j] = (end ? 1 : -1) * ss_dot(way, sheet->tangent[v[end]][j]) / square;
+    for (int k = 0; k < 4; k++)
+        sheet->between[sheet->spring_count][k / 2][k % 2] = ss_dot(sheet->tangent[v[0]][k / 2], sheet->tangent[v[1]][k % 2]);
     sheet->springs[sheet->spring_count++] = own;
     sheet->degree[v[0]]++, sheet->degree[v[1]]++;
 }
@@ -96,6 +98,7 @@ static bool allocate(ss_sheet *sheet) {
     sheet->tangent = ss_new(memory, patch->vertex_count, sizeof *sheet->tangent);
     sheet->degree = SS_NEW(memory, int32_t, patch->vertex_count);
     sheet->springs = SS_NEW(memory, ss_spring, patch->faces.edge_count);
+    sheet->between = ss_new(memory, patch->faces.edge_count, sizeof *sheet->between);
     sheet->flat = ss_new(memory, patch->faces.corner_count, sizeof *sheet->flat);
     sheet->along = ss_new(memory, patch->faces.corner_count, sizeof *sheet->along);
     sheet->area = SS_NEW(memory, double, patch->faces.face_count);
@@ -117,6 +120,12 @@ static void fill(ss_sheet *sheet, const float *rest_points) {
     }
 }
 
+static void number_springs(ss_sheet *sheet) {
+    for (int32_t i = 0; i < sheet->spring_count; i++)
+        for (int end = 0; end < 2; end++)
+            sheet->springs[i].unknown[end] = sheet->system->unknown[sheet->springs[i].end[end]];
+}
+
 skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points, ss_sheet **out, skinslide_error *error) {
     ss_sheet *sheet = calloc(1, sizeof *sheet);
     if (!sheet)
@@ -128,6 +137,8 @@ skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points
         ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, sheet->held};
         status = ss_block_system_create(&net, patch->label, &sheet->system, error);
     }
+    if (!status)
+        number_springs(sheet);
     if (status)
         ss_sheet_destroy(sheet);
     else

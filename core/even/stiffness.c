@@ -12,39 +12,59 @@
 #define TIE      1e6   /* of the ends of an edge without length: of eta k, over the square of the mean edge */
 #define FIRMNESS 1e-10 /* far over rounding, far under what holds skin of a million faces that is closed */
 
-static bool slides(const ss_evener *evener, int32_t vertex) {
-    return evener->weight[vertex] > 0;
+/* ---- What the springs are ---- */
+
+static void list_moving(ss_evener *evener) {
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        evener->moving[v] = evener->weight[v] > 0 ? ss_blocks_unknown(evener->K, v) : -1;
 }
 
-double ss_hold_of(const ss_evener *evener, const ss_spring *spring) {
-    const double *hold = evener->hold;
-    double mean = 0.5 * (hold[spring->end[0]] + hold[spring->end[1]]), edge = evener->sheet->patch->mean_edge;
-    double stiffness = spring->square > 0 ? 1 / spring->square : TIE / (edge * edge);
-    return mean * evener->paint[spring->edge] * stiffness;
+static void list_bonds(ss_evener *evener) {
+    const ss_sheet *sheet = evener->sheet;
+    double edge = sheet->patch->mean_edge;
+    memset(evener->load, 0, (size_t)sheet->patch->vertex_count * sizeof *evener->load);
+    for (int32_t i = 0; i < sheet->spring_count; i++) {
+        const ss_spring *spring = &sheet->springs[i];
+        const int32_t *v = spring->end;
+        double k = evener->paint[spring->edge], own = k / spring->square, tie = TIE * k / (edge * edge);
+        evener->bond[i] = 0.5 * (evener->hold[v[0]] + evener->hold[v[1]]) * (spring->square > 0 ? own : tie);
+        if (spring->square > 0)
+            evener->load[v[0]] += own, evener->load[v[1]] += own;
+    }
 }
 
-static void add_own(ss_evener *evener, const ss_spring *spring, int end, double k, double hold) {
-    int32_t v = spring->end[end];
-    if (!slides(evener, v))
-        return;
-    double *own = ss_blocks_own(evener->K, ss_blocks_unknown(evener->K, v));
-    const double(*tangent)[3] = (const double(*)[3])evener->sheet->tangent[v], *slope = spring->slope[end];
+/* ---- The matrix ---- */
+
+static void add_own(ss_evener *evener, int32_t unknown, const double slope[2], double k) {
+    double *own = ss_blocks_own(evener->K, unknown);
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++)
-            own[2 * i + j] += k * slope[i] * slope[j] + hold * ss_dot(tangent[i], tangent[j]);
+            own[2 * i + j] += k * slope[i] * slope[j];
 }
 
-static void add_between(ss_evener *evener, const ss_spring *spring, double k, double hold) {
-    const int32_t *v = spring->end;
+static void add_between(ss_evener *evener, int32_t i, double k, double hold) {
+    const ss_spring *spring = &evener->sheet->springs[i];
+    const double(*product)[2] = (const double(*)[2])evener->sheet->between[i];
     bool first_is_row;
-    if (!slides(evener, v[0]) || !slides(evener, v[1]))
-        return;
     double *between = ss_blocks_between(evener->K, spring->edge, &first_is_row);
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++)
-            between[first_is_row ? 2 * i + j : 2 * j + i] =
-                k * spring->slope[0][i] * spring->slope[1][j] -
-                hold * ss_dot(evener->sheet->tangent[v[0]][i], evener->sheet->tangent[v[1]][j]);
+    for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++)
+            between[first_is_row ? 2 * a + b : 2 * b + a] =
+                k * spring->slope[0][a] * spring->slope[1][b] - hold * product[a][b];
+}
+
+/* Adds to sum [vertex_count] what holds its ends. */
+static void add_spring(ss_evener *evener, int32_t i, double *sum) {
+    const ss_spring *spring = &evener->sheet->springs[i];
+    double k = spring->square > 0 ? evener->paint[spring->edge] : 0, hold = evener->temper.hold * evener->bond[i];
+    const int32_t moving[2] = {evener->moving[spring->end[0]], evener->moving[spring->end[1]]};
+    for (int end = 0; end < 2; end++) {
+        sum[spring->end[end]] += hold;
+        if (moving[end] >= 0)
+            add_own(evener, moving[end], spring->slope[end], k);
+    }
+    if (moving[0] >= 0 && moving[1] >= 0)
+        add_between(evener, i, k, hold);
 }
 
 void ss_firm(double own[4]) {
@@ -52,29 +72,28 @@ void ss_firm(double own[4]) {
         own[i] = own[i] > 0 ? (1 + FIRMNESS) * own[i] : 1;
 }
 
-static void add_diagonal(ss_evener *evener, int32_t v, double anchor) {
+/* Tangents at a vertex are at right angles, and of length 1 or, along a loop, the second of 0. */
+static void add_diagonal(ss_evener *evener, int32_t v, double hold) {
     int32_t unknown = ss_blocks_unknown(evener->K, v);
     if (unknown < 0)
         return;
     double *own = ss_blocks_own(evener->K, unknown);
-    own[0] += anchor, own[3] += anchor;
+    const double *second = evener->sheet->tangent[v][1];
+    if (evener->weight[v] > 0)
+        own[0] += hold, own[3] += hold * ss_dot(second, second);
+    own[0] += evener->anchor[v], own[3] += evener->anchor[v];
     ss_firm(own);
 }
 
 static void add_stiffness(ss_evener *evener) {
     const ss_sheet *sheet = evener->sheet;
+    double *sum = evener->part;
     ss_blocks_clear(evener->K);
-    for (int32_t i = 0; i < sheet->spring_count; i++) {
-        const ss_spring *spring = &sheet->springs[i];
-        double k = spring->square > 0 ? evener->paint[spring->edge] : 0,
-               hold = evener->temper.hold * ss_hold_of(evener, spring);
-        add_own(evener, spring, 0, k, hold);
-        add_own(evener, spring, 1, k, hold);
-        add_between(evener, spring, k, hold);
-    }
-    ss_find_anchors(evener);
+    memset(sum, 0, (size_t)sheet->patch->vertex_count * sizeof *sum);
+    for (int32_t i = 0; i < sheet->spring_count; i++)
+        add_spring(evener, i, sum);
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        add_diagonal(evener, v, evener->anchor[v]);
+        add_diagonal(evener, v, sum[v]);
 }
 
 /* Copies values; whether that changed any. */
@@ -93,6 +112,9 @@ skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, con
     if (evener->factored && !changed)
         return SKINSLIDE_OK;
     evener->factored = false;
+    list_moving(evener);
+    list_bonds(evener);
+    ss_find_anchors(evener);
     add_stiffness(evener);
     if (!ss_blocks_factor(evener->K, frame->stop))
         return ss_fail(error, SKINSLIDE_SINGULAR, "%s: force densities, holds and weights are too far apart to slide with",

@@ -37,14 +37,10 @@ bool ss_share_weights(ss_evener *evener, const ss_frame *frame) {
 }
 
 void ss_find_anchors(ss_evener *evener) {
-    memset(evener->anchor, 0, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->anchor);
-    for (int32_t i = 0; i < evener->sheet->spring_count; i++) {
-        const ss_spring *spring = &evener->sheet->springs[i];
-        for (int end = 0; end < 2 && spring->square > 0; end++)
-            evener->anchor[spring->end[end]] += evener->paint[spring->edge] / spring->square;
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++) {
+        double weight = evener->weight[v];
+        evener->anchor[v] = weight > 0 ? STIFFNESS * (1 / fmax(weight, LEAST_SHARE) - 1) * evener->load[v] : 0;
     }
-    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
-        evener->anchor[v] *= evener->weight[v] > 0 ? STIFFNESS * (1 / fmax(evener->weight[v], LEAST_SHARE) - 1) : 0;
 }
 
 void ss_pull_to_shares(ss_evener *evener, const double (*whole)[2], double (*right)[2]) {

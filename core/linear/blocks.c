@@ -38,20 +38,6 @@ void ss_blocks_clear(ss_blocks *blocks) {
     memset(blocks->right, 0, n * sizeof *blocks->right);
 }
 
-int32_t ss_blocks_unknown(const ss_blocks *blocks, int32_t vertex) {
-    return blocks->system->unknown[vertex];
-}
-
-double *ss_blocks_own(ss_blocks *blocks, int32_t unknown) {
-    return blocks->own[unknown];
-}
-
-double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *first_is_row) {
-    const ss_system *system = blocks->system;
-    *first_is_row = system->unknown[system->edge_vertex[edge][0]] > system->unknown[system->edge_vertex[edge][1]];
-    return blocks->between[edge];
-}
-
 bool ss_blocks_factor(ss_blocks *blocks, const int *stop) {
     return ss_factor_blocks(blocks->frontal, (const double(*)[4])blocks->own, (const double(*)[4])blocks->between, stop);
 }

@@ -170,11 +170,19 @@ skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skin
 void ss_blocks_destroy(ss_blocks *blocks);
 void ss_blocks_clear(ss_blocks *blocks);
 /* The place of a vertex in right, -1 where it is fixed. */
-int32_t ss_blocks_unknown(const ss_blocks *blocks, int32_t vertex);
+static inline int32_t ss_blocks_unknown(const ss_blocks *blocks, int32_t vertex) {
+    return blocks->system->unknown[vertex];
+}
 /* The diagonal block of an unknown. */
-double *ss_blocks_own(ss_blocks *blocks, int32_t unknown);
+static inline double *ss_blocks_own(ss_blocks *blocks, int32_t unknown) {
+    return blocks->own[unknown];
+}
 /* The block between the ends of an edge, neither fixed, and whether its rows are the first end's. */
-double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *first_is_row);
+static inline double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *first_is_row) {
+    const int32_t *v = blocks->system->edge_vertex[edge];
+    *first_is_row = ss_blocks_unknown(blocks, v[0]) > ss_blocks_unknown(blocks, v[1]);
+    return blocks->between[edge];
+}
 /* Factors; false where the matrix is not positive definite, or work is left because of the flag. */
 bool ss_blocks_factor(ss_blocks *blocks, const int *stop);
 /* right becomes the solution. */

@@ -20,17 +20,10 @@
 
 void ss_set_anchors(ss_relaxer *relaxer) {
     const ss_evener *evener = relaxer->evener;
-    const ss_sheet *sheet = evener->sheet;
-    int32_t vertices = sheet->patch->vertex_count;
+    int32_t vertices = evener->sheet->patch->vertex_count;
     memcpy(relaxer->even, evener->slide, (size_t)vertices * sizeof *relaxer->even);
-    memset(relaxer->anchor, 0, (size_t)vertices * sizeof *relaxer->anchor);
-    for (int32_t i = 0; i < sheet->spring_count; i++) {
-        const ss_spring *spring = &sheet->springs[i];
-        for (int end = 0; end < 2 && spring->square > 0; end++)
-            relaxer->anchor[spring->end[end]] += evener->paint[spring->edge] / spring->square;
-    }
     for (int32_t v = 0; v < vertices; v++)
-        relaxer->anchor[v] *= ANCHOR * evener->crush[v];
+        relaxer->anchor[v] = ANCHOR * evener->crush[v] * evener->load[v];
 }
 
 static void add_anchor(ss_relaxer *relaxer, int32_t v) {
@@ -68,7 +61,7 @@ static void set_pull(const ss_relaxer *relaxer, const ss_frame *frame, int32_t i
     const ss_evener *evener = relaxer->evener;
     const ss_spring *spring = &evener->sheet->springs[i];
     double way[3], slope, k = evener->paint[spring->edge];
-    double force = ss_drive(frame, evener->stretch[i] - evener->scale, &slope);
+    double force = ss_drive(frame->stretch_response, frame->compression_response, evener->stretch[i] - evener->scale, &slope);
     ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
     double square = ss_dot(way, way) + SHORT * SHORT * spring->square * scale_square, length = sqrt(square);
     model->across = k / square * positive(force);
@@ -79,9 +72,10 @@ static void set_pull(const ss_relaxer *relaxer, const ss_frame *frame, int32_t i
             model->slope[end][j] = (end ? 1 : -1) * ss_dot(way, relaxer->axis[spring->end[end]][j]) / length;
 }
 
-static void set_hold(const ss_relaxer *relaxer, const ss_spring *spring, edge_model *model) {
+static void set_hold(const ss_relaxer *relaxer, int32_t i, edge_model *model) {
     const ss_evener *evener = relaxer->evener;
-    double hold = ss_hold_of(evener, spring);
+    const ss_spring *spring = &evener->sheet->springs[i];
+    double hold = evener->bond[i];
     model->damping = (HOLD + DAMPING) * hold;
     for (int end = 0; end < 2; end++)
         for (int j = 0; j < 2; j++)
@@ -128,7 +122,7 @@ void ss_fill_model(ss_relaxer *relaxer, const ss_frame *frame) {
         edge_model model = {0};
         if (spring->square > 0)
             set_pull(relaxer, frame, i, scale_square, &model);
-        set_hold(relaxer, spring, &model);
+        set_hold(relaxer, i, &model);
         add_own(relaxer, spring, 0, &model);
         add_own(relaxer, spring, 1, &model);
         add_between(relaxer, spring, &model);
