@@ -39,7 +39,7 @@ typedef struct ss_sheet {
     ss_spring *springs;
     double (*between)[2][2]; /* [spring_count] products of tangents of the first end with those of the second */
     double (*flat)[2];       /* [corner_count] faces at rest, each in its own plane */
-    double (*along)[2][2];   /* [corner_count] [axis][tangent] how a corner moves there as its vertex slides */
+    double (*along)[2][2];   /* [corner_count] [tangent][axis] how a corner moves there as its vertex slides */
     double *area;            /* [face_count] twice, in the same plane */
     uint8_t *turned;         /* [face_count] which are turned over against the normals of their corners at rest already */
     ss_system *system;       /* of what K joins */
@@ -90,7 +90,7 @@ typedef struct ss_evener {
     double (*whole)[2];              /* [vertex_count] the slide as if all shares were 1, where some are less */
     double *anchor;                  /* [vertex_count] */
     double *part;                    /* [vertex_count] of a step that is taken */
-    double *reach;                   /* [face_count] the part that each face lets be taken */
+    double *reach;                   /* [face_count] the part that each face lets be taken, 1 at most */
     ss_weighted *sorted;             /* [spring_count] */
 } ss_evener;
 

@@ -83,7 +83,7 @@ static void set_face(ss_sheet *sheet, int32_t face) {
         for (int i = 0; i < 2; i++) {
             sheet->flat[c][i] = ss_dot(first, axes[i]);
             for (int j = 0; j < 2; j++)
-                sheet->along[c][i][j] = ss_dot(axes[i], sheet->tangent[v[c]][j]);
+                sheet->along[c][j][i] = ss_dot(axes[i], sheet->tangent[v[c]][j]);
         }
     }
 }

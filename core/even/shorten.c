@@ -7,40 +7,42 @@
 #define FAR    30.0 /* parts of a step beyond which a face has no say */
 #define NEAR   1e-6 /* parts that count as no less */
 #define ROUNDS 4    /* of cutting */
-#define PASSES 10   /* of easing off */
+#define PASSES 10   /* of easing off, at most: parts of 0 and 1 are as many edges from each other */
 #define EASE   0.1  /* a neighbour may take as much more */
 
 /* ---- One face ---- */
 
+typedef double pair __attribute__((vector_size(16), may_alias)); /* of coordinates in the plane of a face */
+typedef double loose_pair __attribute__((vector_size(16), aligned(8), may_alias));
+
 typedef struct moving_point {
-    double at[2], by[2];
+    pair at, by;
 } moving_point;
 
 static inline moving_point corner_of(const ss_evener *evener, int32_t corner) {
-    const double *at = evener->sheet->flat[corner], (*along)[2] = (const double(*)[2])evener->sheet->along[corner];
+    const loose_pair *along = (const loose_pair *)evener->sheet->along[corner];
     int32_t v = evener->sheet->patch->faces.corner_vertex[corner];
     const double *slide = evener->slide[v], *step = evener->step[v];
-    moving_point p;
-    for (int i = 0; i < 2; i++) {
-        p.at[i] = at[i] + along[i][0] * slide[0] + along[i][1] * slide[1];
-        p.by[i] = along[i][0] * step[0] + along[i][1] * step[1];
-    }
+    moving_point p = {*(const loose_pair *)evener->sheet->flat[corner] + along[0] * slide[0] + along[1] * slide[1],
+                      along[0] * step[0] + along[1] * step[1]};
     return p;
 }
 
 static inline moving_point from(moving_point origin, moving_point p) {
-    for (int i = 0; i < 2; i++)
-        p.at[i] -= origin.at[i], p.by[i] -= origin.by[i];
-    return p;
+    return (moving_point){p.at - origin.at, p.by - origin.by};
 }
 
-static inline double cross(const double a[2], const double b[2]) {
+static inline double cross(pair a, pair b) {
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* The part of the step at which a face has lost what it may, or more: what makes it larger is left out. Two triangles of the fan
- * have the area between the diagonals of their quad. */
-static double face_reach(const ss_evener *evener, int32_t face) {
+/* What a face has to spare, and what of that a part of the step takes: slope part + bend part^2. What makes it larger is left out. */
+typedef struct loss {
+    double spare, slope, bend;
+} loss;
+
+/* Two triangles of the fan have the area between the diagonals of their quad. */
+static inline loss loss_of(const ss_evener *evener, int32_t face) {
     int32_t begin = evener->sheet->patch->faces.face_start[face], end = evener->sheet->patch->faces.face_start[face + 1];
     double now = 0, slope = 0, bend = 0, rest = evener->sheet->area[face];
     moving_point origin = corner_of(evener, begin), before = corner_of(evener, begin + 1);
@@ -52,9 +54,16 @@ static double face_reach(const ss_evener *evener, int32_t face) {
         before = after;
     }
     double spare = evener->temper.most_lost * ss_most(now - evener->temper.least_area * rest, 0);
-    slope = ss_most(-slope, 0), bend = ss_most(-bend, 0);
-    double loss = slope + sqrt(slope * slope + 4 * bend * spare);
-    return loss > 0 && rest > 0 ? 2 * spare / loss : INFINITY;
+    return rest > 0 ? (loss){spare, ss_most(-slope, 0), ss_most(-bend, 0)} : (loss){0, 0, 0};
+}
+
+static inline bool spares(loss own, double part) {
+    return own.slope * part + own.bend * part * part <= own.spare;
+}
+
+/* The part of the step that takes all there is to spare. */
+static inline double reach_of(loss own) {
+    return 2 * own.spare / (own.slope + sqrt(own.slope * own.slope + 4 * own.bend * own.spare));
 }
 
 /* ---- All of them ---- */
@@ -72,69 +81,88 @@ static bool is_shorter(const ss_evener *evener, int32_t face) {
     return false;
 }
 
-/* Takes the parts of the step; faces none of whose corners have a part keep their reaches. */
-static void scale_step(ss_evener *evener) {
+/* Takes the parts of the step; faces none of whose corners have a part keep their reaches. Returns the least. */
+static double scale_step(ss_evener *evener) {
+    double least = 1;
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         evener->step[v][0] *= evener->part[v], evener->step[v][1] *= evener->part[v];
-    for (int32_t f = 0; f < evener->sheet->patch->faces.face_count; f++)
-        if (is_shorter(evener, f))
-            evener->reach[f] = face_reach(evener, f);
-}
-
-/* Every vertex goes (1 + sum of r^-4)^(-1/4) of its step, r the reaches of the faces there. */
-static void share_reaches(ss_evener *evener) {
-    const ss_faces *faces = &evener->sheet->patch->faces;
-    double *part = evener->part;
-    fill_parts(evener, 1);
-    for (int32_t f = 0; f < faces->face_count; f++) {
-        double reach = evener->reach[f] = face_reach(evener, f);
-        if (reach > FAR)
-            continue;
-        double square = 1 / (ss_most(reach, NEAR) * ss_most(reach, NEAR));
-        for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1]; c++)
-            part[faces->corner_vertex[c]] += square * square;
-    }
-    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
-        part[v] = 1 / sqrt(sqrt(part[v]));
-    scale_step(evener);
-}
-
-/* Lowers the parts of a face's corners to its reach, where it has less than a step; returns the least reach. */
-static double lower_parts(ss_evener *evener) {
-    const ss_faces *faces = &evener->sheet->patch->faces;
-    double least = 1;
-    for (int32_t f = 0; f < faces->face_count; f++) {
-        double reach = evener->reach[f];
-        least = ss_least(reach, least);
-        for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1] && reach < 1; c++)
-            evener->part[faces->corner_vertex[c]] = ss_least(evener->part[faces->corner_vertex[c]], reach);
+    for (int32_t f = 0; f < evener->sheet->patch->faces.face_count; f++) {
+        if (is_shorter(evener, f)) {
+            loss own = loss_of(evener, f);
+            evener->reach[f] = spares(own, 1) ? 1 : reach_of(own);
+        }
+        least = ss_least(evener->reach[f], least);
     }
     return least;
 }
 
+/* Every vertex goes (1 + sum of r^-4)^(-1/4) of its step, r the reaches of the faces there. Returns the least reach that is left. */
+static double share_reaches(ss_evener *evener) {
+    const ss_faces *faces = &evener->sheet->patch->faces;
+    double *part = evener->part;
+    fill_parts(evener, 1);
+    for (int32_t f = 0; f < faces->face_count; f++) {
+        loss own = loss_of(evener, f);
+        evener->reach[f] = 1;
+        if (spares(own, FAR))
+            continue;
+        double reach = ss_most(reach_of(own), NEAR), square = 1 / (reach * reach);
+        for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1]; c++)
+            part[faces->corner_vertex[c]] += square * square;
+    }
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        if (part[v] != 1)
+            part[v] = 1 / sqrt(sqrt(part[v]));
+    return scale_step(evener);
+}
+
+/* Lowers the parts of a face's corners to its reach, where it has less than a step. */
+static void lower_parts(ss_evener *evener) {
+    const ss_faces *faces = &evener->sheet->patch->faces;
+    fill_parts(evener, 1);
+    for (int32_t f = 0; f < faces->face_count; f++) {
+        double reach = evener->reach[f];
+        for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1] && reach < 1; c++)
+            evener->part[faces->corner_vertex[c]] = ss_least(evener->part[faces->corner_vertex[c]], reach);
+    }
+}
+
+/* Lowers the end of a spring that is too far above the other. */
+static inline bool ease(const ss_spring *spring, double *part) {
+    double *a = &part[spring->end[0]], *b = &part[spring->end[1]];
+    if (*a > *b + EASE)
+        *a = *b + EASE;
+    else if (*b > *a + EASE)
+        *b = *a + EASE;
+    else
+        return false;
+    return true;
+}
+
+/* Over the springs and back, until none is left to be eased. */
 static void ease_off(ss_evener *evener) {
-    const ss_sheet *sheet = evener->sheet;
-    for (int pass = 0; pass < PASSES; pass++)
-        for (int32_t i = 0; i < sheet->spring_count; i++) {
-            double *a = &evener->part[sheet->springs[i].end[0]], *b = &evener->part[sheet->springs[i].end[1]];
-            *a = ss_least(*a, *b + EASE), *b = ss_least(*b, *a + EASE);
-        }
+    const ss_spring *springs = evener->sheet->springs;
+    int32_t count = evener->sheet->spring_count;
+    bool eased = true;
+    for (int pass = 0; pass < PASSES && eased; pass++) {
+        eased = false;
+        for (int32_t i = 0; i < count; i++)
+            eased |= ease(&springs[pass % 2 ? count - 1 - i : i], evener->part);
+    }
 }
 
 bool ss_shorten_step(ss_evener *evener) {
-    share_reaches(evener);
-    double least = 0;
-    for (int round = 0; round <= ROUNDS; round++) {
-        fill_parts(evener, 1);
-        least = lower_parts(evener);
+    double least = share_reaches(evener);
+    for (int round = 0; round < ROUNDS; round++) {
         if (least >= 1)
             return round > 0;
-        if (round < ROUNDS) {
-            ease_off(evener);
-            scale_step(evener);
-        }
+        lower_parts(evener);
+        ease_off(evener);
+        least = scale_step(evener);
     }
-    fill_parts(evener, least);
-    scale_step(evener);
+    if (least < 1) {
+        fill_parts(evener, least);
+        scale_step(evener);
+    }
     return true;
 }
