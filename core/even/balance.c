@@ -19,6 +19,7 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_ev
     evener->hold = SS_NEW(memory, double, vertices), evener->next_hold = SS_NEW(memory, double, vertices);
     evener->moving = SS_NEW(memory, int32_t, vertices);
     evener->bond = SS_NEW(memory, double, sheet->spring_count);
+    evener->bonds = SS_NEW(memory, double, vertices);
     evener->load = SS_NEW(memory, double, vertices);
     evener->crush = SS_NEW(memory, double, vertices);
     evener->place = SS_NEW(memory, ss_place, vertices);

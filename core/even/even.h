@@ -76,7 +76,8 @@ typedef struct ss_evener {
     double *next_weight, *next_hold; /* of the frame that begins */
     int32_t *moving;                 /* [vertex_count] the unknown, or -1 where it has no weight */
     double *bond;                    /* [spring_count] what holds its ends together, over eta */
-    double *load;                    /* [vertex_count] the sum of k / l^2 over its springs */
+    double *bonds;                   /* [vertex_count] the sums of that over its springs ... */
+    double *load;                    /* [vertex_count] ... and of k / l^2 */
     double most_weight;              /* the largest of the frame */
     double *crush;                   /* [vertex_count] how much the cache crushes skin */
     ss_posed pose;                   /* its facets are set where ways are limited */

@@ -22,12 +22,14 @@ static void list_moving(ss_evener *evener) {
 static void list_bonds(ss_evener *evener) {
     const ss_sheet *sheet = evener->sheet;
     double edge = sheet->patch->mean_edge;
+    memset(evener->bonds, 0, (size_t)sheet->patch->vertex_count * sizeof *evener->bonds);
     memset(evener->load, 0, (size_t)sheet->patch->vertex_count * sizeof *evener->load);
     for (int32_t i = 0; i < sheet->spring_count; i++) {
         const ss_spring *spring = &sheet->springs[i];
         const int32_t *v = spring->end;
         double k = evener->paint[spring->edge], own = k / spring->square, tie = TIE * k / (edge * edge);
         evener->bond[i] = 0.5 * (evener->hold[v[0]] + evener->hold[v[1]]) * (spring->square > 0 ? own : tie);
+        evener->bonds[v[0]] += evener->bond[i], evener->bonds[v[1]] += evener->bond[i];
         if (spring->square > 0)
             evener->load[v[0]] += own, evener->load[v[1]] += own;
     }
@@ -53,18 +55,15 @@ static void add_between(ss_evener *evener, int32_t i, double k, double hold) {
                 k * spring->slope[0][a] * spring->slope[1][b] - hold * product[a][b];
 }
 
-/* Adds to sum [vertex_count] what holds its ends. */
-static void add_spring(ss_evener *evener, int32_t i, double *sum) {
+static void add_spring(ss_evener *evener, int32_t i) {
     const ss_spring *spring = &evener->sheet->springs[i];
-    double k = spring->square > 0 ? evener->paint[spring->edge] : 0, hold = evener->temper.hold * evener->bond[i];
+    double k = spring->square > 0 ? evener->paint[spring->edge] : 0;
     const int32_t moving[2] = {evener->moving[spring->end[0]], evener->moving[spring->end[1]]};
-    for (int end = 0; end < 2; end++) {
-        sum[spring->end[end]] += hold;
+    for (int end = 0; end < 2; end++)
         if (moving[end] >= 0)
             add_own(evener, moving[end], spring->slope[end], k);
-    }
     if (moving[0] >= 0 && moving[1] >= 0)
-        add_between(evener, i, k, hold);
+        add_between(evener, i, k, evener->temper.hold * evener->bond[i]);
 }
 
 void ss_firm(double own[4]) {
@@ -73,27 +72,23 @@ void ss_firm(double own[4]) {
 }
 
 /* Tangents at a vertex are at right angles, and of length 1 or, along a loop, the second of 0. */
-static void add_diagonal(ss_evener *evener, int32_t v, double hold) {
+static void add_diagonal(ss_evener *evener, int32_t v) {
     int32_t unknown = ss_blocks_unknown(evener->K, v);
     if (unknown < 0)
         return;
-    double *own = ss_blocks_own(evener->K, unknown);
-    const double *second = evener->sheet->tangent[v][1];
-    if (evener->weight[v] > 0)
-        own[0] += hold, own[3] += hold * ss_dot(second, second);
-    own[0] += evener->anchor[v], own[3] += evener->anchor[v];
+    double *own = ss_blocks_own(evener->K, unknown), hold = evener->temper.hold * evener->bonds[v];
+    for (int j = 0; j < 2 && evener->moving[v] >= 0; j++)
+        own[3 * j] += hold * ss_dot(evener->sheet->tangent[v][j], evener->sheet->tangent[v][j]) + evener->anchor[v];
     ss_firm(own);
 }
 
 static void add_stiffness(ss_evener *evener) {
     const ss_sheet *sheet = evener->sheet;
-    double *sum = evener->part;
     ss_blocks_clear(evener->K);
-    memset(sum, 0, (size_t)sheet->patch->vertex_count * sizeof *sum);
     for (int32_t i = 0; i < sheet->spring_count; i++)
-        add_spring(evener, i, sum);
+        add_spring(evener, i);
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        add_diagonal(evener, v, sum[v]);
+        add_diagonal(evener, v);
 }
 
 /* Copies values; whether that changed any. */

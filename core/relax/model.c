@@ -26,107 +26,117 @@ void ss_set_anchors(ss_relaxer *relaxer) {
         relaxer->anchor[v] = ANCHOR * evener->crush[v] * evener->load[v];
 }
 
-static void add_anchor(ss_relaxer *relaxer, int32_t v) {
+/* ---- Edges ---- */
+
+enum { AT_ONCE = 256 };
+
+/* Some edges, from one on: where the second end is from the first, L^2, k, and z over the scale; and what of the model comes of
+ * those alone. */
+typedef struct edge_models {
+    double way[AT_ONCE][3], square[AT_ONCE], k[AT_ONCE], z[AT_ONCE];
+    double pull[AT_ONCE];                  /* k f / L^2 */
+    double more[AT_ONCE], across[AT_ONCE]; /* stiffness along it beyond that across, over L^2, and across */
+} edge_models;
+
+static void measure(const ss_relaxer *relaxer, double scale_square, int32_t begin, int32_t count, edge_models *m) {
+    const ss_evener *evener = relaxer->evener;
+    for (int32_t i = 0; i < count; i++) {
+        const ss_spring *spring = &evener->sheet->springs[begin + i];
+        bool pulls = spring->square > 0;
+        ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], m->way[i]);
+        m->square[i] = pulls ? ss_dot(m->way[i], m->way[i]) + SHORT * SHORT * spring->square * scale_square : 1;
+        m->k[i] = pulls ? evener->paint[spring->edge] : 0;
+        m->z[i] = evener->stretch[begin + i] - evener->scale;
+    }
+}
+
+/* x where it is, else 0, smoothly. */
+static inline double positive(double x) {
+    return 0.5 * (x + sqrt(x * x + BLUNTNESS * BLUNTNESS));
+}
+
+static void find_models(double stretch_response, double compression_response, int32_t count, edge_models *m) {
+    for (int32_t i = 0; i < count; i++) {
+        double slope, force = ss_drive(stretch_response, compression_response, m->z[i], &slope);
+        double share = 1 / m->square[i], own = m->k[i] * share, across = own * positive(force);
+        m->pull[i] = own * force, m->across[i] = across;
+        m->more[i] = (own * (LEAST_ALONG + positive(slope - force - LEAST_ALONG)) - across) * share;
+    }
+}
+
+/* ---- The blocks ---- */
+
+static void add_own(ss_relaxer *relaxer, int32_t unknown, const double slope[2], double pull, double more,
+                    const double hold[2]) {
+    double *own = ss_blocks_own(relaxer->blocks, unknown), *right = relaxer->blocks->right[unknown];
+    for (int i = 0; i < 2; i++) {
+        right[i] -= pull * slope[i] + hold[i];
+        for (int j = 0; j < 2; j++)
+            own[2 * i + j] += more * slope[i] * slope[j];
+    }
+}
+
+/* Edge i, which is m's e. across [vertex_count] sums what is to be taken times products of a vertex's own axes. */
+static void add_edge(ss_relaxer *relaxer, int32_t i, const edge_models *m, int32_t e, double *across) {
+    const ss_evener *evener = relaxer->evener;
+    const ss_spring *spring = &evener->sheet->springs[i];
+    const int32_t *v = spring->end, moving[2] = {evener->moving[v[0]], evener->moving[v[1]]};
+    const double(*product)[2] = (const double(*)[2])evener->sheet->between[i];
+    const double *first = evener->slide[v[0]], *second = evener->slide[v[1]], bond = evener->bond[i];
+    double slope[2][2], hold[2][2];
+    for (int j = 0; j < 2; j++) {
+        slope[0][j] = -ss_dot(m->way[e], relaxer->axis[v[0]][j]), slope[1][j] = ss_dot(m->way[e], relaxer->axis[v[1]][j]);
+        hold[0][j] = HOLD * bond * (first[j] - (product[j][0] * second[0] + product[j][1] * second[1]));
+        hold[1][j] = HOLD * bond * (second[j] - (product[0][j] * first[0] + product[1][j] * first[1]));
+    }
+    for (int end = 0; end < 2; end++)
+        if (moving[end] >= 0) {
+            add_own(relaxer, moving[end], slope[end], m->pull[e], m->more[e], hold[end]);
+            across[v[end]] += m->across[e];
+        }
+    if (moving[0] < 0 || moving[1] < 0)
+        return;
+    bool first_is_row = moving[0] > moving[1];
+    double *between = relaxer->blocks->between[spring->edge];
+    for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++)
+            between[first_is_row ? 2 * a + b : 2 * b + a] =
+                m->more[e] * slope[0][a] * slope[1][b] - (HOLD + DAMPING) * bond * product[a][b] -
+                m->across[e] * ss_dot(relaxer->axis[v[0]][a], relaxer->axis[v[1]][b]);
+}
+
+/* What of a vertex is not of one edge: products of its axes, what holds and damps it, and its anchors. */
+static void add_vertex(ss_relaxer *relaxer, int32_t v, double across) {
     const ss_evener *evener = relaxer->evener;
     int32_t unknown = ss_blocks_unknown(relaxer->blocks, v);
     if (unknown < 0)
         return;
     double *own = ss_blocks_own(relaxer->blocks, unknown), *right = relaxer->blocks->right[unknown];
-    double a = relaxer->anchor[v], share = evener->anchor[v];
-    own[0] += a + share, own[3] += a + share;
-    for (int j = 0; j < 2; j++)
-        right[j] -= a * (evener->slide[v][j] - relaxer->even[v][j]) +
-                    share * (evener->slide[v][j] - evener->weight[v] * evener->whole[v][j]);
-    if (evener->weight[v] == 0)
-        own[0] = own[3] = right[0] = right[1] = 0;
+    double a = relaxer->anchor[v], share = evener->anchor[v], damping = (HOLD + DAMPING) * evener->bonds[v];
+    for (int i = 0; i < 2 && evener->moving[v] >= 0; i++) {
+        const double *slide = evener->slide[v], *tangent = evener->sheet->tangent[v][i];
+        for (int j = 0; j < 2; j++)
+            own[2 * i + j] += across * ss_dot(relaxer->axis[v][i], relaxer->axis[v][j]);
+        own[3 * i] += damping * ss_dot(tangent, tangent) + a + share;
+        right[i] -= a * (slide[i] - relaxer->even[v][i]) + share * (slide[i] - evener->weight[v] * evener->whole[v][i]);
+    }
     ss_firm(own);
 }
 
-/* ---- Edges ---- */
-
-typedef struct edge_model {
-    double slope[2][2];           /* how each end's unknowns make the edge longer */
-    double pull;                  /* the force along the edge, > 0 where it is stretched */
-    double more, across, damping; /* stiffness along it beyond that across, across, and of what holds and damps */
-    double hold[3];               /* the force of the hold */
-} edge_model;
-
-/* x where it is, else 0, smoothly. */
-static double positive(double x) {
-    return 0.5 * (x + sqrt(x * x + BLUNTNESS * BLUNTNESS));
-}
-
-/* From where the first end is to where the second is. */
-static void set_pull(const ss_relaxer *relaxer, const ss_frame *frame, int32_t i, double scale_square, edge_model *model) {
-    const ss_evener *evener = relaxer->evener;
-    const ss_spring *spring = &evener->sheet->springs[i];
-    double way[3], slope, k = evener->paint[spring->edge];
-    double force = ss_drive(frame->stretch_response, frame->compression_response, evener->stretch[i] - evener->scale, &slope);
-    ss_subtract(evener->at[spring->end[1]], evener->at[spring->end[0]], way);
-    double square = ss_dot(way, way) + SHORT * SHORT * spring->square * scale_square, length = sqrt(square);
-    model->across = k / square * positive(force);
-    model->more = k / square * (LEAST_ALONG + positive(slope - force - LEAST_ALONG)) - model->across;
-    model->pull = k * force / length;
-    for (int end = 0; end < 2; end++)
-        for (int j = 0; j < 2; j++)
-            model->slope[end][j] = (end ? 1 : -1) * ss_dot(way, relaxer->axis[spring->end[end]][j]) / length;
-}
-
-static void set_hold(const ss_relaxer *relaxer, int32_t i, edge_model *model) {
-    const ss_evener *evener = relaxer->evener;
-    const ss_spring *spring = &evener->sheet->springs[i];
-    double hold = evener->bond[i];
-    model->damping = (HOLD + DAMPING) * hold;
-    for (int end = 0; end < 2; end++)
-        for (int j = 0; j < 2; j++)
-            ss_add((end ? HOLD : -HOLD) * hold * evener->slide[spring->end[end]][j],
-                   evener->sheet->tangent[spring->end[end]][j], model->hold);
-}
-
-static void add_own(ss_relaxer *relaxer, const ss_spring *spring, int end, const edge_model *model) {
-    int32_t v = spring->end[end], unknown = ss_blocks_unknown(relaxer->blocks, v);
-    if (relaxer->evener->weight[v] == 0)
-        return;
-    const double(*axis)[3] = (const double(*)[3])relaxer->axis[v];
-    const double(*tangent)[3] = (const double(*)[3])relaxer->evener->sheet->tangent[v], *slope = model->slope[end];
-    double *own = ss_blocks_own(relaxer->blocks, unknown), *right = relaxer->blocks->right[unknown];
-    for (int i = 0; i < 2; i++) {
-        right[i] -= model->pull * slope[i] + (end ? 1 : -1) * ss_dot(tangent[i], model->hold);
-        for (int j = 0; j < 2; j++)
-            own[2 * i + j] += model->more * slope[i] * slope[j] + model->across * ss_dot(axis[i], axis[j]) +
-                              model->damping * ss_dot(tangent[i], tangent[j]);
-    }
-}
-
-static void add_between(ss_relaxer *relaxer, const ss_spring *spring, const edge_model *model) {
-    const ss_evener *evener = relaxer->evener;
-    const int32_t *v = spring->end;
-    bool first_is_row;
-    if (evener->weight[v[0]] == 0 || evener->weight[v[1]] == 0)
-        return;
-    double *between = ss_blocks_between(relaxer->blocks, spring->edge, &first_is_row);
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++)
-            between[first_is_row ? 2 * i + j : 2 * j + i] =
-                model->more * model->slope[0][i] * model->slope[1][j] -
-                model->across * ss_dot(relaxer->axis[v[0]][i], relaxer->axis[v[1]][j]) -
-                model->damping * ss_dot(evener->sheet->tangent[v[0]][i], evener->sheet->tangent[v[1]][j]);
-}
-
 void ss_fill_model(ss_relaxer *relaxer, const ss_frame *frame) {
-    const ss_sheet *sheet = relaxer->evener->sheet;
-    double scale_square = ss_exp(2 * relaxer->evener->scale);
+    const ss_evener *evener = relaxer->evener;
+    const ss_sheet *sheet = evener->sheet;
+    double scale_square = ss_exp(2 * evener->scale), *across = evener->part;
+    edge_models models;
     ss_blocks_clear(relaxer->blocks);
-    for (int32_t i = 0; i < sheet->spring_count; i++) {
-        const ss_spring *spring = &sheet->springs[i];
-        edge_model model = {0};
-        if (spring->square > 0)
-            set_pull(relaxer, frame, i, scale_square, &model);
-        set_hold(relaxer, i, &model);
-        add_own(relaxer, spring, 0, &model);
-        add_own(relaxer, spring, 1, &model);
-        add_between(relaxer, spring, &model);
+    memset(across, 0, (size_t)sheet->patch->vertex_count * sizeof *across);
+    for (int32_t begin = 0; begin < sheet->spring_count; begin += AT_ONCE) {
+        int32_t left = sheet->spring_count - begin, count = left < AT_ONCE ? left : AT_ONCE;
+        measure(relaxer, scale_square, begin, count, &models);
+        find_models(frame->stretch_response, frame->compression_response, count, &models);
+        for (int32_t i = 0; i < count; i++)
+            add_edge(relaxer, begin + i, &models, i, across);
     }
     for (int32_t v = 0; v < sheet->patch->vertex_count; v++)
-        add_anchor(relaxer, v);
+        add_vertex(relaxer, v, across[v]);
 }
