@@ -38,11 +38,22 @@ void ss_blocks_clear(ss_blocks *blocks) {
     memset(blocks->right, 0, n * sizeof *blocks->right);
 }
 
+static bool factor(ss_blocks *blocks, double (*right)[2], const int *stop) {
+    return ss_factor_blocks(blocks->frontal, (const double(*)[4])blocks->own, (const double(*)[4])blocks->between, right, stop);
+}
+
 bool ss_blocks_factor(ss_blocks *blocks, const int *stop) {
-    return ss_factor_blocks(blocks->frontal, (const double(*)[4])blocks->own, (const double(*)[4])blocks->between, stop);
+    return factor(blocks, NULL, stop);
 }
 
 void ss_blocks_solve(ss_blocks *blocks) {
     ss_eliminate_right(blocks->frontal, blocks->right);
     ss_substitute_back(blocks->frontal, false, blocks->right);
+}
+
+bool ss_blocks_factor_and_solve(ss_blocks *blocks, const int *stop) {
+    bool good = factor(blocks, blocks->right, stop);
+    if (good)
+        ss_substitute_back(blocks->frontal, false, blocks->right);
+    return good;
 }

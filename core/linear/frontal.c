@@ -243,7 +243,8 @@ static void assemble_blocks(const ss_frontal *frontal, const ss_front *front, co
     }
 }
 
-bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], const int *stop) {
+bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], double (*right)[2],
+                      const int *stop) {
     bool good = true;
     for (int32_t f = 0; f < frontal->system->front_count; f++) {
         if (ss_is_set(stop))
@@ -254,6 +255,8 @@ bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double 
         memset(panel, 0, 4 * (size_t)s.columns * (size_t)s.tiles * sizeof *panel);
         assemble_blocks(frontal, front, &s, own, between, panel);
         good = eliminate(frontal, f, &s) && good;
+        if (right)
+            ss_eliminate_front(frontal, f, right);
     }
     return good;
 }

@@ -125,10 +125,13 @@ void ss_frontal_destroy(ss_frontal *frontal);
 ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front);
 /* False where a pivot is not a number to divide by. entries is [edge_count]; slack [n], right [n] is carried along. */
 bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double *slack, const double (*right)[2]);
-/* False also where work is left because of the flag. own [n], between [edge_count]: its rows are those of the higher unknown. */
-bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], const int *stop);
+/* False also where work is left because of the flag. own [n], between [edge_count]: its rows are those of the higher unknown.
+ * right [n], or NULL, is eliminated front by front. */
+bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double (*between)[4], double (*right)[2],
+                      const int *stop);
 /* The two halves of solving for right [n]: two right sides, or one in blocks. carried: the first has been done with right sides
  * carried along, which those in blocks never are. */
+void ss_eliminate_front(ss_frontal *frontal, int32_t f, double (*right)[2]);
 void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]);
 void ss_substitute_back(ss_frontal *frontal, bool carried, double (*right)[2]);
 
@@ -187,6 +190,8 @@ static inline double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *f
 bool ss_blocks_factor(ss_blocks *blocks, const int *stop);
 /* right becomes the solution. */
 void ss_blocks_solve(ss_blocks *blocks);
+/* Both. */
+bool ss_blocks_factor_and_solve(ss_blocks *blocks, const int *stop);
 
 /* ---- springs.c: a net of springs ---- */
 

@@ -6,6 +6,8 @@
 #define INLINE                                                                                                                 \
     static inline __attribute__((always_inline)) /* so that block is a constant, and count, of right sides, is, too */
 
+enum { MOST_AHEAD = 2048 }; /* numbers */
+
 /* ---- Right sides of one front ---- */
 
 /* x [count][columns]: right sides of a front's columns, 0 of those that are none. */
@@ -54,22 +56,25 @@ INLINE void take_below(const ss_frontal *frontal, const ss_front *front, const s
 
 /* ---- All of them ---- */
 
-INLINE void eliminate(ss_frontal *frontal, int block, double (*right)[2]) {
-    for (int32_t f = 0; f < frontal->system->front_count; f++) {
-        const ss_front *front = &frontal->system->fronts[f];
-        ss_shape s = ss_shape_of(frontal, front);
-        take_columns(frontal, front, &s, block, (const double(*)[2])right);
-        frontal->kernels->forward[2 / block - 1](&s, frontal->L + frontal->panel[f], frontal->x, frontal->below);
-        put_columns(frontal, front, &s, block, right);
-        add_below(frontal, front, &s, block, right);
-    }
+INLINE void eliminate(ss_frontal *frontal, int32_t f, int block, double (*right)[2]) {
+    const ss_front *front = &frontal->system->fronts[f];
+    ss_shape s = ss_shape_of(frontal, front);
+    take_columns(frontal, front, &s, block, (const double(*)[2])right);
+    frontal->kernels->forward[2 / block - 1](&s, frontal->L + frontal->panel[f], frontal->x, frontal->below);
+    put_columns(frontal, front, &s, block, right);
+    add_below(frontal, front, &s, block, right);
+}
+
+void ss_eliminate_front(ss_frontal *frontal, int32_t f, double (*right)[2]) {
+    if (frontal->block == 2)
+        eliminate(frontal, f, 2, right);
+    else
+        eliminate(frontal, f, 1, right);
 }
 
 void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]) {
-    if (frontal->block == 2)
-        eliminate(frontal, 2, right);
-    else
-        eliminate(frontal, 1, right);
+    for (int32_t f = 0; f < frontal->system->front_count; f++)
+        ss_eliminate_front(frontal, f, right);
 }
 
 INLINE void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int block) {
@@ -84,11 +89,19 @@ static void take_extras(const ss_frontal *frontal, const ss_shape *s, const doub
         frontal->x[k] = extras[4 * k + 1], frontal->x[s->columns + k] = extras[4 * k + 2];
 }
 
+/* Panels are met from the last one back, where processors expect nothing: has them read what is next, or the begin of it. */
+static void prefetch(const double *panel, const double *end) {
+    for (const double *line = panel; line < end && line < panel + MOST_AHEAD; line += 8)
+        __builtin_prefetch(line);
+}
+
 INLINE void substitute(ss_frontal *frontal, int block, bool carried, double (*right)[2]) {
     for (int32_t f = frontal->system->front_count - 1; f >= 0; f--) {
         const ss_front *front = &frontal->system->fronts[f];
         ss_shape s = ss_shape_of(frontal, front);
         const double *panel = frontal->L + frontal->panel[f];
+        if (f > 0)
+            prefetch(frontal->L + frontal->panel[f - 1], panel);
         if (carried) {
             take_extras(frontal, &s, panel);
         } else {

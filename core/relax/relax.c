@@ -45,12 +45,11 @@ static bool find_step(ss_relaxer *relaxer, const ss_frame *frame) {
     ss_evener *evener = relaxer->evener;
     ss_find_axes(relaxer);
     ss_fill_model(relaxer, frame);
-    if (!ss_blocks_factor(relaxer->blocks, frame->stop))
+    if (!ss_blocks_factor_and_solve(relaxer->blocks, frame->stop))
         return false;
-    ss_blocks_solve(relaxer->blocks);
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
-        for (int j = 0; j < 2 && evener->weight[v] > 0; j++)
-            evener->step[v][j] = relaxer->blocks->right[ss_blocks_unknown(relaxer->blocks, v)][j];
+        for (int j = 0; j < 2 && evener->moving[v] >= 0; j++)
+            evener->step[v][j] = relaxer->blocks->right[evener->moving[v]][j];
     return true;
 }
 

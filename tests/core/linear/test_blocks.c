@@ -65,17 +65,21 @@ static void blocks_are_solved(void **state) {
     size_t bytes = (size_t)patch->free_count * sizeof(double[2]);
     double(*x)[2] = malloc(bytes);
     for (uint64_t seed = 0; seed < 2; seed++) { /* the second on what the first left */
-        dice d = {seed}, again = {seed};
+        dice d = {seed}, again = {seed}, both = {seed};
         fill_blocks(blocks, patch, &d);
         assert_true(ss_blocks_factor(blocks, &going_on));
         ss_blocks_solve(blocks);
         memcpy(x, blocks->right, bytes);
+        fill_blocks(blocks, patch, &both);
+        assert_true(ss_blocks_factor_and_solve(blocks, &going_on));
+        assert_memory_equal(blocks->right, x, bytes);
         fill_blocks(blocks, patch, &again); /* the factor is where the matrix was */
         take_product(blocks, patch, (const double(*)[2])x, blocks->right);
         for (int32_t i = 0; i < patch->free_count; i++)
             assert_near(fabs(blocks->right[i][0]) + fabs(blocks->right[i][1]), 0, 1e-14);
     }
     assert_false(ss_blocks_factor(blocks, &stop));
+    assert_false(ss_blocks_factor_and_solve(blocks, &stop));
     ss_blocks_own(blocks, 3)[0] = -1;
     assert_false(ss_blocks_factor(blocks, &going_on));
     free(x);
