@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-#define LEAST_TURN 1e-3 /* 1 + cosine of a turn; none is least about half a circle */
-
 bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground) {
     ground->normal = ss_new(memory, patch->vertex_count, sizeof *ground->normal);
     ground->tangent = ss_new(memory, patch->vertex_count, sizeof *ground->tangent);
@@ -78,19 +76,4 @@ void ss_ground_set(ss_ground *ground, const float *points) {
         set_tangents(ground->normal[v], ground->tangent[v]);
     }
     see_wedges(ground);
-}
-
-void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out[3]) {
-    const int32_t *v = ground->pose.patch->triangles.vertex[place->triangle];
-    out[0] = out[1] = out[2] = 0;
-    for (int k = 0; k < 3; k++)
-        ss_add(place->weight[k], ground->normal[v[k]], out);
-    ss_normalise(out);
-}
-
-bool ss_turn(const double from[3], const double to[3], const double vector[3], double out[3]) {
-    double whole = 1 + ss_dot(from, to), share = ss_dot(to, vector) / whole;
-    for (int k = 0; k < 3; k++)
-        out[k] = vector[k] - share * (from[k] + to[k]);
-    return whole > LEAST_TURN;
 }

@@ -47,20 +47,32 @@ static const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, con
     return chosen;
 }
 
-static bool set_out(walker *w, int32_t vertex, const double way[2], ss_place *place) {
-    double rates[2];
-    const ss_wedge *wedge = choose_wedge(w->ground, vertex, way, rates);
-    if (!wedge)
-        return false;
-    int k = wedge->corner, next = (k + 1) % 3, last = (k + 2) % 3;
+/* The shares of the sides of a wedge that its triangle has of a way of some length; false where it has none there. */
+static bool share_wedge(const ss_wedge *wedge, double length, double rates[2]) {
     const double *square = wedge->square;
     double along =
         rates[0] * (square[0] * rates[0] + square[1] * rates[1]) + rates[1] * (square[1] * rates[0] + square[2] * rates[1]);
-    double scale = w->left / sqrt(along);
-    w->rates[next] = ss_most(scale * rates[0], 0), w->rates[last] = ss_most(scale * rates[1], 0);
-    w->rates[k] = -w->rates[next] - w->rates[last];
-    ss_place_put(place, wedge->triangle, (double[3]){k == 0, k == 1, k == 2});
+    double scale = length / sqrt(along);
+    rates[0] = ss_most(scale * rates[0], 0), rates[1] = ss_most(scale * rates[1], 0);
     return isfinite(scale);
+}
+
+/* The end of a walk that does not leave the triangle. */
+static void end_at_once(const ss_wedge *wedge, const double rates[2], ss_place *place) {
+    double weight[3];
+    weight[wedge->corner] = 1 - (rates[0] + rates[1]);
+    weight[(wedge->corner + 1) % 3] = rates[0], weight[(wedge->corner + 2) % 3] = rates[1];
+    double sum = weight[1] + weight[2];
+    if (sum > 1)
+        weight[1] /= sum, weight[2] = 1 - weight[1];
+    weight[0] = ss_most(1 - weight[1] - weight[2], 0);
+    ss_place_put(place, wedge->triangle, weight);
+}
+
+static void set_out(const ss_wedge *wedge, const double rates[2], walker *w, ss_place *place) {
+    int k = wedge->corner, next = (k + 1) % 3, last = (k + 2) % 3;
+    w->rates[next] = rates[0], w->rates[last] = rates[1], w->rates[k] = -rates[0] - rates[1];
+    ss_place_put(place, wedge->triangle, (double[3]){k == 0, k == 1, k == 2});
 }
 
 /* ---- Over sides ---- */
@@ -106,28 +118,21 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
     }
 }
 
-/* Whether the walk ends in its first triangle, and so goes there at once. */
-static bool ends_at_once(walker *w, ss_place *place) {
-    int corner;
-    ss_reach(place, w->rates, -1, &corner);
-    if (corner >= 0)
-        return false;
-    ss_advance(place, w->rates, 1, -1);
-    place->weight[0] = ss_most(place->weight[0], 0);
-    return true;
-}
-
 double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place) {
-    double length = sqrt(way[0] * way[0] + way[1] * way[1]);
-    walker w = {.ground = ground, .up = ground->normal[vertex], .left = length, .came = -1};
-    if (!(length > 0) || !set_out(&w, vertex, way, place)) {
+    double length = sqrt(way[0] * way[0] + way[1] * way[1]), rates[2];
+    const ss_wedge *wedge = length > 0 ? choose_wedge(ground, vertex, way, rates) : NULL;
+    if (!wedge || !share_wedge(wedge, length, rates)) {
         *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
         return !(length > 0);
     }
-    if (!meter && ends_at_once(&w, place))
+    if (!meter && rates[0] + rates[1] <= 1) {
+        end_at_once(wedge, rates, place);
         return 1;
+    }
+    walker w = {.ground = ground, .up = ground->normal[vertex], .left = length, .came = -1};
     for (int j = 0; j < 2; j++)
         ss_add(way[j] / length, ground->tangent[vertex][j], w.heading);
+    set_out(wedge, rates, &w, place);
     walk(&w, meter, place);
     return 1 - w.left / length;
 }
