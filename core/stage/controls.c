@@ -142,12 +142,16 @@ static double as_float(const ss_record *record, int64_t i) {
     return (double)(float)ss_number(record, i, 0);
 }
 
-/* Expands what is inside the patch. */
-static skinslide_status expand(const ss_input *input, const ss_record *record, const uint8_t *inside, float *values,
+/* Expands what is inside the patch; NULL: all is. */
+static skinslide_status expand(const ss_input *input, const ss_record *record, const ss_array *inside, float *values,
                                skinslide_error *error) {
-    for (int64_t i = 0; i < record->length; i++) {
-        double number = inside[i] ? as_float(record, i) : (double)input->off_patch;
-        if (inside[i] && !ss_in_range(input->range, number))
+    int64_t count = inside ? inside->count : record->length;
+    for (int64_t i = 0; inside && i < record->length; i++)
+        values[i] = (float)input->off_patch;
+    for (int64_t k = 0; k < count; k++) {
+        int64_t i = inside ? ((const int32_t *)inside->values)[k] : k;
+        double number = as_float(record, i);
+        if (!ss_in_range(input->range, number))
             return bad_number(input, record, i, error);
         values[i] = (float)number;
     }
@@ -185,9 +189,9 @@ static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t r
     if (status)
         return status;
     bool is_constant = found == LAYOUT_NONE;
-    status = is_constant
-                 ? expand_constant(input, record, patch->mesh->vertex_count, values, error)
-                 : expand(input, record, found == LAYOUT_FACE ? patch->face_inside : patch->vertex_inside, values, error);
+    const ss_array *inside = found == LAYOUT_FACE ? &patch->faces : &patch->vertices;
+    status = is_constant ? expand_constant(input, record, patch->mesh->vertex_count, values, error)
+                         : expand(input, record, patch->faces.count ? inside : NULL, values, error);
     if (!status && !(is_constant && input->drops_constant))
         own->values = values, own->layout = is_constant ? LAYOUT_VERTEX : found;
     return status;

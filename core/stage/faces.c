@@ -274,20 +274,17 @@ skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32
 
 /* ---- What is inside ---- */
 
-static void mark_face(skinslide_stage_patch *patch, int32_t face) {
-    const int32_t *indices = patch->mesh->taken[SS_ROW_FACE_INDICES].array.values;
-    patch->face_inside[face] = 1;
-    for (int32_t c = patch->mesh->face_start[face]; c < patch->mesh->face_start[face + 1]; c++)
-        patch->vertex_inside[indices[c]] = 1;
-}
-
-static void mark_inside(skinslide_stage_patch *patch) {
-    memset(patch->face_inside, 0, (size_t)face_count_of(patch));
-    memset(patch->vertex_inside, 0, (size_t)patch->mesh->vertex_count);
-    for (int32_t i = 0; i < patch->faces.count; i++)
-        mark_face(patch, ((const int32_t *)patch->faces.values)[i]);
-    for (int32_t face = 0; !patch->faces.count && face < face_count_of(patch); face++)
-        mark_face(patch, face);
+/* Lists those of [count] that are marked. False where memory is short. */
+static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t count, ss_array *out) {
+    int32_t found = 0, *list;
+    for (int32_t i = 0; i < count; i++)
+        found += marked[i];
+    list = SS_NEW(memory, int32_t, found);
+    *out = (ss_array){list, 0};
+    for (int32_t i = 0; list && i < count; i++)
+        if (marked[i])
+            list[out->count++] = i;
+    return list != NULL;
 }
 
 /* How far around what was chosen the patch reaches. Without rest points it does not. */
@@ -298,30 +295,37 @@ static double way_of(const skinslide_stage_patch *patch) {
     return counts ? patch->taken[SS_ROW_GROW].number : 0;
 }
 
-/* Makes the faces of the patch those that are inside. */
-static skinslide_status list_inside(skinslide_stage_patch *patch, skinslide_error *error) {
-    int32_t *faces = SS_NEW(&patch->memory, int32_t, face_count_of(patch)), count = 0;
-    if (!faces)
-        return ss_out_of_memory(error);
-    for (int32_t face = 0; face < face_count_of(patch); face++)
-        if (patch->face_inside[face])
-            faces[count++] = face;
-    patch->faces = (ss_array){faces, count};
-    return SKINSLIDE_OK;
+/* Adds to the faces what grows them. marked is scratch [face_count]. False where memory is short. */
+static bool grow(skinslide_stage_patch *patch, uint8_t *marked) {
+    skinslide_mesh mesh = ss_faces_of(patch->mesh);
+    mesh.rest_points = patch->mesh->rest;
+    for (int32_t i = 0; i < patch->painted.count; i++)
+        marked[((const int32_t *)patch->painted.values)[i]] = 1;
+    return ss_add_near_faces(&mesh, way_of(patch), marked) &&
+           list_marked(&patch->settled, marked, face_count_of(patch), &patch->faces);
+}
+
+/* marked is scratch [vertex_count]. */
+static bool list_vertices(skinslide_stage_patch *patch, uint8_t *marked) {
+    const int32_t *indices = patch->mesh->taken[SS_ROW_FACE_INDICES].array.values, *faces = patch->faces.values;
+    for (int32_t i = 0; i < patch->faces.count; i++)
+        for (int32_t c = patch->mesh->face_start[faces[i]]; c < patch->mesh->face_start[faces[i] + 1]; c++)
+            marked[indices[c]] = 1;
+    return list_marked(&patch->settled, marked, patch->mesh->vertex_count, &patch->vertices);
 }
 
 skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *error) {
-    skinslide_mesh mesh = ss_faces_of(patch->mesh);
-    mesh.rest_points = patch->mesh->rest;
-    patch->faces = patch->painted;
-    mark_inside(patch);
-    bool grows = patch->painted.count && way_of(patch) > 0;
-    if (grows && !ss_add_near_faces(&mesh, way_of(patch), patch->face_inside))
-        return ss_out_of_memory(error);
-    skinslide_status status = grows ? list_inside(patch, error) : SKINSLIDE_OK;
-    if (grows && !status)
-        mark_inside(patch);
-    return status || !patch->painted.count ? status : ss_compare_patch(patch, error);
+    ss_memory scratch = {0};
+    ss_free(&patch->settled);
+    patch->settled = (ss_memory){0};
+    patch->faces = patch->painted, patch->vertices = (ss_array){0};
+    if (!patch->painted.count)
+        return SKINSLIDE_OK;
+    uint8_t *faces = SS_NEW(&scratch, uint8_t, face_count_of(patch));
+    uint8_t *vertices = SS_NEW(&scratch, uint8_t, patch->mesh->vertex_count);
+    bool done = !scratch.failed && (!(way_of(patch) > 0) || grow(patch, faces)) && list_vertices(patch, vertices);
+    ss_free(&scratch);
+    return done ? ss_compare_patch(patch, error) : ss_out_of_memory(error);
 }
 
 const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count) {

@@ -27,9 +27,9 @@ static void add(meeting *own, const float *point) {
 /* False where memory is short. */
 static bool meet(meeting *own, const skinslide_stage_patch *patch, const float *others, int32_t count) {
     const skinslide_stage_mesh *mesh = patch->mesh;
-    for (int32_t v = 0; v < mesh->vertex_count; v++) {
-        if (patch->vertex_inside[v])
-            add(own, mesh->first + 3 * (int64_t)v);
+    for (int32_t i = 0; i < patch->vertices.count; i++) {
+        int32_t v = ((const int32_t *)patch->vertices.values)[i];
+        add(own, mesh->first + 3 * (int64_t)v);
         if (own->count > own->own_count)
             own->vertex[own->own_count++] = v;
     }
@@ -60,8 +60,9 @@ skinslide_status skinslide_stage_patch_meet(skinslide_stage_patch *patch, const 
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "two meshes have %lld points, and may have %d", (long long)most,
                        INT32_MAX);
     meeting own = {0};
+    most = (int64_t)patch->vertices.count + count;
     own.points = SS_NEW(&own.memory, float, 3 * most);
-    own.vertex = SS_NEW(&own.memory, int32_t, patch->mesh->vertex_count);
+    own.vertex = SS_NEW(&own.memory, int32_t, patch->vertices.count);
     own.place = SS_NEW(&own.memory, int32_t, most);
     own.others = SS_NEW(&own.memory, uint8_t, most);
     uint8_t *held = patch->held ? patch->held : SS_NEW(&patch->memory, uint8_t, patch->mesh->vertex_count);

@@ -181,13 +181,10 @@ static skinslide_status fill_patch(skinslide_stage_patch *patch, const char *nam
     if (status)
         return status;
     patch->name = ss_copy_text(&patch->memory, name);
-    patch->face_inside = SS_NEW(&patch->memory, uint8_t, patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count);
-    patch->vertex_inside = SS_NEW(&patch->memory, uint8_t, patch->mesh->vertex_count);
     if (patch->memory.failed)
         return ss_out_of_memory(error);
     set_coordinates(patch, "primvars:st");
-    status = ss_settle_faces(patch, error);
-    return status ? status : ss_take_fallbacks(patch_inputs(), SS_PATCH_ROWS, &patch->memory, patch->taken, error);
+    return ss_take_fallbacks(patch_inputs(), SS_PATCH_ROWS, &patch->memory, patch->taken, error);
 }
 
 skinslide_status skinslide_stage_patch_create(const skinslide_stage_mesh *mesh, const char *name,
@@ -210,6 +207,7 @@ skinslide_status skinslide_stage_patch_create(const skinslide_stage_mesh *mesh, 
 void skinslide_stage_patch_destroy(skinslide_stage_patch *patch) {
     if (!patch)
         return;
+    ss_free(&patch->settled);
     ss_free(&patch->memory);
     free(patch);
 }

@@ -288,8 +288,8 @@ struct skinslide_stage_patch {
     const char *subset; /* the path of the child that has the faces; NULL: none */
     const char *indices_name;
     ss_array indices;       /* of that, as authored */
-    uint8_t *face_inside;   /* [face_count] */
-    uint8_t *vertex_inside; /* [vertex_count] */
+    ss_array vertices;      /* of those faces; ascending */
+    ss_memory settled;      /* of the two, as far as they are not authored */
     uint8_t *held;          /* [vertex_count] those that other meshes have points at; NULL: none */
     double unlike;          /* the factor by which rest differs, where sliding is senseless; 0: it is not */
     const char *warning;    /* NULL: none */
@@ -320,8 +320,8 @@ skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row,
                                       skinslide_error *error);
 skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32_t row, const ss_record *record, double frame,
                                        skinslide_error *error);
-/* Marks every face and vertex as inside, where there are no faces yet, else those of the patch: what was chosen, and what joins
- * that within its grow, under a rule that takes any faces. */
+/* Lists the faces and vertices of the patch: what was chosen, if anything yet, and what joins that within its grow, under a rule that
+ * takes any faces. */
 skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *error);
 
 /* controls.c: whether an input says something, at the time of the controls. */

@@ -36,7 +36,7 @@ struct ss_texture {
     held_images held, before;
     int32_t times_taken;
     bool authored;
-    float *values; /* [vertex_count], of memory of its own */
+    float *values; /* [vertex_count], of memory of its own; NULL before the first asset */
     bool sampled;
     skinslide_stage_texture map;
 };
@@ -54,14 +54,9 @@ static void destroy_images(held_images *held) {
 
 ss_texture *ss_texture_create(const ss_input *input, const skinslide_stage_patch *patch) {
     ss_texture *texture = calloc(1, sizeof *texture);
-    if (!texture)
-        return NULL;
-    *texture = (ss_texture){.input = input, .patch = patch};
-    texture->values = calloc((size_t)patch->mesh->vertex_count + 1, sizeof *texture->values);
-    if (texture->values)
-        return texture;
-    ss_texture_destroy(texture);
-    return NULL;
+    if (texture)
+        *texture = (ss_texture){.input = input, .patch = patch};
+    return texture;
 }
 
 void ss_texture_destroy(ss_texture *texture) {
@@ -98,7 +93,9 @@ static void pass_on(ss_texture *texture) {
 static skinslide_status copy_names(ss_texture *texture, const char *name, const char *asset, skinslide_error *error) {
     texture->name = ss_copy_text(&texture->memory, name);
     texture->asset = ss_copy_text(&texture->memory, asset);
-    if (!texture->memory.failed)
+    if (!texture->values)
+        texture->values = calloc((size_t)texture->patch->mesh->vertex_count + 1, sizeof *texture->values);
+    if (!texture->memory.failed && texture->values)
         return SKINSLIDE_OK;
     forget(texture);
     return ss_out_of_memory(error);
