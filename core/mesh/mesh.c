@@ -182,14 +182,18 @@ static skinslide_status check_face(const ss_faces *faces, int32_t own, int32_t f
     return SKINSLIDE_OK;
 }
 
-skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen, int32_t count, const char *label,
+static const int32_t *list_starts(const skinslide_mesh *mesh, ss_memory *memory) {
+    int32_t *face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
+    if (face_start)
+        ss_start_faces(mesh, face_start);
+    return face_start;
+}
+
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count, const char *label,
                                ss_memory *memory, ss_faces *faces, skinslide_error *error) {
     ss_memory scratch = {0};
-    int32_t *start_in_mesh = SS_NEW(&scratch, int32_t, (int64_t)mesh->face_count + 1);
-    if (scratch.failed)
+    if (!face_start && !(face_start = list_starts(mesh, &scratch)))
         return ss_out_of_memory(error);
-    for (int32_t f = 0; f < mesh->face_count; f++)
-        start_in_mesh[f + 1] = start_in_mesh[f] + mesh->face_counts[f];
     int32_t corners = 0;
     for (int32_t f = 0; f < count; f++)
         corners += mesh->face_counts[chosen[f]];
@@ -204,7 +208,7 @@ skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen
     int32_t *sorted = SS_NEW(&scratch, int32_t, corners);
     skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t f = 0, c = 0; f < count && !status; f++) {
-        const int32_t *vertices = mesh->face_indices + start_in_mesh[chosen[f]];
+        const int32_t *vertices = mesh->face_indices + face_start[chosen[f]];
         for (int32_t k = 0; k < mesh->face_counts[chosen[f]]; k++, c++) {
             faces->corner_copy[c] = vertices[k];
             faces->corner_vertex[c] = ss_one(mesh, vertices[k]);

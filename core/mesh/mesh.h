@@ -61,8 +61,9 @@ skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float 
                                   skinslide_error *error);
 /* Names the first vertex that is not finite. */
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
-/* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. label begins messages. */
-skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *chosen, int32_t count, const char *label,
+/* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. face_start is as ss_start_faces has it; NULL: it
+ * is found. label begins messages. */
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count, const char *label,
                                ss_memory *memory, ss_faces *faces, skinslide_error *error);
 /* Fills corner_edge and edge_count of any faces at all, several at an edge or none like it. False where memory is short. */
 bool ss_number_edges(ss_faces *faces);
@@ -225,8 +226,8 @@ static inline bool ss_has_plane(skinslide_rule rule) {
     return rule == SKINSLIDE_RULE_UNIT || rule == SKINSLIDE_RULE_FAST;
 }
 
-/* The mesh's weld must outlive the patch. */
-skinslide_status ss_patch_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, int32_t setup_index,
+/* The mesh's weld must outlive the patch. face_start as for ss_take_faces. */
+skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup, int32_t setup_index,
                                  const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
                                  ss_patch **out, skinslide_error *error);
 void ss_patch_destroy(ss_patch *patch);

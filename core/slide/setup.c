@@ -41,13 +41,9 @@ static skinslide_status sort_faces(const skinslide_mesh *mesh, const skinslide_p
 }
 
 static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a, int32_t b) {
-    for (int32_t p = 0; p < slider->part_count; p++) {
-        const ss_patch *patch = slider->parts[p].patch;
-        if (patch->setup_index != setup)
-            continue;
-        if (ss_patch_mesh_edge(patch, a, b) >= 0)
+    for (int32_t p = slider->first_part[setup]; p < slider->first_part[setup + 1]; p++)
+        if (ss_patch_mesh_edge(slider->parts[p].patch, a, b) >= 0)
             return true;
-    }
     return false;
 }
 
@@ -138,15 +134,32 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
 
 /* ---- From set-ups to pieces ---- */
 
-/* Faces of one set-up, sorted, and the piece of each. */
+/* Faces of one set-up, piece by piece, those of each ascending. */
 typedef struct split_faces {
     ss_memory memory;
-    int32_t face_count, count;
-    int32_t *faces, *piece_of_face, *chosen;
+    int32_t count;
+    int32_t *start; /* [count + 1] */
+    int32_t *faces;
 } split_faces;
 
-static skinslide_status split(const skinslide_mesh *mesh, const skinslide_patch_setup *setup, split_faces *out,
-                              skinslide_error *error) {
+/* Puts faces [face_count], which ascend, in the order of their pieces. */
+static skinslide_status sort_by_piece(const int32_t *faces, const int32_t *piece_of_face, int32_t face_count, split_faces *out,
+                                      skinslide_error *error) {
+    out->start = SS_NEW(&out->memory, int32_t, (int64_t)out->count + 2);
+    out->faces = SS_NEW(&out->memory, int32_t, face_count);
+    if (out->memory.failed)
+        return ss_out_of_memory(error);
+    for (int32_t i = 0; i < face_count; i++)
+        out->start[piece_of_face[i] + 2]++;
+    for (int32_t piece = 0; piece < out->count; piece++)
+        out->start[piece + 2] += out->start[piece + 1];
+    for (int32_t i = 0; i < face_count; i++)
+        out->faces[out->start[piece_of_face[i] + 1]++] = faces[i];
+    return SKINSLIDE_OK;
+}
+
+static skinslide_status split(const skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setup,
+                              split_faces *out, skinslide_error *error) {
     ss_memory *memory = &out->memory;
     ss_faces faces;
     char label[160];
@@ -154,20 +167,19 @@ static skinslide_status split(const skinslide_mesh *mesh, const skinslide_patch_
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "patch %s: no array of faces", setup->name);
     if (setup->face_count == 0)
         return ss_fail(error, SKINSLIDE_BAD_PATCH, "patch %s: it has no faces", setup->name);
-    out->face_count = setup->face_count;
-    out->faces = SS_NEW(memory, int32_t, setup->face_count);
-    out->piece_of_face = SS_NEW(memory, int32_t, setup->face_count);
-    out->chosen = SS_NEW(memory, int32_t, setup->face_count);
+    int32_t *sorted = SS_NEW(memory, int32_t, setup->face_count);
+    int32_t *piece_of_face = SS_NEW(memory, int32_t, setup->face_count), *stack = SS_NEW(memory, int32_t, setup->face_count);
     if (memory->failed)
         return ss_out_of_memory(error);
-    skinslide_status status = sort_faces(mesh, setup, out->faces, error);
+    skinslide_status status = sort_faces(mesh, setup, sorted, error);
     if (status)
         return status;
     ss_label(setup, 0, 1, label, sizeof label);
-    status = ss_take_faces(mesh, out->faces, setup->face_count, label, memory, &faces, error);
-    if (!status)
-        out->count = ss_number_pieces(&faces, out->piece_of_face, out->chosen);
-    return status;
+    status = ss_take_faces(mesh, slider->face_start, sorted, setup->face_count, label, memory, &faces, error);
+    if (status)
+        return status;
+    out->count = ss_number_pieces(&faces, piece_of_face, stack);
+    return sort_by_piece(sorted, piece_of_face, setup->face_count, out, error);
 }
 
 /* What the limit surface asks for beyond prepare(). */
@@ -182,13 +194,11 @@ static skinslide_status add_cage(const skinslide_slider *slider, const skinslide
 /* Appends a part to the slider for one piece of a set-up. */
 static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup,
                                   const split_faces *pieces, int32_t piece, skinslide_error *error) {
-    int32_t count = 0;
-    for (int32_t i = 0; i < pieces->face_count; i++)
-        if (pieces->piece_of_face[i] == piece)
-            pieces->chosen[count++] = pieces->faces[i];
+    const int32_t *faces = pieces->faces + pieces->start[piece];
+    int32_t face_count = pieces->start[piece + 1] - pieces->start[piece];
     ss_part *part = &slider->parts[slider->part_count];
-    skinslide_status status =
-        ss_patch_create(mesh, &slider->setups[setup], setup, pieces->chosen, count, piece, pieces->count, &part->patch, error);
+    skinslide_status status = ss_patch_create(mesh, slider->face_start, &slider->setups[setup], setup, faces, face_count, piece,
+                                              pieces->count, &part->patch, error);
     if (!status) {
         slider->part_count++;
         status = prepare(&slider->memory, part, mesh, slider->setups[setup].controls, error);
@@ -203,8 +213,8 @@ static skinslide_status check_corners(const skinslide_slider *slider, int32_t se
     const int32_t *corners = slider->setups[setup].corners;
     if (!corners)
         return SKINSLIDE_OK;
-    for (int32_t p = 0; p < slider->part_count; p++)
-        if (slider->parts[p].patch->setup_index == setup && ss_has_corners(slider->parts[p].patch))
+    for (int32_t p = slider->first_part[setup]; p < slider->part_count; p++)
+        if (ss_has_corners(slider->parts[p].patch))
             return SKINSLIDE_OK;
     return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: corners %d, %d, %d and %d are not all on one of its pieces",
                    slider->setups[setup].name, corners[0], corners[1], corners[2], corners[3]);
@@ -218,7 +228,11 @@ static skinslide_status need_topology(skinslide_slider *slider, const skinslide_
 }
 
 static skinslide_status grow_parts(skinslide_slider *slider, int32_t count, skinslide_error *error) {
-    ss_part *parts = SS_NEW(&slider->memory, ss_part, (int64_t)slider->part_count + count);
+    int32_t wanted = slider->part_count + count;
+    if (wanted <= slider->part_room)
+        return SKINSLIDE_OK;
+    slider->part_room = wanted > 2 * slider->part_count ? wanted : 2 * slider->part_count;
+    ss_part *parts = SS_NEW(&slider->memory, ss_part, slider->part_room);
     if (!parts)
         return ss_out_of_memory(error);
     if (slider->part_count > 0)
@@ -234,13 +248,14 @@ static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh
     if (!status && own->interpolation == SKINSLIDE_INTERPOLATION_LIMIT)
         status = need_topology(slider, mesh, error);
     if (!status)
-        status = split(mesh, own, &pieces, error);
+        status = split(slider, mesh, own, &pieces, error);
     if (!status)
         status = ss_check_controls(mesh, own->name, own->controls, error);
     if (!status)
         status = grow_parts(slider, pieces.count, error);
     for (int32_t piece = 0; piece < pieces.count && !status; piece++)
         status = add_piece(slider, mesh, setup, &pieces, piece, error);
+    slider->first_part[setup + 1] = slider->part_count;
     if (!status)
         status = check_corners(slider, setup, error);
     if (!status)
@@ -263,6 +278,7 @@ static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_me
     int32_t count = slider->setup_count;
     skinslide_controls *controls = SS_NEW(&slider->memory, skinslide_controls, count);
     slider->setups = SS_NEW(&slider->memory, skinslide_patch_setup, count);
+    slider->first_part = SS_NEW(&slider->memory, int32_t, (int64_t)count + 1);
     if (slider->memory.failed)
         return ss_out_of_memory(error);
     skinslide_status status =
@@ -317,6 +333,15 @@ static skinslide_status bring_rest(const skinslide_slider *slider, skinslide_mes
                          : SKINSLIDE_OK;
 }
 
+static skinslide_status list_face_starts(skinslide_slider *slider, const skinslide_mesh *mesh, ss_memory *memory,
+                                         skinslide_error *error) {
+    slider->face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
+    if (!slider->face_start)
+        return ss_out_of_memory(error);
+    ss_start_faces(mesh, slider->face_start);
+    return SKINSLIDE_OK;
+}
+
 /* Drops pointers to what is the caller's. */
 static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
@@ -337,7 +362,7 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
     if (status)
         return status;
     skinslide_slider *slider = calloc(1, sizeof *slider);
-    ss_memory rest = {0};
+    ss_memory scratch = {0};
     if (!slider)
         return ss_out_of_memory(error);
     slider->vertex_count = mesh->vertex_count, slider->face_count = mesh->face_count, slider->setup_count = setup_count;
@@ -345,16 +370,18 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
     if (!status)
         status = ss_take_space(slider, mesh, error);
     if (!status)
-        status = bring_rest(slider, &taken.mesh, &rest, error);
+        status = bring_rest(slider, &taken.mesh, &scratch, error);
     if (!status)
         status = copy_setups(slider, mesh, setups, error);
+    if (!status)
+        status = list_face_starts(slider, mesh, &scratch, error);
     for (int32_t i = 0; i < setup_count && !status; i++)
         status = add_setup(slider, mesh, i, error);
     if (!status)
         status = take_around(slider, mesh, error);
     ss_topology_destroy(slider->topology);
-    slider->topology = NULL;
-    ss_free(&rest);
+    slider->topology = NULL, slider->face_start = NULL;
+    ss_free(&scratch);
     if (status) {
         skinslide_slider_destroy(slider);
         return status;

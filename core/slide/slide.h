@@ -36,9 +36,12 @@ struct skinslide_slider {
     int32_t vertex_count, face_count, setup_count, part_count;
     skinslide_patch_setup
         *setups;           /* [setup_count] names copied, interpolation not AUTO; their arrays are the caller's, and not kept */
-    ss_part *parts;        /* [part_count] */
+    ss_part *parts;        /* [part_count] those of each set-up follow each other */
+    int32_t *first_part;   /* [setup_count + 1] */
+    int32_t part_room;     /* for parts, while the slider is built */
     int32_t *weld;         /* [vertex_count] the mesh's; NULL: none */
     ss_topology *topology; /* while the slider is built, once a set-up needs it */
+    int32_t *face_start;   /* of the mesh, while the slider is built */
     ss_around around;      /* the patches' vertices, for smooth normals */
     ss_list own;           /* the patches' vertices, and what is one with them */
     ss_list reads;         /* vertices of a face at a patch */

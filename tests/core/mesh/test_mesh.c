@@ -7,7 +7,7 @@
 static skinslide_status take_all(const test_mesh *mesh, ss_memory *memory, ss_faces *faces, skinslide_error *error) {
     skinslide_mesh view = view_of(mesh);
     int32_t *chosen = all_faces(mesh);
-    skinslide_status status = ss_take_faces(&view, chosen, mesh->face_count, "patch p", memory, faces, error);
+    skinslide_status status = ss_take_faces(&view, NULL, chosen, mesh->face_count, "patch p", memory, faces, error);
     free(chosen);
     return status;
 }
@@ -63,7 +63,7 @@ static void pieces_are_numbered_by_their_lowest_face(void **state) {
     ss_memory memory = {0};
     ss_faces faces;
     skinslide_error error;
-    assert_ok(ss_take_faces(&view, chosen, count, "patch p", &memory, &faces, &error), &error);
+    assert_ok(ss_take_faces(&view, NULL, chosen, count, "patch p", &memory, &faces, &error), &error);
     assert_int_equal(ss_number_pieces(&faces, piece, stack), 2);
     assert_same_bytes(piece, ((int32_t[]){0, 0, 1, 1}), 4 * sizeof *piece);
     ss_free(&memory);
