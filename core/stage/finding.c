@@ -12,11 +12,18 @@ static const char schema_prefix[] = SS_SCHEMA ":";
 static const char *const spaces[] = {SS_NAMESPACE, "primvars:" SS_NAMESPACE};
 enum { SPACES = 2 };
 
+/* A patch, by its place in the order in which they are applied. */
+typedef struct patch_name {
+    const char *name;
+    int32_t patch;
+} patch_name;
+
 typedef struct search {
     skinslide_stage_finding finding; /* the first member: what is given out */
     ss_memory memory;
     skinslide_stage_prim prim;
     const char **patches;
+    patch_name *by_name; /* [patch_count] */
     const skinslide_stage_problem **problems;
     int32_t room; /* for problems, before there must be more */
 } search;
@@ -62,6 +69,24 @@ static const char *patch_of_schema(const char *schema) {
     return strncmp(schema, schema_prefix, sizeof schema_prefix - 1) == 0 ? schema + sizeof schema_prefix - 1 : NULL;
 }
 
+static int by_name(const void *a, const void *b) {
+    const patch_name *x = a, *y = b;
+    int order = strcmp(x->name, y->name);
+    return order ? order : x->patch - y->patch;
+}
+
+/* False where memory is short. */
+static bool sort_patches(search *own) {
+    int32_t count = own->finding.patch_count;
+    own->by_name = SS_NEW(&own->memory, patch_name, count);
+    if (own->memory.failed)
+        return false;
+    for (int32_t i = 0; i < count; i++)
+        own->by_name[i] = (patch_name){own->patches[i], i};
+    qsort(own->by_name, (size_t)count, sizeof *own->by_name, by_name);
+    return true;
+}
+
 /* Returns whether each application of the schema names one. */
 static bool list_patches(search *own) {
     bool nameless = false;
@@ -104,15 +129,30 @@ static place place_of(const char *property) {
     return (place){0};
 }
 
-static bool is_of(const place *at, const char *patch) {
-    return strlen(patch) == at->patch_length && strncmp(at->patch, patch, at->patch_length) == 0;
+/* As strcmp, of the first letters of a text with a name. */
+static int compare(const char *text, size_t length, const char *name) {
+    int order = strncmp(text, name, length);
+    return order ? order : -(name[length] != 0);
+}
+
+/* Where by_name has the patches of a name, of the first letters of a text: from *first to before what is returned. */
+static int32_t find_named(const search *own, const char *text, size_t length, int32_t *first) {
+    int32_t low = 0, high = own->finding.patch_count;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (compare(text, length, own->by_name[middle].name) > 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (*first = low; low < own->finding.patch_count && compare(text, length, own->by_name[low].name) == 0;)
+        low++;
+    return low;
 }
 
 static bool is_applied(const search *own, const place *at) {
-    for (int32_t i = 0; i < own->finding.patch_count; i++)
-        if (is_of(at, own->patches[i]))
-            return true;
-    return false;
+    int32_t first;
+    return find_named(own, at->patch, at->patch_length, &first) > first;
 }
 
 static bool is_setting(const place *at) {
@@ -155,22 +195,54 @@ static void say_unapplied(search *own) {
                 "has properties, but %s:%s is not applied to the prim, so it does not slide", SS_SCHEMA, names[i]);
 }
 
-/* Whether a property lies in the namespace of a patch, be it deeper than its settings are. */
-static bool lies_in(const place *at, const char *patch) {
-    size_t length = strlen(patch);
-    return at->patch_length >= length && strncmp(at->patch, patch, length) == 0 && at->patch[length] == ':';
+/* A property that lies in the namespace of a patch, be it deeper than its settings are, and is none. */
+typedef struct stray {
+    int32_t patch, space, property;
+} stray;
+
+static int by_patch(const void *a, const void *b) {
+    const stray *x = a, *y = b;
+    return x->patch != y->patch ? x->patch - y->patch : x->space != y->space ? x->space - y->space : x->property - y->property;
 }
 
-static void say_unknown(search *own, const char *patch, int32_t space) {
-    for (int32_t i = 0; i < own->prim.property_count; i++) {
-        place at = place_of(own->prim.properties[i]);
-        bool of_another = is_applied(own, &at) && !is_of(&at, patch);
-        if (!at.patch_length || at.space != space || !lies_in(&at, patch) || of_another ||
-            (is_of(&at, patch) && is_setting(&at)))
-            continue;
-        say(own, SKINSLIDE_SEVERITY_WARNING, patch, "%s is no setting of a patch, and counts for nothing",
-            own->prim.properties[i]);
+/* Without what follows the last colon of a name: how long that is. */
+static size_t outer(const char *name, size_t length) {
+    while (length > 0 && name[length - 1] != ':')
+        length--;
+    return length > 0 ? length - 1 : 0;
+}
+
+/* Lists what a property is to each patch that it lies in, if it is stray there; out may be NULL. Returns how many. A patch's own it is
+ * not to those that the patch lies in. */
+static int32_t list_strays(const search *own, int32_t property, stray *out) {
+    place at = place_of(own->prim.properties[property]);
+    bool applied = at.patch_length && is_applied(own, &at);
+    int32_t count = 0;
+    if (applied && is_setting(&at))
+        return 0;
+    for (size_t length = at.patch_length; length > 0; length = applied ? 0 : outer(at.patch, length)) {
+        int32_t first, end = find_named(own, at.patch, length, &first);
+        for (int32_t i = first; i < end; i++, count++)
+            if (out)
+                out[count] = (stray){own->by_name[i].patch, at.space, property};
     }
+    return count;
+}
+
+static void say_unknown(search *own) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < own->prim.property_count; i++)
+        count += list_strays(own, i, NULL);
+    stray *strays = SS_NEW(&own->memory, stray, count);
+    if (!strays)
+        return;
+    count = 0;
+    for (int32_t i = 0; i < own->prim.property_count; i++)
+        count += list_strays(own, i, strays + count);
+    qsort(strays, (size_t)count, sizeof *strays, by_patch);
+    for (int32_t i = 0; i < count; i++)
+        say(own, SKINSLIDE_SEVERITY_WARNING, own->patches[strays[i].patch],
+            "%s is no setting of a patch, and counts for nothing", own->prim.properties[strays[i].property]);
 }
 
 /* ---- UsdSkel ---- */
@@ -257,13 +329,10 @@ static void look(search *own) {
     if (own->prim.uncomposed)
         say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "USD could not compose this: %s", own->prim.uncomposed);
     bool named = list_patches(own);
-    if (own->memory.failed)
+    if (own->memory.failed || !sort_patches(own))
         return;
     if (own->prim.is_mesh)
-        say_unapplied(own);
-    for (int32_t i = 0; own->prim.is_mesh && i < own->finding.patch_count; i++)
-        for (int32_t space = 0; space < SPACES; space++)
-            say_unknown(own, own->patches[i], space);
+        say_unapplied(own), say_unknown(own);
     if (has_influences(&own->prim) && !why_not_skinned(&own->prim))
         own->finding.skinned_by = ss_copy_text(&own->memory, own->prim.skeleton);
     if (own->finding.patch_count)

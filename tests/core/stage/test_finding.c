@@ -234,6 +234,96 @@ static void many_and_long_names(void **state) {
     skinslide_stage_finding_destroy(finding);
 }
 
+/* Of two letters: patches lie in patches, and properties in them, deeper than settings are. */
+static void name_at_random(dice *d, char *name) {
+    for (int32_t left = 1 + roll_below(d, 3); left > 0; left--)
+        strcat(strcat(name, roll_below(d, 2) ? "a" : "b"), left > 1 ? ":" : "");
+}
+
+/* Whether text is before, a colon, and more. */
+static bool is_inside(const char *text, const char *before, const char **more) {
+    size_t length = strlen(before);
+    *more = text + length + 1;
+    return strncmp(text, before, length) == 0 && text[length] == ':';
+}
+
+enum { SOME = 6 };
+
+static bool is_stray(const char *property, const char *patch, char patches[SOME][32]) {
+    const char *within, *more;
+    if (!is_inside(property, "skinSlide", &within) || !is_inside(within, patch, &more))
+        return false;
+    for (int i = 0; i < SOME; i++) {
+        const char *of_it;
+        if (is_inside(within, patches[i], &of_it) && !strchr(of_it, ':') && strcmp(patches[i], patch) != 0)
+            return false;
+    }
+    return strcmp(more, "envelope") != 0;
+}
+
+/* As it is defined, patch by patch, of any names. */
+static void strays_are_those_of_each_patch(void **state) {
+    (void)state;
+    dice d = {1};
+    int32_t all = 0;
+    for (int round = 0; round < 200; round++) {
+        char names[SOME][32] = {""}, schemas[SOME][64], texts[4 * SOME][64];
+        const char *applied[SOME], *properties[4 * SOME];
+        for (int i = 0; i < SOME; i++) {
+            name_at_random(&d, names[i]);
+            snprintf(schemas[i], sizeof schemas[i], "SkinSlideAPI:%s", names[i]);
+            applied[i] = schemas[i];
+        }
+        for (int i = 0; i < 4 * SOME; i++) {
+            strcpy(texts[i], "skinSlide:");
+            name_at_random(&d, texts[i]);
+            strcat(texts[i], roll_below(&d, 2) ? ":envelope" : ":stray");
+            properties[i] = texts[i];
+        }
+        skinslide_stage_prim prim = mesh_with(SOME, applied);
+        has(&prim, 4 * SOME, properties);
+        skinslide_stage_finding *finding = find(&prim);
+        int32_t next = 0;
+        while (next < finding->problem_count && !strstr(finding->problems[next]->message, "is no setting of a patch"))
+            next++;
+        for (int p = 0; p < SOME; p++)
+            for (int i = 0; i < 4 * SOME; i++) {
+                char message[1600];
+                if (!is_stray(texts[i], names[p], names))
+                    continue;
+                snprintf(message, sizeof message, "%s is no setting of a patch, and counts for nothing", texts[i]);
+                expect_problem(finding, next++, SKINSLIDE_SEVERITY_WARNING, names[p], message);
+                all++;
+            }
+        assert_int_equal(next, finding->problem_count);
+        skinslide_stage_finding_destroy(finding);
+    }
+    assert_in_range(all, 200, 100000);
+}
+
+/* So many that a comparison of each with each does not end. */
+static void patches_without_number(void **state) {
+    (void)state;
+    enum { MANY = 100000 };
+    char(*schemas)[32] = calloc(MANY, sizeof *schemas), (*texts)[32] = calloc(2 * MANY, sizeof *texts);
+    const char **applied = calloc(MANY, sizeof *applied), **properties = calloc(2 * MANY, sizeof *properties);
+    for (int32_t i = 0; i < MANY; i++) {
+        snprintf(schemas[i], sizeof *schemas, "SkinSlideAPI:p%d", i);
+        snprintf(texts[2 * i], sizeof *texts, "skinSlide:p%d:envelope", MANY - 1 - i);
+        snprintf(texts[2 * i + 1], sizeof *texts, "skinSlide:p%d:stray", MANY - 1 - i);
+        applied[i] = schemas[i], properties[2 * i] = texts[2 * i], properties[2 * i + 1] = texts[2 * i + 1];
+    }
+    skinslide_stage_prim prim = mesh_with(MANY, applied);
+    has(&prim, 2 * MANY, properties);
+    skinslide_stage_finding *finding = find(&prim);
+    assert_int_equal(finding->patch_count, MANY);
+    assert_int_equal(finding->problem_count, MANY);
+    for (int32_t i = 0; i < MANY; i++)
+        assert_string_equal(finding->problems[i]->patch, finding->patches[i]);
+    skinslide_stage_finding_destroy(finding);
+    free(schemas), free(texts), free(applied), free(properties);
+}
+
 static void what_could_not_be_composed_is_said(void **state) {
     (void)state;
     skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow");
@@ -278,6 +368,8 @@ int main(void) {
         cmocka_unit_test(settings_that_are_none),
         cmocka_unit_test(every_input_is_a_setting),
         cmocka_unit_test(many_and_long_names),
+        cmocka_unit_test(strays_are_those_of_each_patch),
+        cmocka_unit_test(patches_without_number),
         cmocka_unit_test(what_could_not_be_composed_is_said),
         cmocka_unit_test(facts_that_are_none),
         cmocka_unit_test(nothing_to_slide),
