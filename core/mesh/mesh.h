@@ -63,8 +63,8 @@ skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float 
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
 /* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. face_start is as ss_start_faces has it; NULL: it
  * is found. label begins messages. */
-skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count, const char *label,
-                               ss_memory *memory, ss_faces *faces, skinslide_error *error);
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
+                               const char *label, ss_memory *memory, ss_faces *faces, skinslide_error *error);
 /* Fills corner_edge and edge_count of any faces at all, several at an edge or none like it. False where memory is short. */
 bool ss_number_edges(ss_faces *faces);
 /* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
@@ -90,6 +90,9 @@ void ss_split_places(const float *points, double tolerance, const int32_t *verti
                      int32_t *place);
 /* The places of all points [count] of a pose: place [count] is the lowest point of each. False where memory is short. */
 bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place);
+/* Which of points [count] have one of others [other_count] in their place: met [count] is 1, else 0. What is not finite is nowhere.
+ * False where memory is short. */
+bool ss_find_met(const float *points, int32_t count, const float *others, int32_t other_count, double tolerance, uint8_t *met);
 /* The root of a vertex in a forest, whose roots are their own parents; joins two trees under the lower root. */
 int32_t ss_root(int32_t *parent, int32_t vertex);
 void ss_join(int32_t *parent, int32_t a, int32_t b);
@@ -227,9 +230,9 @@ static inline bool ss_has_plane(skinslide_rule rule) {
 }
 
 /* The mesh's weld must outlive the patch. face_start as for ss_take_faces. */
-skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup, int32_t setup_index,
-                                 const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
-                                 ss_patch **out, skinslide_error *error);
+skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup,
+                                 int32_t setup_index, const int32_t *mesh_faces, int32_t face_count, int32_t piece,
+                                 int32_t piece_count, ss_patch **out, skinslide_error *error);
 void ss_patch_destroy(ss_patch *patch);
 /* BAD_PATCH where it is closed or has handles: only a disk with holes can be laid out in the plane. */
 skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error);

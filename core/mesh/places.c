@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 int32_t ss_root(int32_t *parent, int32_t vertex) {
     int32_t root = vertex;
@@ -92,4 +93,69 @@ bool ss_find_places(const float *points, double tolerance, int32_t count, int32_
         ss_split_places(points, tolerance, all, count, spots, place);
     ss_free(&scratch);
     return !scratch.failed;
+}
+
+/* ---- Two sets of points ---- */
+
+/* What is beyond it by more than a tolerance is in no place that any of its points is in. */
+typedef struct box {
+    float low[3], high[3];
+    double margin;
+} box;
+
+static bool is_finite(const float *point) {
+    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
+}
+
+static box box_around(const float *points, int32_t count, double tolerance) {
+    box b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 1.001 * tolerance};
+    for (int32_t v = 0; v < count; v++)
+        for (int k = 0; k < 3 && is_finite(points + 3 * (int64_t)v); k++) {
+            float x = points[3 * (int64_t)v + k];
+            b.low[k] = x < b.low[k] ? x : b.low[k], b.high[k] = x > b.high[k] ? x : b.high[k];
+        }
+    return b;
+}
+
+static bool is_at(const box *b, const float *point) {
+    bool near = is_finite(point);
+    for (int k = 0; k < 3; k++)
+        near = near && (double)b->low[k] - point[k] <= b->margin && (double)point[k] - b->high[k] <= b->margin;
+    return near;
+}
+
+/* Appends the points that are near; vertex, which may be NULL, says which they are. Returns how many there are then. */
+static int32_t add_near(const box *b, const float *points, int32_t count, int32_t *vertex, float *out, int32_t have) {
+    for (int32_t v = 0; v < count; v++) {
+        if (!is_at(b, points + 3 * (int64_t)v))
+            continue;
+        if (vertex)
+            vertex[have] = v;
+        if (out)
+            memcpy(out + 3 * (int64_t)have, points + 3 * (int64_t)v, sizeof(float[3]));
+        have++;
+    }
+    return have;
+}
+
+bool ss_find_met(const float *points, int32_t count, const float *others, int32_t other_count, double tolerance, uint8_t *met) {
+    ss_memory scratch = {0};
+    box around = box_around(points, count, tolerance);
+    int32_t near = add_near(&around, others, other_count, NULL, NULL, 0);
+    float *all = SS_NEW(&scratch, float, 3 * ((int64_t)count + near));
+    int32_t *vertex = SS_NEW(&scratch, int32_t, count), *place = SS_NEW(&scratch, int32_t, (int64_t)count + near);
+    uint8_t *has_other = SS_NEW(&scratch, uint8_t, (int64_t)count + near);
+    memset(met, 0, (size_t)count);
+    bool done = !scratch.failed;
+    if (done && near > 0) {
+        int32_t own = add_near(&around, points, count, vertex, all, 0);
+        int32_t both = add_near(&around, others, other_count, NULL, all, own);
+        done = ss_find_places(all, tolerance, both, place);
+        for (int32_t i = own; i < both && done; i++)
+            has_other[place[i]] = 1;
+        for (int32_t i = 0; i < own && done; i++)
+            met[vertex[i]] = has_other[place[i]];
+    }
+    ss_free(&scratch);
+    return done;
 }

@@ -65,35 +65,19 @@ skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, in
     return SKINSLIDE_OK;
 }
 
-/* Points of a patch, then of another mesh, and the place of each. */
-typedef struct neighbours {
-    ss_memory memory;
-    int32_t count;
-    float *points;
-    int32_t *place;
-    uint8_t *others; /* [count] by place: another mesh has a point there */
-} neighbours;
-
-static bool allocate(neighbours *own, int64_t count) {
-    own->points = SS_NEW(&own->memory, float, 3 * count);
-    own->place = SS_NEW(&own->memory, int32_t, count);
-    own->others = SS_NEW(&own->memory, uint8_t, count);
-    return !own->memory.failed;
-}
-
-/* False where memory is short. */
-static bool meet(neighbours *own, const ss_patch *patch, const float *points, const float *others, int32_t other_count,
-                 double tolerance) {
-    own->count = patch->vertex_count + other_count;
-    for (int32_t v = 0; v < patch->vertex_count; v++)
-        memcpy(own->points + 3 * (int64_t)v, points + 3 * (int64_t)patch->mesh_vertex[v], sizeof(float[3]));
-    if (other_count > 0)
-        memcpy(own->points + 3 * (int64_t)patch->vertex_count, others, (size_t)other_count * sizeof(float[3]));
-    if (!ss_find_places(own->points, tolerance, own->count, own->place))
-        return false;
-    for (int32_t v = patch->vertex_count; v < own->count; v++)
-        own->others[own->place[v]] = 1;
-    return true;
+/* How many of a patch's vertices that are fixed, or not, other points meet. */
+static skinslide_status count_met(const ss_patch *patch, const float *points, const float *others, int32_t other_count,
+                                  double tolerance, int32_t counts[2], skinslide_error *error) {
+    ss_memory scratch = {0};
+    float *own = SS_NEW(&scratch, float, 3 * (int64_t)patch->vertex_count);
+    uint8_t *met = SS_NEW(&scratch, uint8_t, patch->vertex_count);
+    for (int32_t v = 0; v < patch->vertex_count && !scratch.failed; v++)
+        memcpy(own + 3 * (int64_t)v, points + 3 * (int64_t)patch->mesh_vertex[v], sizeof(float[3]));
+    bool done = !scratch.failed && ss_find_met(own, patch->vertex_count, others, other_count, tolerance, met);
+    for (int32_t v = 0; v < patch->vertex_count && done; v++)
+        counts[patch->fixed[v]] += met[v];
+    ss_free(&scratch);
+    return done ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
 skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int32_t patch, const float *points,
@@ -107,15 +91,11 @@ skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int
     skinslide_status status = ss_check_reads(slider, points, "points", error);
     if (!status)
         status = ss_check_points(others, other_count, "points of the other mesh", error);
-    neighbours own = {0};
-    if (!status && !(allocate(&own, (int64_t)part->patch->vertex_count + other_count) &&
-                     meet(&own, part->patch, points, others, other_count, tolerance)))
-        status = ss_out_of_memory(error);
+    int32_t counts[2] = {0, 0};
     if (!status)
-        *held = *loose = 0;
-    for (int32_t v = 0; v < part->patch->vertex_count && !status; v++)
-        *(part->patch->fixed[v] ? held : loose) += own.others[own.place[v]];
-    ss_free(&own.memory);
+        status = count_met(part->patch, points, others, other_count, tolerance, counts, error);
+    if (!status)
+        *held = counts[1], *loose = counts[0];
     return status;
 }
 

@@ -3,6 +3,7 @@
 #include "stage.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- Names ---- */
@@ -15,40 +16,74 @@ static char folded(char letter) {
     return lower == ':' ? '_' : lower;
 }
 
+/* Of letters that are the same folded. */
 static likeness like_letter(char wanted, char letter) {
-    return letter == wanted                   ? LIKE_ITSELF
-           : wanted == ':' && letter == '_'   ? LIKE_UNDERSCORED
-           : folded(wanted) == folded(letter) ? LIKE_FOLDED
-                                              : LIKE_NOTHING;
+    return letter == wanted ? LIKE_ITSELF : wanted == ':' && letter == '_' ? LIKE_UNDERSCORED : LIKE_FOLDED;
 }
 
-/* Compares the beginning of *name with a part of the schema's, and goes behind it. */
-static likeness like_part(const char *part, const char **name, likeness so_far) {
-    for (; *part && so_far; part++, (*name)++) {
-        likeness own = like_letter(*part, **name);
-        so_far = own < so_far ? own : so_far;
-    }
-    return so_far;
+/* An input of a patch under the schema's name: the parts of that. */
+enum { PARTS = 4 };
+#define PARTS_OF(patch, input)                                                                                                 \
+    { (input)->prefix, (patch)->name, ":", (input)->name }
+
+/* As strcmp, folded, of a text that is joined of parts with a name; NULL is an empty one. */
+static int compare(const char *const *parts, int count, const char *name) {
+    name = name ? name : "";
+    for (int i = 0; i < count; i++)
+        for (const char *letter = parts[i]; *letter; letter++, name++)
+            if (folded(*letter) != folded(*name))
+                return (unsigned char)folded(*letter) - (unsigned char)folded(*name);
+    return -(*name != 0);
+}
+
+static int by_folded(const void *a, const void *b) {
+    const char *x = *(const char *const *)a, *y = *(const char *const *)b;
+    x = x ? x : "", y = y ? y : "";
+    int order = compare(&x, 1, y);
+    return order ? order : strcmp(x, y);
+}
+
+void skinslide_stage_sort_names(const char **names, int32_t count) {
+    if (names && count > 0)
+        qsort(names, (size_t)count, sizeof *names, by_folded);
 }
 
 static likeness like_input(const skinslide_stage_patch *patch, const skinslide_stage_input *input, const char *name) {
-    if (!name || strncmp(name, SS_PRIMVARS, strlen(SS_PRIMVARS)) != 0)
+    const char *const parts[PARTS] = PARTS_OF(patch, input);
+    if (!name || strncmp(name, SS_PRIMVARS, strlen(SS_PRIMVARS)) != 0 || compare(parts, PARTS, name) != 0)
         return LIKE_NOTHING;
-    const char *const parts[] = {input->prefix, patch->name, ":", input->name};
     likeness found = LIKE_ITSELF;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        found = like_part(parts[i], &name, found);
-    found = *name ? LIKE_NOTHING : found;
+    for (int i = 0; i < PARTS; i++)
+        for (const char *letter = parts[i]; *letter; letter++, name++) {
+            likeness own = like_letter(*letter, *name);
+            found = own < found ? own : found;
+        }
     return found == LIKE_FOLDED && !patch->mesh->fold_case ? LIKE_NOTHING : found;
+}
+
+/* Of sorted names, the first that is not before an input's. */
+static int32_t first_like(const char *const *parts, const char *const *names, int32_t count) {
+    int32_t low = 0, high = count;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (compare(parts, PARTS, names[middle]) > 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
 }
 
 int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                        const char *const *names, int32_t count) {
+    if (!patch || !input || !input->is_primvar)
+        return -1;
+    const char *const parts[PARTS] = PARTS_OF(patch, input);
     likeness best = LIKE_NOTHING;
     int32_t found = -1;
-    for (int32_t i = 0; patch && input && input->is_primvar && i < count; i++) {
+    for (int32_t i = first_like(parts, names, count); i < count && compare(parts, PARTS, names[i]) == 0; i++) {
         likeness own = like_input(patch, input, names[i]);
-        if (own > best || (own && own == best && strcmp(names[i], names[found]) < 0))
+        if (own > best)
             best = own, found = i;
     }
     return found;

@@ -18,6 +18,7 @@ from skinslide.arrays.meaning import (
     File,
     Input,
     MeshMeaning,
+    Names,
     PatchMeaning,
     Taker,
     Value,
@@ -73,7 +74,7 @@ class Surface:
     """A mesh as it is meant, without its patches. Raises Fault."""
 
     def __init__(self, fetched: Fetched):
-        self.fetched, self.meaning = fetched, MeshMeaning()
+        self.fetched, self.meaning, self._painted = fetched, MeshMeaning(), Names(fetched.primvars)
         with joined() as faults:
             _take(self.meaning, ((each, self._value(each)) for each in inputs("mesh")), faults)
             with _noting(faults):
@@ -107,7 +108,7 @@ class Surface:
         """The value of an input of a patch."""
         if not source.is_primvar:
             return patch.value(source)
-        found = meaning.property_of(source, list(self.fetched.primvars))
+        found = self._painted.of(source, meaning)
         return self.fetched.primvars[found] if found else patch.value(source)
 
     def controls(self, meaning: PatchMeaning, patch: FetchedPatch) -> ControlsMeaning:

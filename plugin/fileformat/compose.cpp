@@ -3,6 +3,8 @@
 #include "names.h"
 #include "sources.h"
 
+#include "skinslide/stage.h"
+
 #include "pxr/base/gf/half.h"
 #include "pxr/base/gf/math.h"
 #include "pxr/base/gf/vec2d.h"
@@ -375,6 +377,18 @@ void Composition::traverseBelow(const Prim &parent, const std::function<bool(con
         if (visit(child))
             traverseBelow(child, visit);
     }
+}
+
+const std::vector<const char *> &Composition::sortedNames(const Prim &prim) {
+    auto [place, isNew] = _names.try_emplace(prim.path());
+    Names &names = place->second;
+    if (isNew) {
+        names.held = prim.propertyNames();
+        for (const TfToken &name : names.held)
+            names.sorted.push_back(name.GetText());
+        skinslide_stage_sort_names(names.sorted.data(), static_cast<int32_t>(names.sorted.size()));
+    }
+    return names.sorted;
 }
 
 SdfPathVector Composition::targets(const SdfPath &relationship) {

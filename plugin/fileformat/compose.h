@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -142,6 +143,8 @@ class Composition {
     const SdfLayerRefPtr &root() const {
         return _root;
     }
+    // The names of a prim's properties, as skinslide_stage_sort_names has them: found once.
+    const std::vector<const char *> &sortedNames(const Prim &prim);
     // What could not be composed, each once, with the prim.
     std::vector<std::pair<SdfPath, std::string>> errors() const;
     SdfLayerHandleSet usedLayers() const {
@@ -154,6 +157,11 @@ class Composition {
     SdfLayerRefPtr _root;
     std::unique_ptr<PcpCache> _cache;
     PcpErrorVector _errors;
+    struct Names {
+        TfTokenVector held;
+        std::vector<const char *> sorted;
+    };
+    std::map<SdfPath, Names> _names;
 };
 
 } // namespace skinslide

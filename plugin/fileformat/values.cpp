@@ -102,17 +102,19 @@ void Record::take() {
 namespace {
 
 // The property of a prim that an input of a patch is; empty where it has none.
-TfToken paintedName(const Prim &prim, const skinslide_stage_input *input, const skinslide_stage_patch *meaning) {
-    TfTokenVector properties = prim.propertyNames();
-    std::vector<const char *> words;
-    for (const TfToken &property : properties)
-        words.push_back(property.GetText());
+TfToken paintedName(Composition &composition, const Prim &prim, const skinslide_stage_input *input,
+                    const skinslide_stage_patch *meaning) {
+    const std::vector<const char *> *words = &composition.sortedNames(prim);
+    std::vector<const char *> left; // of them, where a name without a value was found
     int32_t found = -1;
-    while ((found = skinslide_stage_patch_property(meaning, input, words.data(), static_cast<int32_t>(words.size()))) >= 0) {
-        Attribute attribute = prim.attribute(TfToken(words[static_cast<size_t>(found)]));
+    while ((found = skinslide_stage_patch_property(meaning, input, words->data(), static_cast<int32_t>(words->size()))) >= 0) {
+        Attribute attribute = prim.attribute(TfToken((*words)[static_cast<size_t>(found)]));
         if (attribute.authored() || attribute.blocked() || attribute.clipped())
             return TfToken(attribute.name());
-        words.erase(words.begin() + found);
+        if (left.empty())
+            left = *words;
+        left.erase(left.begin() + found);
+        words = &left;
     }
     return TfToken();
 }
@@ -123,10 +125,10 @@ TfToken nameOf(Composition &composition, const Prim &prim, const skinslide_stage
     TfToken own(input->prefix + (patch.empty() ? "" : patch + ":") + input->name);
     if (!meaning || !input->is_primvar)
         return own;
-    TfToken found = paintedName(prim, input, meaning);
+    TfToken found = paintedName(composition, prim, input, meaning);
     SdfPath path = input->is_inherited ? prim.path().GetParentPath() : SdfPath();
     for (; found.IsEmpty() && path.IsPrimPath(); path = path.GetParentPath())
-        found = paintedName(composition.prim(path), input, meaning);
+        found = paintedName(composition, composition.prim(path), input, meaning);
     return found.IsEmpty() ? own : found;
 }
 

@@ -394,10 +394,13 @@ typedef struct skinslide_stage_subset {
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
 
+/* Sorts names [count] of properties so that those which differ in case and in underscores for colons alone are next to each other. */
+SKINSLIDE_API void skinslide_stage_sort_names(const char **names, int32_t count);
+
 /* Paint counts under the schema's name, else under that with underscores for colons, as tools leave it that know no namespaces
  * (primvars:skinSlide_elbow_L_weight); else, where skinSlide:foldCase is on, under either in another case.
  *   input  in  of the group PATCH or CONTROLS
- *   names  in  [count] the properties of a prim that have values or are blocked, in any order
+ *   names  in  [count] the properties of a prim that have values or are blocked, sorted by skinslide_stage_sort_names
  * Returns which of them the input is; -1: none, and always where it is no primvar. */
 SKINSLIDE_API int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                                      const char *const *names, int32_t count);

@@ -488,8 +488,40 @@ static void bad_input_is_named(void **state) {
     free_mesh(&grid);
 }
 
+/* As it is found without leaving out those that are far away: places of all points at once, on a lattice that is coarse enough to be
+ * shared, with some that are nowhere. */
+static void points_that_others_meet(void **state) {
+    (void)state;
+    enum { OWN = 40, OTHERS = 60, ALL = OWN + OTHERS };
+    dice d = {1};
+    int32_t met_count = 0;
+    for (int round = 0; round < 100; round++) {
+        float all[3 * ALL];
+        for (int i = 0; i < 3 * ALL; i++)
+            all[i] = (float)roll_below(&d, 4) + (i < 3 * OWN ? 0 : (float)roll_below(&d, 3)) + 0.01f * (float)roll_below(&d, 2);
+        for (int i = 0; i < 3; i++)
+            all[3 * roll_below(&d, ALL)] = i ? INFINITY : NAN;
+        float finite[3 * ALL];
+        int32_t number[ALL], place[ALL], count = 0;
+        uint8_t expected[OWN] = {0}, met[OWN], other[ALL] = {0};
+        for (int v = 0; v < ALL; v++)
+            if (isfinite(all[3 * v]))
+                memcpy(finite + 3 * count, all + 3 * v, sizeof(float[3])), number[count++] = v;
+        double tolerance = round % 2 ? 0.012 : 0;
+        assert_true(ss_find_places(finite, tolerance, count, place));
+        for (int i = 0; i < count; i++)
+            other[place[i]] |= number[i] >= OWN;
+        for (int i = 0; i < count && number[i] < OWN; i++)
+            expected[number[i]] = other[place[i]], met_count += other[place[i]];
+        assert_true(ss_find_met(all, OWN, all + 3 * OWN, OTHERS, tolerance, met));
+        assert_same_bytes(met, expected, sizeof met);
+    }
+    assert_in_range(met_count, 200, 3500);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_that_others_meet),
         cmocka_unit_test(a_mesh_split_at_every_corner_is_its_twin),
         cmocka_unit_test(a_mesh_split_along_a_seam_is_its_twin),
         cmocka_unit_test(a_seam_may_have_an_end_that_is_not_split),

@@ -3,6 +3,8 @@
 #include "records.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static skinslide_error error;
@@ -40,7 +42,14 @@ static void refuses(patch_scene *s, skinslide_value value, const char *text) {
 
 static int32_t found(const patch_scene *s, const char *input, const char *const *names, int32_t count) {
     skinslide_stage_group group = strcmp(input, "patch") == 0 ? SKINSLIDE_STAGE_PATCH : SKINSLIDE_STAGE_CONTROLS;
-    return skinslide_stage_patch_property(s->patch, input_of(group, NULL, input), names, count);
+    const char *sorted[16];
+    for (int32_t i = 0; i < count; i++)
+        sorted[i] = names[i];
+    skinslide_stage_sort_names(sorted, count);
+    int32_t place = skinslide_stage_patch_property(s->patch, input_of(group, NULL, input), sorted, count), own = -1;
+    for (int32_t i = 0; i < count && place >= 0; i++)
+        own = names[i] == sorted[place] ? i : own;
+    return own;
 }
 
 static void names_as_tools_leave_them(void **state) {
@@ -188,12 +197,40 @@ static void what_was_taken_is_said(void **state) {
     end_scene(&s);
 }
 
+/* So many that looking through all names for each does not end. */
+static void names_without_number(void **state) {
+    (void)state;
+    enum { MANY = 100000 };
+    char(*texts)[40] = calloc(MANY, sizeof *texts);
+    const char **names = calloc(MANY, sizeof *names);
+    test_mesh grid = quad_grid(1, 1);
+    skinslide_stage_mesh *mesh = scene_mesh(&grid);
+    for (int32_t i = 0; i < MANY; i++) {
+        snprintf(texts[i], sizeof *texts, "primvars:skinSlide_p%d_weight", i);
+        names[i] = texts[i];
+    }
+    skinslide_stage_sort_names(names, MANY);
+    for (int32_t i = 0; i < MANY; i++) {
+        skinslide_stage_patch *patch = NULL;
+        char name[16];
+        snprintf(name, sizeof name, "p%d", i);
+        assert_ok(skinslide_stage_patch_create(mesh, name, NULL, &patch, &error), &error);
+        int32_t place = skinslide_stage_patch_property(patch, input_of(SKINSLIDE_STAGE_CONTROLS, NULL, "weight"), names, MANY);
+        assert_true(place >= 0 && names[place] == texts[i]);
+        skinslide_stage_patch_destroy(patch);
+    }
+    skinslide_stage_mesh_destroy(mesh);
+    free_mesh(&grid);
+    free(texts), free(names);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_as_tools_leave_them), cmocka_unit_test(the_best_name_counts),
-        cmocka_unit_test(halves_and_doubles),        cmocka_unit_test(doubles_beyond_floats),
-        cmocka_unit_test(a_channel_of_colours),      cmocka_unit_test(corners_are_averaged),
-        cmocka_unit_test(faces_by_corner),           cmocka_unit_test(what_was_taken_is_said),
+        cmocka_unit_test(names_without_number),   cmocka_unit_test(names_as_tools_leave_them),
+        cmocka_unit_test(the_best_name_counts),   cmocka_unit_test(halves_and_doubles),
+        cmocka_unit_test(doubles_beyond_floats),  cmocka_unit_test(a_channel_of_colours),
+        cmocka_unit_test(corners_are_averaged),   cmocka_unit_test(faces_by_corner),
+        cmocka_unit_test(what_was_taken_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

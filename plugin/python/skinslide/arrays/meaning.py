@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -412,14 +412,20 @@ class Subset(NamedTuple):
     is_subset: bool
 
 
-class Names(tuple[str, ...]):
-    """Names of properties, to be looked through for many inputs."""
+class Names:
+    """Names of properties, sorted to be looked up for many inputs."""
 
-    @cached_property
-    def native(self) -> Any:
-        """As the core has them, as long as this lives."""
-        self._held = _Native()
-        return self._held.of(list(self))
+    def __init__(self, names: Iterable[str]):
+        self._names = {name.encode(errors="replace"): name for name in names}
+        self._texts = [ffi.new("char[]", name) for name in self._names]
+        self._sorted = ffi.new("const char *[]", self._texts)
+        lib.skinslide_stage_sort_names(self._sorted, len(self._texts))
+
+    def of(self, source: Input, patch: PatchMeaning) -> str | None:
+        """Which of them is an input of a patch; None: none."""
+        count = len(self._texts)
+        found = lib.skinslide_stage_patch_property(patch.handle.pointer, source.pointer, self._sorted, count)
+        return None if found < 0 else self._names[ffi.string(self._sorted[found])]
 
 
 class PatchMeaning(Taker):
@@ -451,12 +457,6 @@ class PatchMeaning(Taker):
         while each := lib.skinslide_stage_next_unread(*known, found[-1].pointer if found else ffi.NULL):
             found.append(_input(each))
         return found
-
-    def property_of(self, source: Input, names: Sequence[str]) -> str | None:
-        """Which of the properties of a prim that have values or are blocked is an input; None: none of them."""
-        given = names if isinstance(names, Names) else Names(names)
-        found = lib.skinslide_stage_patch_property(self.handle.pointer, source.pointer, given.native, len(given))
-        return None if found < 0 else given[found]
 
     def describe(self, source: Input, value: Value) -> str:
         """What there is to say of paint that is not as the schema has it, or nothing."""

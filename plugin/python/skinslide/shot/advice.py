@@ -8,11 +8,11 @@ from itertools import combinations
 import numpy as np
 from pxr import Usd
 
+from skinslide.arrays.native import PatchSetup
 from skinslide.arrays.records import PatchInfo
 from skinslide.arrays.slider import Slider
 from skinslide.problems import FrameProblem, Problem, SliderError, counted
 from skinslide.stage.mesh import PatchedMesh
-from skinslide.stage.neighbours import find_neighbours
 
 
 def advice(mesh: PatchedMesh, pieces: Sequence[PatchInfo], slider: Slider | None) -> Iterator[Problem]:
@@ -26,9 +26,16 @@ def advice(mesh: PatchedMesh, pieces: Sequence[PatchInfo], slider: Slider | None
     yield from _cache_problems(mesh)
 
 
+def _by_name(pieces: Sequence[PatchInfo]) -> dict[str, list[PatchInfo]]:
+    """The pieces of each patch."""
+    found: dict[str, list[PatchInfo]] = {}
+    for piece in pieces:
+        found.setdefault(piece.name, []).append(piece)
+    return found
+
+
 def _stuck(mesh: str, every: Sequence[PatchInfo]) -> Iterator[Problem]:
-    for name in dict.fromkeys(info.name for info in every):
-        pieces = [info for info in every if info.name == name]
+    for name, pieces in _by_name(every).items():
         stuck = sum(not piece.free_count for piece in pieces)
         where = f"in {stuck} of its {len(pieces)} pieces " if len(pieces) > 1 else ""
         if stuck:
@@ -53,12 +60,21 @@ def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:
     taken = np.bincount(np.concatenate([patch.faces for patch in mesh.patches]))
     if taken.max(initial=0) < 2:
         return
-    for a, b in combinations(mesh.patches, 2):
-        if np.intersect1d(a.faces, b.faces).size:
-            shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
-            vertices = counted(int(np.count_nonzero(shared)), "vertex, which takes", "vertices, which take")
-            message = f"overlaps patch {b.name} in {vertices} the mean of both"
-            yield Problem("note", mesh.path, a.name, None, message)
+    for a, b in _overlapping(mesh.patches, taken):
+        shared = mesh.topology.vertices_of(a.faces) & mesh.topology.vertices_of(b.faces)
+        vertices = counted(int(np.count_nonzero(shared)), "vertex, which takes", "vertices, which take")
+        message = f"overlaps patch {b.name} in {vertices} the mean of both"
+        yield Problem("note", mesh.path, a.name, None, message)
+
+
+def _overlapping(patches: Sequence[PatchSetup], taken: np.ndarray) -> list[tuple[PatchSetup, PatchSetup]]:
+    """Pairs that share a face, in order; by how many patches each face is taken."""
+    takers: dict[int, list[int]] = {}
+    for number, patch in enumerate(patches):
+        for face in patch.faces[taken[patch.faces] > 1].tolist():
+            takers.setdefault(face, []).append(number)
+    pairs = {pair for several in set(map(tuple, takers.values())) for pair in combinations(several, 2)}
+    return [(patches[a], patches[b]) for a, b in sorted(pairs)]
 
 
 def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
@@ -68,15 +84,14 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
         slider.check_points(points)
     except (FrameProblem, SliderError):
         return  # which is said of its frame
-    for path, every in find_neighbours(mesh.prim):
+    for path, every in mesh.neighbours.of(mesh.prim) if mesh.neighbours else ():
         others = every[np.isfinite(every).all(axis=1)]
         if not len(others) or _apart(points, others):
             continue
-        found = [slider.neighbours(patch, points, others) for patch in range(len(slider.patches))]
-        for name in dict.fromkeys(patch.name for patch in mesh.patches):
-            of_name = [(each, info) for each, info in zip(found, slider.patches, strict=True) if info.name == name]
-            held, loose = (sum(counts) for counts in zip(*(each for each, _ in of_name), strict=True))
-            if held + loose == sum(info.vertex_count for _, info in of_name):
+        found = {info: slider.neighbours(patch, points, others) for patch, info in enumerate(slider.patches)}
+        for name, pieces in _by_name(slider.patches).items():
+            held, loose = (sum(counts) for counts in zip(*(found[info] for info in pieces), strict=True))
+            if held + loose == sum(info.vertex_count for info in pieces):
                 continue  # a copy of the mesh, such as a proxy
             if held:
                 points_meet = counted(held, "border point coincides", "border points coincide")

@@ -36,7 +36,8 @@ from skinslide.problems import (
 )
 from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.following import carried, offered
-from skinslide.stage.patch import Animation, Painted, read_patch
+from skinslide.stage.neighbours import Neighbours
+from skinslide.stage.patch import Animation, read_patches
 from skinslide.stage.skinning import SkinnedPoints, SkinnedVectors, Skinning
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
@@ -55,14 +56,20 @@ class PatchedMesh:
     animation: list[Animation]  # of each patch
     skinning: Skinning | None = None  # None where UsdSkel leaves it alone
     space: np.ndarray | None = None  # (3, 3) takes points to where lengths are taken; None: its own space
+    neighbours: Neighbours | None = None  # of meshes read together; None: it has no patches
 
     @classmethod
     def of(
-        cls, prim: Usd.Prim, meaning: MeshMeaning, animation: list[Animation], skinning: Skinning | None
+        cls,
+        prim: Usd.Prim,
+        meaning: MeshMeaning,
+        animation: list[Animation],
+        skinning: Skinning | None,
+        neighbours: Neighbours | None = None,
     ) -> PatchedMesh:
         topology, rest = Topology.of(meaning), meaning.rest_points()
         patches = [each.setup for each in animation]
-        kinds = (meaning.subdivision(), rest, patches, animation, skinning, meaning.space())
+        kinds = (meaning.subdivision(), rest, patches, animation, skinning, meaning.space(), neighbours)
         return cls(prim.GetStage(), prim, meaning, topology, *kinds)
 
     @property
@@ -305,7 +312,8 @@ def read_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
     A mesh comes with those of its patches that are good: whoever wants all or none looks for errors among the problems.
     """
     found, problems = find_meshes(stage, prim_paths)
-    meshes = [_read_mesh(each, problems) for each in found]
+    neighbours = Neighbours(stage)
+    meshes = [_read_mesh(each, neighbours, problems) for each in found]
     return [mesh for mesh in meshes if mesh is not None], problems
 
 
@@ -333,7 +341,7 @@ def read_moving(prim: Usd.Prim) -> PatchedMesh:
     return PatchedMesh.of(prim, meaning, [], skinning)
 
 
-def _read_mesh(found: FoundMesh, problems: list[Problem]) -> PatchedMesh | None:
+def _read_mesh(found: FoundMesh, neighbours: Neighbours, problems: list[Problem]) -> PatchedMesh | None:
     prim, path = found.prim, str(found.prim.GetPath())
 
     def say(faults: Sequence[str], patch: str | None = None) -> None:
@@ -349,18 +357,17 @@ def _read_mesh(found: FoundMesh, problems: list[Problem]) -> PatchedMesh | None:
     say(faults)
     if not meaning.has_faces:
         return None
-    painted = Painted(prim)
-    read = {name: read_patch(prim, name, meaning, painted) for name in found.patches}
-    for name, (_, wrong) in read.items():
+    read = list(read_patches(prim, dict.fromkeys(found.patches), meaning, neighbours))
+    for name, _, wrong in read:
         say(wrong, name)
-    animation = [good for good, _ in read.values() if good]
+    animation = [good for _, good, _ in read if good]
     if faults or not animation:
         return None
     faults = take_subdivision(prim, meaning) if any(each.needs_subdivision for each in animation) else []
     say(faults)
     if faults:
         return None
-    mesh = PatchedMesh.of(prim, meaning, animation, skinning)
+    mesh = PatchedMesh.of(prim, meaning, animation, skinning, neighbours)
     problems.extend(mesh.warnings())
     return mesh
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -24,7 +24,7 @@ from skinslide.arrays.meaning import (
 from skinslide.arrays.native import Controls, PatchSetup
 from skinslide.problems import Fault
 from skinslide.stage import schema
-from skinslide.stage.neighbours import find_neighbours
+from skinslide.stage.neighbours import Neighbours
 from skinslide.stage.textures import give_files
 from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
 
@@ -121,21 +121,40 @@ class Animation:
         return own.get()
 
 
-def read_patch(
-    prim: Usd.Prim, name: str, mesh: MeshMeaning, painted: Painted | None = None
-) -> tuple[Animation | None, list[str]]:
+def read_patches(
+    prim: Usd.Prim, names: Iterable[str], mesh: MeshMeaning, neighbours: Neighbours
+) -> Iterator[tuple[str, Animation | None, list[str]]]:
+    """Each patch by its name, or everything that is wrong with it."""
+    painted, begun = Painted(prim), list[tuple[PatchMeaning, list[str]]]()
+    for name in names:
+        meaning = PatchMeaning(mesh, name)
+        begun.append((meaning, take_settings(meaning, prim, inputs("patch"), painted)))
+    _meet(begun, prim, neighbours)
+    for meaning, faults in begun:
+        animation = Animation(prim, meaning, painted=painted)
+        faults += animation.faults
+        with noting(faults):
+            if not faults:
+                animation.setup  # noqa: B018
+        yield meaning.name, None if faults else animation, faults
+
+
+def _meet(begun: Iterable[tuple[PatchMeaning, list[str]]], prim: Usd.Prim, neighbours: Neighbours) -> None:
+    """Shows each neighbour to the patches that want them. Adds to the faults of each."""
+    wanting = [each for each in begun if each[0].wants_neighbours]
+    for other in neighbours.of(prim) if wanting else ():
+        for meaning, faults in list(wanting):
+            known = len(faults)
+            with noting(faults):
+                meaning.meet(other.points)
+            if len(faults) > known:
+                wanting.remove((meaning, faults))
+
+
+def read_patch(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> tuple[Animation | None, list[str]]:
     """The patch, or everything that is wrong with it."""
-    meaning = PatchMeaning(mesh, name)
-    faults = take_settings(meaning, prim, inputs("patch"), painted)
-    with noting(faults):
-        for other in find_neighbours(prim) if meaning.wants_neighbours else ():
-            meaning.meet(other.points)
-    animation = Animation(prim, meaning, painted=painted)
-    faults += animation.faults
-    with noting(faults):
-        if not faults:
-            animation.setup  # noqa: B018
-    return (None if faults else animation), faults
+    ((_, animation, faults),) = read_patches(prim, [name], mesh, Neighbours(prim.GetStage()))
+    return animation, faults
 
 
 def read_faces(prim: Usd.Prim, name: str, mesh: MeshMeaning) -> PatchMeaning:
@@ -199,7 +218,7 @@ def take_settings(
 
 
 class Painted:
-    """The primvars of a prim, of its parent, and so on: listed once for all patches."""
+    """The primvars of a prim, of its parent, and so on, that have values or are blocked: listed once for all patches."""
 
     def __init__(self, prim: Usd.Prim):
         above = [prim]
@@ -210,7 +229,7 @@ class Painted:
     def name_of(self, wanted: Input, meaning: PatchMeaning) -> str | None:
         """That of the nearest which is an input of a patch."""
         for names in (self._names if wanted.is_inherited else self._names[:1]) if wanted.is_primvar else ():
-            found = meaning.property_of(wanted, names)
+            found = names.of(wanted, meaning)
             if found:
                 return found
         return None
