@@ -189,8 +189,8 @@ static const int32_t *list_starts(const skinslide_mesh *mesh, ss_memory *memory)
     return face_start;
 }
 
-skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count, const char *label,
-                               ss_memory *memory, ss_faces *faces, skinslide_error *error) {
+skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
+                               const char *label, ss_memory *memory, ss_faces *faces, skinslide_error *error) {
     ss_memory scratch = {0};
     if (!face_start && !(face_start = list_starts(mesh, &scratch)))
         return ss_out_of_memory(error);

@@ -314,9 +314,9 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
     return ss_list_triangles(patch) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
-skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup, int32_t setup_index,
-                                 const int32_t *mesh_faces, int32_t face_count, int32_t piece, int32_t piece_count,
-                                 ss_patch **out, skinslide_error *error) {
+skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup,
+                                 int32_t setup_index, const int32_t *mesh_faces, int32_t face_count, int32_t piece,
+                                 int32_t piece_count, ss_patch **out, skinslide_error *error) {
     ss_patch *patch = calloc(1, sizeof *patch);
     if (!patch)
         return ss_out_of_memory(error);
@@ -324,7 +324,8 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face
     patch->setup = setup, patch->setup_index = setup_index, patch->piece = piece, patch->piece_count = piece_count;
     patch->weld = mesh->weld, patch->mesh_vertex_count = mesh->vertex_count;
     ss_label(setup, piece, piece_count, patch->label, sizeof patch->label);
-    skinslide_status status = ss_take_faces(mesh, face_start, mesh_faces, face_count, patch->label, &patch->memory, &patch->faces, error);
+    skinslide_status status =
+        ss_take_faces(mesh, face_start, mesh_faces, face_count, patch->label, &patch->memory, &patch->faces, error);
     if (!status)
         status = number_vertices(patch, error);
     if (!status) {

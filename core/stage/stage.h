@@ -287,12 +287,12 @@ struct skinslide_stage_patch {
     ss_array faces;     /* those, with what grows them; ascending; none: every face counts */
     const char *subset; /* the path of the child that has the faces; NULL: none */
     const char *indices_name;
-    ss_array indices;       /* of that, as authored */
-    ss_array vertices;      /* of those faces; ascending */
-    ss_memory settled;      /* of the two, as far as they are not authored */
-    uint8_t *held;          /* [vertex_count] those that other meshes have points at; NULL: none */
-    double unlike;          /* the factor by which rest differs, where sliding is senseless; 0: it is not */
-    const char *warning;    /* NULL: none */
+    ss_array indices;    /* of that, as authored */
+    ss_array vertices;   /* of those faces; ascending */
+    ss_memory settled;   /* of the two, as far as they are not authored */
+    uint8_t *held;       /* [vertex_count] those that other meshes have points at; NULL: none */
+    double unlike;       /* the factor by which rest differs, where sliding is senseless; 0: it is not */
+    const char *warning; /* NULL: none */
 };
 
 /* ---- paint.c ---- */
