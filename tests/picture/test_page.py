@@ -5,6 +5,7 @@ import io
 import json
 import math
 import shutil
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
@@ -17,6 +18,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.wait import WebDriverWait
+from skinslide.arrays.records import PatchResult
 
 import skinslide
 import stages
@@ -25,6 +27,7 @@ from skinslide.command.cli import main
 from skinslide.picture.page import Strip, bytes_of_each, compressed, page
 from skinslide.problems import Problem
 from skinslide.shot.report import PatchReport
+from skinslide.shot.rows import Rows
 
 SHEET, RING, STILL = "/World/char/sheet_GEO", "/World/char/ring_GEO", "/World/char/still_GEO"
 FRAMES = [1001.0, 1002.0, 1003.0, 1004.0, 1004.5, 1005.0]
@@ -74,9 +77,13 @@ def strips_of(report: BakeReport) -> list[Strip]:
     return [strip(mesh.path, mesh.patches[0], 100 * i) for i, mesh in enumerate(report.meshes)]
 
 
+def rows(results: Iterable[PatchResult]) -> Rows[PatchResult]:
+    return Rows(PatchResult, results)
+
+
 def longer(patch: PatchReport, frames: list[float | None]) -> PatchReport:
     """A patch with its results over and over."""
-    return PatchReport(patch.info, frames, [patch.results[i % len(patch.results)] for i in range(len(frames))])
+    return PatchReport(patch.info, frames, rows(patch.results[i % len(patch.results)] for i in range(len(frames))))
 
 
 # ---- The browser ----
@@ -296,7 +303,7 @@ def test_it_opens_where_most_is_gained(show, report):
 def test_where_nothing_is_gained_it_opens_at_the_worst_frame(show, report):
     patch = report.meshes[0].patches[0]
     still = [result._replace(stretch_after=result.stretch_before) for result in patch.results]
-    shown = show([strip(SHEET, PatchReport(patch.info, patch.frames, still))])
+    shown = show([strip(SHEET, PatchReport(patch.info, patch.frames, rows(still)))])
     assert shown.frame == f"{patch.frames[patch.worst]:g}"
 
 
@@ -707,7 +714,7 @@ def test_a_still_has_no_scrubber(show, report):
 
 def test_one_frame(show, report):
     patch = report.meshes[0].patches[0]
-    single = PatchReport(patch.info, [1003.25], patch.results[2:3])
+    single = PatchReport(patch.info, [1003.25], rows(patch.results[2:3]))
     shown = show([strip(SHEET, single, pictures={"chequer": [picture(3)]})], report)
     assert not shown.one(".frames").is_displayed() and not shown.one(".views").is_displayed()
     assert [tick.text for tick in shown.all(".chart:first-child .x.tick")] == ["1003.25"]
@@ -717,7 +724,7 @@ def test_one_frame(show, report):
 def test_no_stretch_is_no_change(show, report):
     """The first frame is the rest pose."""
     patch = report.meshes[0].patches[0]
-    still = PatchReport(patch.info, FRAMES[:1], patch.results[:1])
+    still = PatchReport(patch.info, FRAMES[:1], rows(patch.results[:1]))
     assert still.change is None
     shown = show([strip(SHEET, still)], report)
     assert shown.one(".lead").text == "0.0000 → 0.0000 stretch at frame 1001, the worst"

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Sdf, UsdGeom, UsdValidation, Vt
+from skinslide.arrays.records import PatchResult
 
 import stages
 from shots import (
@@ -25,6 +26,7 @@ from shots import (
 )
 from skinslide import bake_to_file
 from skinslide.command import progress
+from skinslide.shot.rows import Rows
 from skinslide.write import overs
 from stages import vectors
 
@@ -226,9 +228,11 @@ def test_report(shot, out):
 def test_added_stretch_is_reported_with_its_worst_frame(shot, out):
     report = bake_to_file(shot.save().path, out)
     assert not any("adds stretch" in problem.message for problem in report.problems)
-    results = report.meshes[0].patches[0].results
+    patch = report.meshes[0].patches[0]
+    results = list(patch.results)
     for i, added in ((2, 0.1), (3, 0.2)):
         results[i] = results[i]._replace(stretch_after=results[i].stretch_before + added)
+    patch.results = Rows(PatchResult, results)
     (problem,) = [problem for problem in report.problems if "adds stretch" in problem.message]
     assert (problem.severity, problem.patch, problem.frame) == ("warning", "sheet", 1004)
     assert "2 of 5 frames" in problem.message

@@ -20,7 +20,8 @@ from skinslide.shot.options import PictureOptions
 if TYPE_CHECKING:
     from skinslide.shot.products import Product
 
-Result = tuple[str, int]  # what to print on stdout, and the exit code
+Text = str | Iterator[str]  # or its pieces
+Result = tuple[Text, int]  # what to print on stdout, and the exit code
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -211,10 +212,10 @@ def _report(
     return _reported(made, {}, [made.text(), *_written(made.page)], json, quiet), DONE
 
 
-def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bool, quiet: bool) -> str:
+def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bool, quiet: bool) -> Text:
     """What is printed of a report: one document, lines, or its warnings alone, which then go to stderr."""
     if json:
-        return as_json({**named, **report.as_dict()})
+        return as_json({**named, **getattr(report, "document", report.as_dict)()})
     for problem in report.problems if quiet else ():
         if problem.severity == "warning":
             tell(str(problem))

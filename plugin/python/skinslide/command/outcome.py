@@ -6,7 +6,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any, TextIO
 
@@ -66,8 +66,8 @@ def tell(line: str) -> None:
         _print(one_line(line), sys.stderr)
 
 
-def say(text: str, code: int) -> int:
-    """Prints what a command was asked for, and gives its exit code: failed, where that cannot be printed."""
+def say(text: str | Iterator[str], code: int) -> int:
+    """Prints what a command was asked for, or its pieces. Gives its exit code: failed, where it cannot be printed."""
     if not text:
         return code
     try:
@@ -80,17 +80,24 @@ def say(text: str, code: int) -> int:
         return FAILED
 
 
-def as_json(document: dict[str, Any]) -> str:
-    return json.dumps(_finite(document), indent=2, allow_nan=False)
-
-
-def _finite(value: Any) -> Any:
-    """The value with null for every number that is not finite, which JSON cannot hold."""
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def as_json(value: Any, margin: str = "\n") -> Iterator[str]:
+    """A document in pieces, whose lists may be iterators; null for a number that is not finite, which JSON has not."""
+    inner, before = margin + "  ", "{"
+    if isinstance(value, dict) and value:
+        for name, each in value.items():
+            yield f"{before}{inner}{json.dumps(name)}: "
+            yield from as_json(each, inner)
+            before = ","
+        yield f"{margin}}}"
+    elif isinstance(value, list | tuple | Iterator):
+        before = "["
+        for each in value:
+            yield before + inner
+            yield from as_json(each, inner)
+            before = ","
+        yield "[]" if before == "[" else f"{margin}]"
+    else:
+        yield "null" if isinstance(value, float) and not math.isfinite(value) else json.dumps(value)
 
 
 def failed(error: BaseException, json: bool, done: str = "") -> int:
@@ -139,9 +146,10 @@ def _plain(message: str) -> Problem:
     return Problem("error", "", None, None, message)
 
 
-def _print(text: str, stream: TextIO) -> None:
+def _print(text: str | Iterator[str], stream: TextIO) -> None:
     try:
-        print(text, file=stream, flush=True)
+        stream.writelines([text] if isinstance(text, str) else text)
+        print(file=stream, flush=True)
     except OSError:
         # What is left in the buffer would fail once more when Python closes the stream.
         with suppress(OSError, ValueError):

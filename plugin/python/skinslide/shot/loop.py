@@ -62,7 +62,8 @@ def slide(
                         progress(report.frame_count, total)
                 report.warnings.extend(first_of(mesh.told))
                 ended = [problem for made in mesh.makings for problem in made.end()]
-                report.warnings.extend(each for each in dict.fromkeys(ended) if each not in report.warnings)
+                known = set(report.warnings)
+                report.warnings.extend(each for each in dict.fromkeys(ended) if each not in known)
     return report
 
 

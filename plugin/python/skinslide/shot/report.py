@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from operator import itemgetter
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
 from skinslide.arrays.slider import version
 from skinslide.problems import Problem, counted, frame_text, lines_text, told
+from skinslide.shot.rows import Moments, Rows
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
@@ -47,6 +49,13 @@ MEASURES: dict[str, Callable[[PatchResult], float]] = {
 }
 
 
+def whole(document: Any) -> Any:
+    """A document with lists for what was to be there when it is asked for."""
+    if isinstance(document, dict):
+        return {name: whole(value) for name, value in document.items()}
+    return [whole(value) for value in document] if isinstance(document, list | Iterator) else document
+
+
 @dataclass
 class PatchReport:
     """One patch over all frames.
@@ -61,8 +70,8 @@ class PatchReport:
 
     info: PatchInfo
     frames: list[float | None] = field(default_factory=list)
-    results: list[PatchResult] = field(default_factory=list)
-    motion: dict[float | None, Roughness] = field(default_factory=dict)
+    results: Rows[PatchResult] = field(default_factory=lambda: Rows(PatchResult))
+    motion: Moments[Roughness] = field(default_factory=lambda: Moments(Roughness))
     least: dict[float | None, float] = field(default_factory=dict)
 
     def column(self, name: str) -> np.ndarray:
@@ -74,7 +83,7 @@ class PatchReport:
         Returns:
             Its values (frames,).
         """
-        return np.array([getattr(result, name) for result in self.results])
+        return self.results.column(name)
 
     @property
     def worst(self) -> int:
@@ -97,14 +106,14 @@ class PatchReport:
         """
         if not self.motion:
             return None
-        least = max(each.least for each in self.motion.values())
-        after = max(each.after for each in self.motion.values())
-        return max(least, after) / max(least, max(each.before for each in self.motion.values()))
+        least, before, after = (max(self.motion.rows.column(name).tolist()) for name in ("least", "before", "after"))
+        return max(least, after) / max(least, before)
 
     @property
     def roughest(self) -> float | None:
         """The frame at which the result moves most roughly; None of fewer than three frames."""
-        return max(self.motion, key=lambda frame: self.motion[frame].after, default=None)
+        after = self.motion.rows.column("after").tolist()
+        return max(zip(after, self.motion, strict=True), key=itemgetter(0), default=(0, None))[1]
 
     def share(self, frame: float | None) -> float | None:
         """Of the stretch that can be removed at a frame, what sliding removes.
@@ -116,7 +125,9 @@ class PatchReport:
             1 where nothing is left to gain, below 0 where sliding adds stretch; None where there is none to remove, or
             it was not searched for.
         """
-        result = self.results[self.frames.index(frame)]
+        return self._share(frame, self.results[self.frames.index(frame)])
+
+    def _share(self, frame: float | None, result: PatchResult) -> float | None:
         least = min(self.least.get(frame, np.inf), result.stretch_after)
         most = result.stretch_before - least
         return (result.stretch_before - result.stretch_after) / most if self.least and most > _NO_STRETCH else None
@@ -124,7 +135,8 @@ class PatchReport:
     @property
     def shares(self) -> list[float]:
         """The share at each frame that has one."""
-        return [share for share in map(self.share, self.frames) if share is not None]
+        found = map(self._share, self.frames, self.results) if self.least else ()
+        return [share for share in found if share is not None]
 
     def most(self, measure: str) -> tuple[float, float | None] | None:
         """How much of what a limit may be set to the patch has at most, and the frame.
@@ -154,13 +166,17 @@ class PatchReport:
 
     def as_dict(self) -> dict[str, Any]:
         """The same for JSON, with the largest and the mean of each field of the results."""
+        return whole(self.document())
+
+    def document(self) -> dict[str, Any]:
+        """The same, of which each frame is there when it is asked for."""
         fields = {name: self.column(name) for name in PatchResult._fields}
         worst = self.results[self.worst]
         return {
             **self.info._asdict(),
             "max": {name: values.max().item() for name, values in fields.items()},
             "mean": {name: values.mean().item() for name, values in fields.items()},
-            "frames": [self._frame_dict(*each) for each in zip(self.frames, self.results, strict=True)],
+            "frames": map(self._frame_dict, self.frames, self.results),
             "least_share": min(self.shares, default=None),
             "median_share": float(np.median(self.shares)) if self.shares else None,
             "roughness": self.roughness,
@@ -178,7 +194,7 @@ class PatchReport:
             "second_difference_before": motion.before if motion else None,
             "second_difference_after": motion.after if motion else None,
             "least_stretch": self.least.get(frame),
-            "share": self.share(frame),
+            "share": self._share(frame, result),
         }
 
     def problems(self, prim: str) -> list[Problem]:
@@ -306,7 +322,7 @@ class MeshReport:
             roughness: Of each patch.
         """
         for patch, own in zip(self.patches, roughness, strict=True):
-            patch.motion[frame] = own
+            patch.motion.add(frame, own)
 
     @property
     def frame_count(self) -> int:
@@ -315,13 +331,17 @@ class MeshReport:
 
     def as_dict(self) -> dict[str, Any]:
         """The same for JSON."""
+        return whole(self.document())
+
+    def document(self) -> dict[str, Any]:
+        """The same, of which each patch is there when it is asked for."""
         return {
             "prim": self.path,
             "vertex_count": self.vertex_count,
             "rest": self.rest_source,
             "welded": self.welded,
             "frames": self.patches[0].frames if self.patches else [],
-            "patches": [patch.as_dict() for patch in self.patches],
+            "patches": (patch.document() for patch in self.patches),
         }
 
 
@@ -362,12 +382,16 @@ class BakeReport:
 
     def as_dict(self) -> dict[str, Any]:
         """What `--json` prints, as record.schema.json beside this file says."""
+        return whole(self.document())
+
+    def document(self) -> dict[str, Any]:
+        """The same, of which each mesh is there when it is asked for: to be written piece by piece."""
         return {
             "record": RECORD,
             "version": version(),
             "resumed": self.resumed,
             "worst": {name: self._worst(name) for name in (*MEASURES, "roughness")},
-            "meshes": [mesh.as_dict() for mesh in self.meshes],
+            "meshes": (mesh.document() for mesh in self.meshes),
             "problems": [problem.as_dict() for problem in self.problems],
             **{name: value for made in self.made for name, value in made.as_dict().items()},
         }

@@ -213,7 +213,7 @@ def _left_out(chunks: Sequence[_Chunk], asked: list[float] | None) -> Iterator[P
         files = ", ".join(str(chunk.path) for chunk in chunks)
         yield Problem("error", "", None, missing[0], f"{_count(missing)} in none of {files}: {_spec(missing)}")
     for chunk in chunks if asked else ():
-        more = [frame for frame in chunk.record.frames if frame not in set(wanted)]
+        more = sorted(set(chunk.record.frames).difference(wanted))
         if more:
             message = f"{_count(more)} not asked for, but in {chunk.path}: {_spec(more)}"
             yield Problem("error", "", None, more[0], message)

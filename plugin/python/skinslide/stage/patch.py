@@ -218,7 +218,7 @@ def take_settings(
 
 
 class Painted:
-    """The primvars of a prim, of its parent, and so on, that have values or are blocked: listed once for all patches."""
+    """The primvars of a prim, of its parent, and so on that say something: listed once for all patches."""
 
     def __init__(self, prim: Usd.Prim):
         above = [prim]
