@@ -63,6 +63,14 @@ def _active(context: bpy.types.Context) -> tuple[str, tuple[int, ...]]:
     return thing.name if thing else "", (len(mesh.vertices), len(mesh.edges), len(mesh.polygons)) if mesh else ()
 
 
+def _is_edited(context: bpy.types.Context) -> bool:
+    """Whether one of Blender's own operators is at work in a mode, which then cannot be left: a stroke, a move."""
+    if context.mode == "OBJECT":
+        return False
+    names = [each.bl_idname for each in context.window.modal_operators]
+    return any(bpy.types.Operator.bl_rna_get_subclass_py(name) is None for name in names)
+
+
 def asked(operator: bpy.types.Operator, context: bpy.types.Context) -> set[str]:
     """Has Blender ask for the properties of an operator, and then do it."""
     return set(context.window_manager.invoke_props_dialog(operator))
@@ -127,7 +135,7 @@ class Waiting(bpy.types.Operator):
         if event.type == "ESC" and event.value == "PRESS" and not self.too_late:
             self._unwanted = True
             return RUNNING
-        if event.type != "TIMER" or not self._future.done():
+        if event.type != "TIMER" or not self._future.done() or _is_edited(context):
             return {"PASS_THROUGH"}
         if self._unwanted:
             return self._end(context, "CANCELLED", "WARNING", f"{self.bl_label}: ended by Esc; nothing was changed")

@@ -157,10 +157,11 @@ class Operator:
 class Window:
     """A context that notes timers and who waits for them, and is Blender's else."""
 
-    window = workspace = None
+    workspace = None
 
     def __init__(self):
         self.window_manager, self.timers, self.waiting = self, [], []
+        self.window, self.modal_operators = self, [SimpleNamespace(bl_idname="SKINSLIDE_OT_live")]
 
     def __getattr__(self, name: str):
         return getattr(bpy.context, name)
@@ -248,6 +249,19 @@ def test_esc_ends_it(window):
     late.too_late = True
     assert late.modal(window, ESC) == PASSED
     assert ended(late, window) == {"FINISHED"}
+
+
+def test_it_waits_for_what_is_edited(window):
+    """To leave edit mode while points are moved ends Blender."""
+    thing = sheet()
+    bpy.ops.object.mode_set(mode="EDIT")
+    operator = Operator(lambda: "found")
+    assert operator.execute(window) == RUNNING
+    operator._future.result()
+    window.modal_operators.append(SimpleNamespace(bl_idname="TRANSFORM_OT_translate"))
+    assert operator.modal(window, TIMER) == PASSED and not operator.written
+    window.modal_operators.pop()
+    assert ended(operator, window) == {"FINISHED"} and thing.mode == "EDIT"
 
 
 def test_blender_ends_it(window):
