@@ -70,8 +70,9 @@ def _faces(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
 
 def check(thing: bpy.types.Object) -> None:
     """Raises Fault for what has a scale of its own, by which lengths would differ from what is meant."""
-    if any(abs(scale - 1) > 1e-6 for scale in thing.scale):
-        scale = ", ".join(f"{each:g}" for each in thing.scale)
+    own = [a * b for a, b in zip(thing.scale, thing.delta_scale, strict=True)]
+    if any(abs(scale - 1) > 1e-6 for scale in own):
+        scale = ", ".join(f"{each:g}" for each in own)
         raise Fault(f"{thing.name} has the scale {scale}; apply it first (Object, Apply, Scale)")
 
 

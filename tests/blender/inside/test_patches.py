@@ -202,6 +202,56 @@ def rest_of(thing) -> np.ndarray:
     return fetched(thing).values["skinSlide:restPoints"].value
 
 
+# ---- Undo ----
+
+
+def everything(thing) -> dict:
+    """All that operators write on a mesh."""
+    mesh = thing.data
+    found = {name: value.value.tobytes() for name, value in fetched(thing).primvars.items()}
+    for attribute in mesh.attributes:
+        if attribute.data_type == "FLOAT":
+            found[attribute.name] = values(thing, attribute.name).tobytes()
+    patches = [(patch.name, patch.forceDensityRule) for patch in thing.skinslide.patches]
+    rest = fetched(thing).values.get("skinSlide:restPoints")
+    return found | {
+        "patches": patches,
+        "groups": list(thing.vertex_groups.keys()),
+        "rest": rest and rest.value.tobytes(),
+    }
+
+
+@pytest.mark.parametrize(
+    "name, arguments",
+    [
+        ("patch_from_faces", {"name": "other"}),
+        ("patch_from_group", {"name": "other", "group": "arm"}),
+        ("remove_patch", {}),
+        ("paint", {"what": "weight", "value": 0.5, "store": "GROUP"}),
+        ("paint", {"what": "hold", "value": 2.0, "store": "POINT"}),
+        ("paint_edges", {"value": 3.0}),
+        ("paint_curve", {"curve": "drawn", "distance": 0.2}),
+        ("rest_from_basis", {}),
+        ("rest_from_frame", {"frame": 1003}),
+    ],
+)
+def test_each_is_undone_and_done_again(name, arguments):
+    thing = sheet()
+    thing.vertex_groups.new(name="arm").add(list(range(5 * (SIDE + 1))), 0.7, "REPLACE")
+    line((-0.5, 0, 0), (0.5, 0, 0))
+    bpy.context.view_layer.objects.active = thing
+    make_patch(thing)
+    bpy.ops.ed.undo_push(message="before")
+    before = everything(thing)
+    assert getattr(bpy.ops.skinslide, name)(**arguments) == {"FINISHED"}
+    after = everything(thing)
+    bpy.ops.ed.undo_push(message=name)
+    bpy.ops.ed.undo()
+    assert everything(bpy.data.objects["sheet"]) == before != after
+    bpy.ops.ed.redo()
+    assert everything(bpy.data.objects["sheet"]) == after
+
+
 # ---- What is refused ----
 
 
@@ -224,6 +274,18 @@ def test_a_scale_that_is_not_applied():
     thing.scale = (1, 1, 2)
     select(thing, "faces", inner(thing))
     refused(bpy.ops.skinslide.patch_from_faces, thing, "has the scale 1, 1, 2; apply it first", name="a")
+
+
+def test_a_delta_scale():
+    """Which Blender keeps apart, and applies apart."""
+    thing = sheet()
+    thing.delta_scale, thing.rotation_euler = (2, 2, 2), (1, 2, 3)
+    select(thing, "faces", inner(thing))
+    bpy.context.view_layer.update()
+    refused(bpy.ops.skinslide.patch_from_faces, thing, "has the scale 2, 2, 2; apply it first", name="a")
+    thing.delta_scale = (1, 1, 1)
+    bpy.context.view_layer.update()
+    make_patch(thing)
 
 
 def test_a_selection_in_pieces():
