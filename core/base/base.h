@@ -26,6 +26,27 @@ void *ss_new(ss_memory *memory, int64_t count, size_t size);
 void ss_free(ss_memory *memory);
 #define SS_NEW(memory, type, count) ((type *)ss_new((memory), (count), sizeof(type)))
 
+/* ---- memory.c: room for arrays of several objects that are at work by turns ---- */
+
+/* An object takes its arrays one after the other whenever its turn comes: what is in them then is anything. Before, it takes them
+ * of a room of its own without bytes, which gives NULL and counts; so the shared one is made for the largest. */
+typedef struct ss_room {
+    ss_memory memory;
+    char *bytes;
+    int64_t size, taken; /* there are, or are asked for; of the turn so far */
+} ss_room;
+
+static inline void ss_begin_turn(ss_room *room) {
+    room->taken = 0;
+}
+/* The next array of a turn. */
+void *ss_take_room(ss_room *room, int64_t count, size_t size);
+#define SS_TAKE(room, type, count) ((type *)ss_take_room((room), (count), sizeof(type)))
+/* Asks for as much as was counted. */
+void ss_ask_room(ss_room *room, const ss_room *counted);
+/* Makes what was asked for. False where memory is short. */
+bool ss_make_room(ss_room *room);
+
 /* ---- error.c ---- */
 
 /* Fills error, where there is one, and returns status: `return ss_fail(error, SKINSLIDE_BAD_PATCH, "...", ...);` */

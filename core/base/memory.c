@@ -1,4 +1,4 @@
-/* An object's arrays, chained so that one call frees them: allocation is checked once, after all of it. */
+/* An object's arrays, chained so that one call frees them: allocation is checked once, after all of it. And room that objects share. */
 #include "base.h"
 
 #include <stdlib.h>
@@ -29,4 +29,20 @@ void ss_free(ss_memory *memory) {
         memory->blocks = block->next;
         free(block);
     }
+}
+
+void *ss_take_room(ss_room *room, int64_t count, size_t size) {
+    enum { LINE = 64 }; /* bytes of a line of a cache, which no two arrays share */
+    char *array = room->bytes ? room->bytes + room->taken : NULL;
+    room->taken += (count * (int64_t)size + LINE - 1) / LINE * LINE;
+    return array;
+}
+
+void ss_ask_room(ss_room *room, const ss_room *counted) {
+    room->size = counted->taken > room->size ? counted->taken : room->size;
+}
+
+bool ss_make_room(ss_room *room) {
+    room->bytes = SS_NEW(&room->memory, char, room->size);
+    return room->bytes != NULL;
 }

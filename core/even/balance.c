@@ -7,41 +7,52 @@
 #define STEPS        4
 #define LEAST_SQUARE 1e-12 /* of an edge's length over that at rest */
 
-skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error) {
+void ss_evener_lay_out(ss_evener *evener, ss_room *room) {
+    const ss_patch *patch = evener->sheet->patch;
+    int32_t vertices = patch->vertex_count, springs = evener->sheet->spring_count;
+    evener->next_weight = SS_TAKE(room, double, vertices);
+    evener->next_hold = SS_TAKE(room, double, vertices);
+    evener->moving = SS_TAKE(room, int32_t, vertices);
+    evener->bond = SS_TAKE(room, double, springs);
+    evener->bonds = SS_TAKE(room, double, vertices);
+    evener->load = SS_TAKE(room, double, vertices);
+    evener->crush = SS_TAKE(room, double, vertices);
+    ss_posed_lay_out(&evener->pose, patch, room);
+    evener->place = SS_TAKE(room, ss_place, vertices);
+    evener->at = ss_take_room(room, vertices, sizeof *evener->at);
+    evener->up = ss_take_room(room, vertices, sizeof *evener->up);
+    evener->slide = ss_take_room(room, vertices, sizeof *evener->slide);
+    evener->step = ss_take_room(room, vertices, sizeof *evener->step);
+    evener->part = SS_TAKE(room, double, vertices);
+    evener->reach = SS_TAKE(room, double, patch->faces.face_count);
+    evener->whole = ss_take_room(room, vertices, sizeof *evener->whole);
+    evener->anchor = SS_TAKE(room, double, vertices);
+    evener->stretch = SS_TAKE(room, double, springs);
+    evener->sorted = SS_TAKE(room, ss_weighted, springs);
+    ss_blocks_lay_out(evener->K, room);
+}
+
+skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_room *room, ss_evener **out,
+                                  skinslide_error *error) {
     ss_evener *evener = calloc(1, sizeof *evener);
     if (!evener)
         return ss_out_of_memory(error);
-    ss_memory *memory = &evener->memory;
-    int32_t vertices = sheet->patch->vertex_count;
+    ss_room counted = {0};
     evener->sheet = sheet, evener->temper = temper;
-    evener->paint = SS_NEW(memory, double, sheet->patch->faces.edge_count);
-    evener->weight = SS_NEW(memory, double, vertices), evener->next_weight = SS_NEW(memory, double, vertices);
-    evener->hold = SS_NEW(memory, double, vertices), evener->next_hold = SS_NEW(memory, double, vertices);
-    evener->moving = SS_NEW(memory, int32_t, vertices);
-    evener->bond = SS_NEW(memory, double, sheet->spring_count);
-    evener->bonds = SS_NEW(memory, double, vertices);
-    evener->load = SS_NEW(memory, double, vertices);
-    evener->crush = SS_NEW(memory, double, vertices);
-    evener->place = SS_NEW(memory, ss_place, vertices);
-    evener->at = ss_new(memory, vertices, sizeof *evener->at);
-    evener->up = ss_new(memory, vertices, sizeof *evener->up);
-    evener->slide = ss_new(memory, vertices, sizeof *evener->slide);
-    evener->step = ss_new(memory, vertices, sizeof *evener->step);
-    evener->part = SS_NEW(memory, double, vertices);
-    evener->reach = SS_NEW(memory, double, sheet->patch->faces.face_count);
-    evener->whole = ss_new(memory, vertices, sizeof *evener->whole);
-    evener->anchor = SS_NEW(memory, double, vertices);
-    evener->stretch = SS_NEW(memory, double, sheet->spring_count);
-    evener->sorted = SS_NEW(memory, ss_weighted, sheet->spring_count);
-    ss_posed_allocate(memory, sheet->patch, &evener->pose);
-    skinslide_status status = memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    evener->paint = SS_NEW(&evener->memory, double, sheet->patch->faces.edge_count);
+    evener->weight = SS_NEW(&evener->memory, double, sheet->patch->vertex_count);
+    evener->hold = SS_NEW(&evener->memory, double, sheet->patch->vertex_count);
+    skinslide_status status = evener->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
-        status = ss_blocks_create(sheet->system, &evener->K, error);
-    if (status)
+        status = ss_blocks_create(sheet->system, true, room, &evener->K, error);
+    if (status) {
         ss_evener_destroy(evener);
-    else
-        *out = evener;
-    return status;
+        return status;
+    }
+    ss_evener_lay_out(evener, &counted);
+    ss_ask_room(room, &counted);
+    *out = evener;
+    return SKINSLIDE_OK;
 }
 
 void ss_evener_destroy(ss_evener *evener) {
@@ -165,9 +176,9 @@ static bool stays(const ss_evener *evener, int32_t vertex) {
 void ss_write_places(const ss_evener *evener, ss_place *places) {
     const ss_patch *patch = evener->sheet->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
-        places[i] = evener->place[patch->free_vertex[i]];
-        if (evener->weight[patch->free_vertex[i]] == 0 || stays(evener, patch->free_vertex[i]))
-            places[i].triangle = SS_STAYS;
+        int32_t v = patch->free_vertex[i];
+        bool slides = evener->weight[v] != 0 && !stays(evener, v);
+        places[i] = slides ? evener->place[v] : ss_place_staying((double[2]){0, 0});
     }
 }
 
@@ -184,6 +195,7 @@ bool ss_take_step(ss_evener *evener) {
 }
 
 void ss_set_out(ss_evener *evener, const ss_frame *frame) {
+    memset(evener->whole, 0, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
     ss_take_points(evener->sheet->patch, frame->points, evener->pose.point);
     ss_go_home(evener);
     evener->scale = find_scale(evener, frame->paint);

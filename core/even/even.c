@@ -13,6 +13,7 @@ typedef struct even_rest {
 typedef struct even_slide {
     ss_slide head;
     ss_memory memory;
+    ss_room *room;
     ss_evener *evener;
 } even_slide;
 
@@ -60,15 +61,16 @@ static void close_slide(ss_slide *slide) {
     free(own);
 }
 
-static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
-                                   skinslide_error *error) {
+static skinslide_status open_slide(const ss_rest *rest, ss_room *room, struct ss_idbuffer *idbuffer, int32_t number,
+                                   ss_slide **out, skinslide_error *error) {
     (void)idbuffer, (void)number; /* nothing is looked up */
     even_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
+    own->room = room;
     skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
     if (!status)
-        status = ss_evener_create(ss_sheet_of(rest), temper, &own->evener, error);
+        status = ss_evener_create(ss_sheet_of(rest), temper, room, &own->evener, error);
     if (status)
         close_slide(&own->head);
     else
@@ -79,25 +81,28 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
 /* ---- In every frame ---- */
 
 void ss_end_slide(ss_evener *evener, const ss_frame *frame, ss_slide *slide, skinslide_patch_result *result) {
-    double time = ss_now();
     ss_write_places(evener, slide->places);
     if (frame->limits)
         ss_limit_ways(evener, frame, slide->places);
     result->folded_faces = ss_count_turned_over(evener->sheet, slide->places, evener->at, evener->up);
-    ss_lap(&time, &result->relax_seconds);
 }
 
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
+    even_slide *own = (even_slide *)slide;
     double time = ss_now();
-    skinslide_status status = ss_even_out(((even_slide *)slide)->evener, frame, &result->cut_steps, error);
+    ss_begin_turn(own->room);
+    ss_evener_lay_out(own->evener, own->room);
+    skinslide_status status = ss_even_out(own->evener, frame, &result->cut_steps, error);
+    if (!status && !ss_is_set(frame->stop))
+        ss_end_slide(own->evener, frame, slide, result);
     ss_lap(&time, &result->relax_seconds);
     return status;
 }
 
-static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    (void)error;
-    ss_end_slide(((even_slide *)slide)->evener, frame, slide, result);
+skinslide_status ss_finish_nothing(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result,
+                                   skinslide_error *error) {
+    (void)slide, (void)frame, (void)result, (void)error;
     return SKINSLIDE_OK;
 }
 
-const ss_rule ss_even_rule = {create, destroy, open_slide, close_slide, start, finish};
+const ss_rule ss_even_rule = {create, destroy, open_slide, close_slide, start, ss_finish_nothing};

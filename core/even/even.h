@@ -69,19 +69,19 @@ typedef struct ss_evener {
     ss_memory memory;
     const ss_sheet *sheet;
     ss_temper temper;
-    ss_blocks *K; /* factored for the paint, weights and holds below */
+    ss_blocks *K; /* factored for the paint, weights and holds below, from frame to frame */
     bool factored;
     double *paint;                   /* [edge_count] */
     double *weight, *hold;           /* [vertex_count]; the weight is a share of the largest, and 0 of held vertices */
+    double most_weight;              /* the largest of the frame; what follows is laid out for a frame alone */
     double *next_weight, *next_hold; /* of the frame that begins */
     int32_t *moving;                 /* [vertex_count] the unknown, or -1 where it has no weight */
     double *bond;                    /* [spring_count] what holds its ends together, over eta */
     double *bonds;                   /* [vertex_count] the sums of that over its springs ... */
     double *load;                    /* [vertex_count] ... and of k / l^2 */
-    double most_weight;              /* the largest of the frame */
     double *crush;                   /* [vertex_count] how much the cache crushes skin */
     ss_posed pose;                   /* its facets are set where ways are limited */
-    ss_place *place;                 /* [vertex_count] where each vertex is */
+    ss_place *place;                 /* [vertex_count] where each vertex is, if its weight is not 0 */
     double (*at)[3];                 /* [vertex_count] of it in the pose */
     double (*up)[3];                 /* [vertex_count] scratch for normals */
     double (*slide)[2];              /* [vertex_count] d */
@@ -95,8 +95,12 @@ typedef struct ss_evener {
     ss_weighted *sorted;             /* [spring_count] */
 } ss_evener;
 
-skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_evener **out, skinslide_error *error);
+/* Asks the room for its part. */
+skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_room *room, ss_evener **out,
+                                  skinslide_error *error);
 void ss_evener_destroy(ss_evener *evener);
+/* Begins a turn. */
+void ss_evener_lay_out(ss_evener *evener, ss_room *room);
 /* Slides every vertex from its own place. Adds to *cut how many of the steps were cut short by a face. Fails with SINGULAR. */
 skinslide_status ss_even_out(ss_evener *evener, const ss_frame *frame, int32_t *cut, skinslide_error *error);
 
@@ -185,6 +189,9 @@ const ss_sheet *ss_sheet_of(const ss_rest *rest);
 skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error);
 /* Writes where the evener has vertices, no farther than the frame lets them be, and counts what turned over. */
 void ss_end_slide(ss_evener *evener, const ss_frame *frame, ss_slide *slide, skinslide_patch_result *result);
+/* For a rule that is done once it has started: nothing of a frame is left in the room. */
+skinslide_status ss_finish_nothing(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result,
+                                   skinslide_error *error);
 
 extern const ss_rule ss_even_rule;
 

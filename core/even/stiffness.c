@@ -104,12 +104,12 @@ skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, con
     bool changed = take(evener->paint, frame->paint, patch->faces.edge_count);
     changed |= take(evener->weight, weight, patch->vertex_count);
     changed |= take(evener->hold, hold, patch->vertex_count);
-    if (evener->factored && !changed)
-        return SKINSLIDE_OK;
-    evener->factored = false;
     list_moving(evener);
     list_bonds(evener);
     ss_find_anchors(evener);
+    if (evener->factored && !changed)
+        return SKINSLIDE_OK;
+    evener->factored = false;
     add_stiffness(evener);
     if (!ss_blocks_factor(evener->K, frame->stop))
         return ss_fail(error, SKINSLIDE_SINGULAR, "%s: force densities, holds and weights are too far apart to slide with",

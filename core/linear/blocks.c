@@ -5,17 +5,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skinslide_error *error) {
+void ss_blocks_lay_out(ss_blocks *blocks, ss_room *room) {
+    blocks->own = ss_take_room(room, blocks->system->n, sizeof *blocks->own);
+    blocks->between = ss_take_room(room, blocks->system->edge_count, sizeof *blocks->between);
+    blocks->right = ss_take_room(room, blocks->system->n, sizeof *blocks->right);
+    ss_frontal_lay_out(blocks->frontal, room);
+}
+
+static skinslide_status find_room(ss_blocks *blocks, ss_room *room, skinslide_error *error) {
+    ss_room counted = {0};
+    ss_blocks_lay_out(blocks, &counted);
+    ss_ask_room(room ? room : &blocks->own_room, &counted);
+    if (room)
+        return SKINSLIDE_OK;
+    if (!ss_make_room(&blocks->own_room))
+        return ss_out_of_memory(error);
+    ss_blocks_lay_out(blocks, &blocks->own_room);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_blocks_create(const ss_system *system, bool keeps, ss_room *room, ss_blocks **out, skinslide_error *error) {
     ss_blocks *blocks = calloc(1, sizeof *blocks);
     if (!blocks)
         return ss_out_of_memory(error);
     blocks->system = system;
-    blocks->own = ss_new(&blocks->memory, system->n, sizeof *blocks->own);
-    blocks->between = ss_new(&blocks->memory, system->edge_count, sizeof *blocks->between);
-    blocks->right = ss_new(&blocks->memory, system->n, sizeof *blocks->right);
-    skinslide_status status = blocks->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    skinslide_status status = ss_frontal_create(system, 2, false, keeps, &blocks->frontal, error);
     if (!status)
-        status = ss_frontal_create(system, 2, false, &blocks->frontal, error);
+        status = find_room(blocks, room, error);
     if (status)
         ss_blocks_destroy(blocks);
     else
@@ -27,7 +43,7 @@ void ss_blocks_destroy(ss_blocks *blocks) {
     if (!blocks)
         return;
     ss_frontal_destroy(blocks->frontal);
-    ss_free(&blocks->memory);
+    ss_free(&blocks->own_room.memory);
     free(blocks);
 }
 

@@ -7,16 +7,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-skinslide_status ss_factor_create(const ss_system *system, ss_factor **out, skinslide_error *error) {
+void ss_factor_lay_out(ss_factor *factor, ss_room *room) {
+    const ss_system *system = factor->frontal->system;
+    factor->entry = SS_TAKE(room, double, system->edge_count);
+    factor->slack = SS_TAKE(room, double, system->n);
+    factor->right = ss_take_room(room, system->n, sizeof *factor->right);
+    ss_frontal_lay_out(factor->frontal, room);
+}
+
+static skinslide_status find_room(ss_factor *factor, ss_room *room, skinslide_error *error) {
+    ss_room counted = {0};
+    ss_factor_lay_out(factor, &counted);
+    ss_ask_room(room ? room : &factor->own, &counted);
+    if (room)
+        return SKINSLIDE_OK;
+    if (!ss_make_room(&factor->own))
+        return ss_out_of_memory(error);
+    ss_factor_lay_out(factor, &factor->own);
+    return SKINSLIDE_OK;
+}
+
+skinslide_status ss_factor_create(const ss_system *system, ss_room *room, ss_factor **out, skinslide_error *error) {
     ss_factor *factor = calloc(1, sizeof *factor);
     if (!factor)
         return ss_out_of_memory(error);
-    factor->entry = SS_NEW(&factor->memory, double, system->edge_count);
-    factor->slack = SS_NEW(&factor->memory, double, system->n);
-    factor->right = ss_new(&factor->memory, system->n, sizeof *factor->right);
-    skinslide_status status = factor->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    skinslide_status status = ss_frontal_create(system, 1, true, false, &factor->frontal, error);
     if (!status)
-        status = ss_frontal_create(system, 1, true, &factor->frontal, error);
+        status = find_room(factor, room, error);
     if (status)
         ss_factor_destroy(factor);
     else
@@ -28,7 +45,7 @@ void ss_factor_destroy(ss_factor *factor) {
     if (!factor)
         return;
     ss_frontal_destroy(factor->frontal);
-    ss_free(&factor->memory);
+    ss_free(&factor->own.memory);
     free(factor);
 }
 

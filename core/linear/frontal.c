@@ -38,18 +38,13 @@ static size_t place_in_panel(const ss_front *front, const ss_shape *s, int32_t b
     return 4 * (size_t)s->columns * (place / 4) + place % 4;
 }
 
-/* What memory is wanted: of all panels and of one, of both stacks, and of columns and rows below of one front. */
-typedef struct wanted {
-    int64_t panels, panel, stack[2];
-    int32_t columns, below;
-} wanted;
-
 static int64_t most(int64_t a, int64_t b) {
     return a > b ? a : b;
 }
 
 /* The place of a front's panel among all, and of its update in its stack, of which end is so far. */
-static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2], wanted *room) {
+static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2]) {
+    ss_extent *room = &frontal->extent;
     ss_shape s = ss_shape_of(frontal, &frontal->system->fronts[f]);
     int64_t size = 4 * (int64_t)s.columns * s.tiles, *own = &end[frontal->odd[f]];
     frontal->panel[f] = room->panels, room->panels += size;
@@ -62,13 +57,13 @@ static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2], wanted *
 
 /* Updates are in two stacks, those of fronts at even depths and those at odd ones: so a front's children are at the end of theirs
  * when its own update is begun, and are taken off it. */
-static void place_fronts(ss_frontal *frontal, wanted *room) {
+static void place_fronts(ss_frontal *frontal) {
     const ss_front *fronts = frontal->system->fronts;
     int64_t end[2] = {0, 0};
     for (int32_t f = frontal->system->front_count - 1; f >= 0; f--)
         frontal->odd[f] = fronts[f].parent >= 0 && !frontal->odd[fronts[f].parent];
     for (int32_t f = 0; f < frontal->system->front_count; f++) {
-        place_front(frontal, f, end, room);
+        place_front(frontal, f, end);
         for (int32_t child = fronts[f].child; child >= 0; child = fronts[child].next)
             end[!frontal->odd[f]] = frontal->update[child];
     }
@@ -85,7 +80,7 @@ static void place_entries(ss_frontal *frontal) {
     }
 }
 
-static bool allocate_places(ss_frontal *frontal) {
+static bool allocate(ss_frontal *frontal) {
     ss_memory *memory = &frontal->memory;
     int32_t count = frontal->system->front_count;
     frontal->panel = SS_NEW(memory, int64_t, count);
@@ -95,34 +90,33 @@ static bool allocate_places(ss_frontal *frontal) {
     return !memory->failed;
 }
 
-static bool allocate_room(ss_frontal *frontal, const wanted *room) {
-    ss_memory *memory = &frontal->memory;
-    frontal->L = SS_NEW(memory, double, room->panels);
-    frontal->force = SS_NEW(memory, double, room->panel);
+void ss_frontal_lay_out(ss_frontal *frontal, ss_room *room) {
+    const ss_extent *extent = &frontal->extent;
+    if (!frontal->keeps)
+        frontal->L = SS_TAKE(room, double, extent->panels);
+    frontal->force = SS_TAKE(room, double, extent->panel);
     for (int k = 0; k < 2; k++)
-        frontal->stack[k] = SS_NEW(memory, double, room->stack[k]);
-    frontal->to_panel = SS_NEW(memory, ptrdiff_t, room->below);
-    frontal->to_update = SS_NEW(memory, ptrdiff_t, room->below);
-    frontal->x = SS_NEW(memory, double, 2 * (int64_t)room->columns);
-    frontal->below = SS_NEW(memory, double, 2 * (int64_t)room->below);
-    return !memory->failed;
+        frontal->stack[k] = SS_TAKE(room, double, extent->stack[k]);
+    frontal->to_panel = SS_TAKE(room, ptrdiff_t, extent->below);
+    frontal->to_update = SS_TAKE(room, ptrdiff_t, extent->below);
+    frontal->x = SS_TAKE(room, double, 2 * (int64_t)extent->columns);
+    frontal->below = SS_TAKE(room, double, 2 * (int64_t)extent->below);
 }
 
-skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, ss_frontal **out,
+skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, bool keeps, ss_frontal **out,
                                    skinslide_error *error) {
     ss_frontal *frontal = calloc(1, sizeof *frontal);
     if (!frontal)
         return ss_out_of_memory(error);
-    wanted room = {0};
-    frontal->system = system, frontal->block = block, frontal->dominant = dominant;
+    frontal->system = system, frontal->block = block, frontal->dominant = dominant, frontal->keeps = keeps;
     frontal->kernels = ss_kernels_of(true);
-    bool good = allocate_places(frontal);
-    if (good) {
-        place_fronts(frontal, &room);
+    if (allocate(frontal)) {
+        place_fronts(frontal);
         place_entries(frontal);
-        good = allocate_room(frontal, &room);
+        if (keeps)
+            frontal->L = SS_NEW(&frontal->memory, double, frontal->extent.panels);
     }
-    if (!good) {
+    if (frontal->memory.failed) {
         ss_frontal_destroy(frontal);
         return ss_out_of_memory(error);
     }

@@ -177,7 +177,7 @@ static skinslide_status check_blocks(const ss_rows *square, const ss_net *net, c
     ss_blocks *blocks = NULL;
     skinslide_status status = ss_system_create(net, label, &system, error);
     if (!status)
-        status = ss_blocks_create(system, &blocks, error);
+        status = ss_blocks_create(system, false, NULL, &blocks, error);
     if (!status) {
         fill_blocks(square, blocks);
         if (!ss_blocks_factor(blocks, &going_on))

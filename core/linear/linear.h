@@ -102,6 +102,12 @@ const ss_kernels *ss_kernels_of(bool fastest);
 
 /* ---- frontal.c, substitute.c: L D L' ---- */
 
+/* Numbers that there are in all panels, in the largest, and in each stack at most; columns of a front and rows below, at most. */
+typedef struct ss_extent {
+    int64_t panels, panel, stack[2];
+    int32_t columns, below;
+} ss_extent;
+
 /* One a thread. */
 typedef struct ss_frontal {
     ss_memory memory;
@@ -109,19 +115,25 @@ typedef struct ss_frontal {
     int32_t block; /* rows of an entry: 1 or 2 */
     bool dominant; /* pivots are sums, and right sides are carried along: see factor.c */
     const ss_kernels *kernels;
+    ss_extent extent;
     int64_t *panel, *update; /* [front_count] where the columns of each front are in L, and its update is in a stack */
     uint8_t *odd;            /* [front_count] in which of the two */
-    double *L, *stack[2];
-    double *force;        /* [largest panel] a panel before it was divided by its pivots */
-    size_t *at;           /* [edge_count] where the entries of the matrix are in the panels of their fronts */
-    ptrdiff_t *to_panel;  /* [most rows below] where rows of a child go, in a panel ... */
-    ptrdiff_t *to_update; /* ... and in an update, below 0 where they are columns */
-    double *x, *below;    /* [2][most columns], [2][most rows below] */
+    size_t *at;              /* [edge_count] where the entries of the matrix are in the panels of their fronts */
+    bool keeps;              /* L is in memory of its own */
+    double *L;               /* [panels] */
+    double *stack[2];        /* [stack] */
+    double *force;           /* [panel] a panel before it was divided by its pivots */
+    ptrdiff_t *to_panel;     /* [below] where rows of a child go, in a panel ... */
+    ptrdiff_t *to_update;    /* ... and in an update, below 0 where they are columns */
+    double *x, *below;       /* [2][columns], [2][below] */
 } ss_frontal;
 
-skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, ss_frontal **out,
+/* keeps: what it factored is there at its next turn. */
+skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, bool keeps, ss_frontal **out,
                                    skinslide_error *error);
 void ss_frontal_destroy(ss_frontal *frontal);
+/* Begins a turn. */
+void ss_frontal_lay_out(ss_frontal *frontal, ss_room *room);
 ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front);
 /* False where a pivot is not a number to divide by. entries is [edge_count]; slack [n], right [n] is carried along. */
 bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double *slack, const double (*right)[2]);
@@ -139,15 +151,18 @@ void ss_substitute_back(ss_frontal *frontal, bool carried, double (*right)[2]);
 
 /* One a thread. */
 typedef struct ss_factor {
-    ss_memory memory;
+    ss_room own;
     ss_frontal *frontal;
     double *entry;      /* [edge_count] those off the diagonal with their signs turned: all >= 0 */
     double *slack;      /* [n] what of each pivot pulls towards fixed vertices */
     double (*right)[2]; /* [n] right sides, then solutions */
 } ss_factor;
 
-skinslide_status ss_factor_create(const ss_system *system, ss_factor **out, skinslide_error *error);
+/* Asks a room for its part; NULL: it has a room of its own, and a single turn. */
+skinslide_status ss_factor_create(const ss_system *system, ss_room *room, ss_factor **out, skinslide_error *error);
 void ss_factor_destroy(ss_factor *factor);
+/* Begins a turn. */
+void ss_factor_lay_out(ss_factor *factor, ss_room *room);
 /* Empties slack and right, to be filled as entry is. */
 void ss_factor_clear(ss_factor *factor);
 /* False where a pivot is not a number to divide by. */
@@ -161,7 +176,7 @@ bool ss_factorise_and_solve(ss_factor *factor);
 
 /* A block [2][2] of a free vertex with itself, or of the two ends of an edge. */
 typedef struct ss_blocks {
-    ss_memory memory;
+    ss_room own_room;
     const ss_system *system;
     ss_frontal *frontal;
     double (*own)[4];     /* [n] */
@@ -169,8 +184,10 @@ typedef struct ss_blocks {
     double (*right)[2];   /* [n] right side, then the solution */
 } ss_blocks;
 
-skinslide_status ss_blocks_create(const ss_system *system, ss_blocks **out, skinslide_error *error);
+/* As ss_factor_create. keeps: what it factored is there at its next turn. */
+skinslide_status ss_blocks_create(const ss_system *system, bool keeps, ss_room *room, ss_blocks **out, skinslide_error *error);
 void ss_blocks_destroy(ss_blocks *blocks);
+void ss_blocks_lay_out(ss_blocks *blocks, ss_room *room);
 void ss_blocks_clear(ss_blocks *blocks);
 /* The place of a vertex in right, -1 where it is fixed. */
 static inline int32_t ss_blocks_unknown(const ss_blocks *blocks, int32_t vertex) {

@@ -57,7 +57,7 @@ static skinslide_status build(const ss_net *net, const char *label, double stiff
     ss_factor *factor = NULL;
     skinslide_status status = ss_system_create(net, label, &springs->system, error);
     if (!status)
-        status = ss_factor_create(springs->system, &factor, error);
+        status = ss_factor_create(springs->system, NULL, &factor, error);
     if (!status) {
         fill(springs->system, stiffness, own, factor);
         status = ss_factorise(factor) ? keep(factor->frontal, springs, error)

@@ -53,7 +53,7 @@ skinslide_status ss_embed_once(const ss_net *net, const char *label, const doubl
     ss_factor *factor = NULL;
     skinslide_status status = ss_system_create(net, label, &system, error);
     if (!status)
-        status = ss_factor_create(system, &factor, error);
+        status = ss_factor_create(system, NULL, &factor, error);
     if (!status)
         status = ss_embed(system, factor, density, uv, error);
     ss_factor_destroy(factor);

@@ -15,16 +15,17 @@ typedef struct plane_rest {
 typedef struct plane_slide {
     ss_slide head;
     ss_memory memory;
+    ss_room *room; /* of an embedding: */
     ss_factor *factor;
+    double (*own_rest_uv)[2]; /* [vertex_count] U0 with the frame's paint */
+    double *density;          /* [edge_count] */
     ss_locator *locator;
     ss_traveller *traveller;    /* NULL before the first limit */
     ss_idbuffer *idbuffer;      /* NULL: nothing proposes faces */
     int32_t number;             /* in it */
     ss_candidates *candidates;  /* [free_count] where it does */
     const double (*rest_uv)[2]; /* that of rest, or own_rest_uv */
-    double (*own_rest_uv)[2];   /* [vertex_count] U0 with the frame's paint */
     double (*uv)[2];            /* [vertex_count] Ud, the head's */
-    double *density;            /* [edge_count] */
 } plane_slide;
 
 static const ss_system *system_of(const plane_slide *own) {
@@ -38,7 +39,7 @@ static skinslide_status embed_rest(plane_rest *own, skinslide_error *error) {
     ss_memory scratch = {0};
     ss_factor *factor = NULL;
     double *density = SS_NEW(&scratch, double, patch->faces.edge_count);
-    skinslide_status status = density ? ss_factor_create(own->system, &factor, error) : ss_out_of_memory(error);
+    skinslide_status status = density ? ss_factor_create(own->system, NULL, &factor, error) : ss_out_of_memory(error);
     if (!status) {
         ss_force_density(patch, patch->rest_length, own->head.paint, density);
         status = ss_embed(own->system, factor, density, own->uv, error);
@@ -98,22 +99,31 @@ static void copy_rest(const ss_rest *rest, double (*uv)[2]) {
     memcpy(uv, rest->uv, (size_t)rest->patch->vertex_count * sizeof *uv);
 }
 
+static void lay_out(plane_slide *own, ss_room *room) {
+    const ss_patch *patch = own->head.rest->patch;
+    ss_factor_lay_out(own->factor, room);
+    own->own_rest_uv = ss_take_room(room, patch->vertex_count, sizeof *own->own_rest_uv);
+    own->density = SS_TAKE(room, double, patch->faces.edge_count);
+}
+
 static skinslide_status allocate(plane_slide *own, skinslide_error *error) {
     const ss_patch *patch = own->head.rest->patch;
     ss_memory *memory = &own->memory;
     own->uv = ss_new(memory, patch->vertex_count, sizeof *own->uv);
     own->head.asked = ss_new(memory, patch->free_count, sizeof *own->head.asked);
     own->head.places = SS_NEW(memory, ss_place, patch->free_count);
-    own->own_rest_uv = ss_new(memory, patch->vertex_count, sizeof *own->own_rest_uv);
-    own->density = SS_NEW(memory, double, patch->faces.edge_count);
     if (own->idbuffer)
         own->candidates = ss_new(memory, patch->free_count, sizeof *own->candidates);
     if (memory->failed)
         return ss_out_of_memory(error);
     own->head.flat.uv = (const double(*)[2])own->uv;
     copy_rest(own->head.rest, own->uv);
-    copy_rest(own->head.rest, own->own_rest_uv);
-    skinslide_status status = ss_factor_create(system_of(own), &own->factor, error);
+    skinslide_status status = ss_factor_create(system_of(own), own->room, &own->factor, error);
+    ss_room counted = {0};
+    if (!status) {
+        lay_out(own, &counted);
+        ss_ask_room(own->room, &counted);
+    }
     return status ? status : ss_locator_create(patch, &own->locator, error);
 }
 
@@ -126,12 +136,12 @@ static void close_slide(ss_slide *slide) {
     free(own);
 }
 
-static skinslide_status open_slide(const ss_rest *rest, ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
+static skinslide_status open_slide(const ss_rest *rest, ss_room *room, ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
                                    skinslide_error *error) {
     plane_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
-    own->head.rest = rest, own->idbuffer = idbuffer, own->number = number;
+    own->head.rest = rest, own->room = room, own->idbuffer = idbuffer, own->number = number;
     skinslide_status status = allocate(own, error);
     if (status)
         close_slide(&own->head);
@@ -148,6 +158,7 @@ static skinslide_status choose_rest(plane_slide *own, const ss_frame *frame, ski
     own->rest_uv = rest->uv;
     if (frame->paint == rest->paint)
         return SKINSLIDE_OK;
+    copy_rest(rest, own->own_rest_uv);
     own->rest_uv = (const double(*)[2])own->own_rest_uv;
     ss_force_density(rest->patch, rest->patch->rest_length, frame->paint, own->density);
     return ss_embed(system_of(own), own->factor, own->density, own->own_rest_uv, error);
@@ -169,6 +180,8 @@ static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_
     plane_slide *own = (plane_slide *)slide;
     const ss_patch *patch = slide->rest->patch;
     double time = ss_now();
+    ss_begin_turn(own->room);
+    lay_out(own, own->room);
     skinslide_status status = choose_rest(own, frame, error);
     if (status)
         return status;

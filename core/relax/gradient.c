@@ -78,4 +78,6 @@ void ss_find_axes(ss_relaxer *relaxer) {
     for (int32_t v = 0; v < relaxer->evener->sheet->patch->vertex_count; v++)
         if (relaxer->evener->weight[v] > 0)
             set_axes(relaxer, v);
+        else
+            memset(relaxer->axis[v], 0, sizeof relaxer->axis[v]);
 }

@@ -9,26 +9,32 @@
 
 static const ss_temper temper = {.hold = 0.3, .most_lost = 0.35, .least_area = 0.25};
 
-skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_relaxer **out, skinslide_error *error) {
+void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room) {
+    int32_t vertices = relaxer->evener->sheet->patch->vertex_count;
+    ss_evener_lay_out(relaxer->evener, room);
+    ss_blocks_lay_out(relaxer->blocks, room);
+    relaxer->gradient = ss_take_room(room, vertices, sizeof *relaxer->gradient);
+    relaxer->axis = ss_take_room(room, vertices, sizeof *relaxer->axis);
+    relaxer->even = ss_take_room(room, vertices, sizeof *relaxer->even);
+    relaxer->anchor = SS_TAKE(room, double, vertices);
+}
+
+skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_room *room, ss_relaxer **out, skinslide_error *error) {
     ss_relaxer *relaxer = calloc(1, sizeof *relaxer);
     if (!relaxer)
         return ss_out_of_memory(error);
-    ss_memory *memory = &relaxer->memory;
-    int32_t vertices = sheet->patch->vertex_count;
-    relaxer->gradient = ss_new(memory, vertices, sizeof *relaxer->gradient);
-    relaxer->axis = ss_new(memory, vertices, sizeof *relaxer->axis);
-    relaxer->even = ss_new(memory, vertices, sizeof *relaxer->even);
-    relaxer->anchor = SS_NEW(memory, double, vertices);
-    skinslide_status status = memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    ss_room counted = {0};
+    skinslide_status status = ss_evener_create(sheet, temper, room, &relaxer->evener, error);
     if (!status)
-        status = ss_evener_create(sheet, temper, &relaxer->evener, error);
-    if (!status)
-        status = ss_blocks_create(sheet->system, &relaxer->blocks, error);
-    if (status)
+        status = ss_blocks_create(sheet->system, false, room, &relaxer->blocks, error);
+    if (status) {
         ss_relaxer_destroy(relaxer);
-    else
-        *out = relaxer;
-    return status;
+        return status;
+    }
+    ss_relaxer_lay_out(relaxer, &counted);
+    ss_ask_room(room, &counted);
+    *out = relaxer;
+    return SKINSLIDE_OK;
 }
 
 void ss_relaxer_destroy(ss_relaxer *relaxer) {
@@ -36,7 +42,6 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
         return;
     ss_blocks_destroy(relaxer->blocks);
     ss_evener_destroy(relaxer->evener);
-    ss_free(&relaxer->memory);
     free(relaxer);
 }
 

@@ -17,17 +17,19 @@
 
 /* Memory of one thread for one patch. */
 typedef struct ss_relaxer {
-    ss_memory memory;
-    ss_evener *evener; /* where skin is */
-    ss_blocks *blocks;
+    ss_evener *evener;        /* where skin is */
+    ss_blocks *blocks;        /* it and what follows are laid out for a frame alone */
     double (*gradient)[3][3]; /* [vertex_count] how a point of the pose moves with the place on rest that it is of */
     double (*axis)[2][3];     /* [vertex_count] how each vertex moves in the pose by its unknowns */
     double (*even)[2];        /* [vertex_count] d_even */
     double *anchor;           /* [vertex_count] a */
 } ss_relaxer;
 
-skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_relaxer **out, skinslide_error *error);
+/* Asks the room for its part. */
+skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_room *room, ss_relaxer **out, skinslide_error *error);
 void ss_relaxer_destroy(ss_relaxer *relaxer);
+/* Begins a turn. */
+void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room);
 /* Slides every vertex from its own place. Adds to *cut how many steps were cut short by a face. Returns through *steps how many
  * were taken on the pose: three, where the model of each can be solved. Fails with SINGULAR. */
 skinslide_status ss_relax(ss_relaxer *relaxer, const ss_frame *frame, int32_t *steps, int32_t *cut, skinslide_error *error);

@@ -6,6 +6,7 @@
 typedef struct relaxed_slide {
     ss_slide head;
     ss_memory memory;
+    ss_room *room;
     ss_relaxer *relaxer;
 } relaxed_slide;
 
@@ -32,15 +33,16 @@ static void close_slide(ss_slide *slide) {
     free(own);
 }
 
-static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
-                                   skinslide_error *error) {
+static skinslide_status open_slide(const ss_rest *rest, ss_room *room, struct ss_idbuffer *idbuffer, int32_t number,
+                                   ss_slide **out, skinslide_error *error) {
     (void)idbuffer, (void)number; /* nothing is looked up */
     relaxed_slide *own = calloc(1, sizeof *own);
     if (!own)
         return ss_out_of_memory(error);
+    own->room = room;
     skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
     if (!status)
-        status = ss_relaxer_create(ss_sheet_of(rest), &own->relaxer, error);
+        status = ss_relaxer_create(ss_sheet_of(rest), room, &own->relaxer, error);
     if (status)
         close_slide(&own->head);
     else
@@ -51,17 +53,15 @@ static skinslide_status open_slide(const ss_rest *rest, struct ss_idbuffer *idbu
 /* ---- In every frame ---- */
 
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    ss_relaxer *relaxer = ((relaxed_slide *)slide)->relaxer;
+    relaxed_slide *own = (relaxed_slide *)slide;
     double time = ss_now();
-    skinslide_status status = ss_relax(relaxer, frame, &result->relax_steps, &result->cut_steps, error);
+    ss_begin_turn(own->room);
+    ss_relaxer_lay_out(own->relaxer, own->room);
+    skinslide_status status = ss_relax(own->relaxer, frame, &result->relax_steps, &result->cut_steps, error);
+    if (!status && !ss_is_set(frame->stop))
+        ss_end_slide(own->relaxer->evener, frame, slide, result);
     ss_lap(&time, &result->relax_seconds);
     return status;
 }
 
-static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    (void)error;
-    ss_end_slide(((relaxed_slide *)slide)->relaxer->evener, frame, slide, result);
-    return SKINSLIDE_OK;
-}
-
-const ss_rule ss_relaxed_rule = {create, destroy, open_slide, close_slide, start, finish};
+const ss_rule ss_relaxed_rule = {create, destroy, open_slide, close_slide, start, ss_finish_nothing};

@@ -207,7 +207,7 @@ static skinslide_status open_search(search *s, const ss_patch *patch, skinslide_
         s->held[v] = patch->fixed[v] || patch->vertex_loop[v] >= 0;
     const ss_net net = {vertices, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, s->held};
     skinslide_status status = ss_system_create(&net, patch->label, &s->system, error);
-    return status ? status : ss_factor_create(s->system, &s->factor, error);
+    return status ? status : ss_factor_create(s->system, NULL, &s->factor, error);
 }
 
 static void close_search(search *s) {

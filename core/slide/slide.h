@@ -72,6 +72,7 @@ struct skinslide_workspace {
     ss_memory memory;
     const skinslide_slider *slider;
     ss_patch_work *patches;          /* [part_count] */
+    ss_room room;                    /* for one patch after the other */
     skinslide_patch_result *results; /* [part_count] */
     skinslide_controls *controls;    /* [setup_count] of the frame */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */

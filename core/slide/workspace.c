@@ -20,7 +20,7 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     work->corner_weights = SS_NEW(memory, double, ss_largest_face(&part->patch->faces));
     if (memory->failed)
         return ss_out_of_memory(error);
-    skinslide_status status = part->rest->rule->open(part->rest, workspace->idbuffer, p, &work->slide, error);
+    skinslide_status status = part->rest->rule->open(part->rest, &workspace->room, workspace->idbuffer, p, &work->slide, error);
     if (!status && part->cage)
         status = ss_cage_work_create(part->cage, &work->cage, error);
     return status;
@@ -48,6 +48,8 @@ skinslide_status ss_workspace_create(const skinslide_slider *slider, const skins
         status = ss_workspace_open_lookup(workspace, options, load, error);
     for (int32_t p = 0; p < slider->part_count && !status; p++)
         status = make_patch_work(workspace, p, error);
+    if (!status && !ss_make_room(&workspace->room))
+        status = ss_out_of_memory(error);
     if (status)
         skinslide_workspace_destroy(workspace);
     else
@@ -74,6 +76,7 @@ void skinslide_workspace_destroy(skinslide_workspace *workspace) {
             workspace->slider->parts[p].rest->rule->close(workspace->patches[p].slide);
     }
     ss_idbuffer_destroy(workspace->idbuffer);
+    ss_free(&workspace->room.memory);
     ss_free(&workspace->turning);
     ss_free(&workspace->memory);
     free(workspace);

@@ -8,6 +8,12 @@ bool ss_posed_allocate(ss_memory *memory, const ss_patch *patch, ss_posed *pose)
     return !memory->failed;
 }
 
+void ss_posed_lay_out(ss_posed *pose, const ss_patch *patch, ss_room *room) {
+    pose->patch = patch;
+    pose->point = ss_take_room(room, patch->vertex_count, sizeof *pose->point);
+    pose->facet = SS_TAKE(room, ss_facet, patch->triangles.count);
+}
+
 static void measure_facet(const double *a, const double *b, const double *c, ss_facet *facet) {
     ss_subtract(b, a, facet->first);
     ss_subtract(c, a, facet->second);

@@ -67,6 +67,7 @@ typedef struct ss_posed {
 } ss_posed;
 
 bool ss_posed_allocate(ss_memory *memory, const ss_patch *patch, ss_posed *pose);
+void ss_posed_lay_out(ss_posed *pose, const ss_patch *patch, ss_room *room);
 /* points is the whole mesh's. */
 void ss_posed_set(ss_posed *pose, const float *points);
 /* The plane as a pose: an embedding uv [vertex_count][2], to walk straight in. */
@@ -251,11 +252,13 @@ struct ss_rule {
     skinslide_status (*create)(const ss_patch *patch, const float *rest_points, const double *paint, ss_rest **out,
                                skinslide_error *error);
     void (*destroy)(ss_rest *rest); /* not NULL */
-    /* Where there is an ID buffer, the patch has a number in it. */
-    skinslide_status (*open)(const ss_rest *rest, struct ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
+    /* Where there is an ID buffer, the patch has a number in it. The room, of which it asks its part, is made before the first
+     * frame. */
+    skinslide_status (*open)(const ss_rest *rest, ss_room *room, struct ss_idbuffer *idbuffer, int32_t number, ss_slide **out,
                              skinslide_error *error);
     void (*close)(ss_slide *slide); /* not NULL */
-    /* A frame in two steps: a device may go on with the first while other patches start. Both add to what result counts. */
+    /* A frame in two steps: a device may go on with the first while other patches start, which use the room. Both add to what
+     * result counts. */
     skinslide_status (*start)(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error);
     skinslide_status (*finish)(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error);
 };

@@ -533,7 +533,7 @@ static void each_allocation_for_a_large_system_fails_in_turn(void **state) {
         live = 0, left_to_give = allowed, watching = true;
         status = ss_system_create(&net, "path", &system, &error);
         if (!status)
-            status = ss_factor_create(system, &factor, &error);
+            status = ss_factor_create(system, NULL, &factor, &error);
         ss_factor_destroy(factor);
         ss_system_destroy(system);
         watching = false;

@@ -51,7 +51,7 @@ static ss_blocks *blocks_of(const ss_patch *patch, const uint8_t *fixed, ss_syst
     skinslide_error error;
     ss_blocks *blocks;
     assert_ok(ss_system_create(&net, "grid", system, &error), &error);
-    assert_ok(ss_blocks_create(*system, &blocks, &error), &error);
+    assert_ok(ss_blocks_create(*system, false, NULL, &blocks, &error), &error);
     return blocks;
 }
 

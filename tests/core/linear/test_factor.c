@@ -231,7 +231,7 @@ static void every_number_is_right(void **state) {
             ss_factor *factor;
             skinslide_error error;
             assert_ok(ss_system_create(&b.net, "net", &system, &error), &error);
-            assert_ok(ss_factor_create(system, &factor, &error), &error);
+            assert_ok(ss_factor_create(system, NULL, &factor, &error), &error);
             fill(factor, &b, ranges[r], (uint64_t)i);
             long double *expected = solve_whole(factor, &b);
             size_t n = (size_t)system->n, size = n * sizeof *factor->right;
@@ -261,7 +261,7 @@ static void compare_kernels(const built_net *b, double range) {
     skinslide_error error;
     assert_ok(ss_system_create(&b->net, "net", &system, &error), &error);
     for (int fastest = 0; fastest < 2; fastest++) {
-        assert_ok(ss_factor_create(system, &factors[fastest], &error), &error);
+        assert_ok(ss_factor_create(system, NULL, &factors[fastest], &error), &error);
         factors[fastest]->frontal->kernels = ss_kernels_of(fastest);
         fill(factors[fastest], b, range, 9);
         assert_true(ss_factorise_and_solve(factors[fastest]));
@@ -282,7 +282,7 @@ static void compare_kernels_of_blocks(const built_net *b) {
     assert_ok(ss_system_create(&b->net, "net", &system, &error), &error);
     for (int fastest = 0; fastest < 2; fastest++) {
         dice d = {5};
-        assert_ok(ss_blocks_create(system, &blocks[fastest], &error), &error);
+        assert_ok(ss_blocks_create(system, false, NULL, &blocks[fastest], &error), &error);
         blocks[fastest]->frontal->kernels = ss_kernels_of(fastest);
         for (int32_t k = 0; k < system->n; k++)
             for (int i = 0; i < 4; i++)

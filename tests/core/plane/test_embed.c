@@ -138,7 +138,7 @@ static void a_factor_remembers_nothing(void **state) {
     ss_factor *factor = NULL;
     skinslide_error error;
     assert_ok(ss_system_create(&net, "patch p", &system, &error), &error);
-    assert_ok(ss_factor_create(system, &factor, &error), &error);
+    assert_ok(ss_factor_create(system, NULL, &factor, &error), &error);
     assert_ok(ss_embed(system, factor, density, first, &error), &error);
     assert_ok(ss_embed(system, factor, other, again, &error), &error);
     assert_ok(ss_embed(system, factor, density, again, &error), &error);

@@ -39,7 +39,10 @@ static void axes_of_a_linear_map(void **state) {
     ss_relaxer *relaxer;
     skinslide_error error;
     assert_ok(ss_sheet_create(patch, mesh.points, &sheet, &error), &error);
-    assert_ok(ss_relaxer_create(sheet, &relaxer, &error), &error);
+    ss_room room = {0};
+    assert_ok(ss_relaxer_create(sheet, &room, &relaxer, &error), &error);
+    assert_true(ss_make_room(&room));
+    ss_relaxer_lay_out(relaxer, &room);
     ss_evener *evener = relaxer->evener;
     ss_posed_set(&evener->pose, points);
     for (int32_t v = 0; v < patch->vertex_count; v++) {
@@ -58,6 +61,7 @@ static void axes_of_a_linear_map(void **state) {
         }
     free(points);
     ss_relaxer_destroy(relaxer);
+    ss_free(&room.memory);
     ss_sheet_destroy(sheet);
     ss_patch_destroy(patch);
     free_mesh(&mesh);
