@@ -394,7 +394,8 @@ typedef struct skinslide_stage_subset {
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
 
-/* Sorts names [count] of properties so that those which differ in case and in underscores for colons alone are next to each other. */
+/* Sorts names [count] of properties so that those which differ in case, and in underscores for colons, alone are next to each
+ * other. */
 SKINSLIDE_API void skinslide_stage_sort_names(const char **names, int32_t count);
 
 /* Paint counts under the schema's name, else under that with underscores for colons, as tools leave it that know no namespaces
