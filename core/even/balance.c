@@ -12,7 +12,6 @@ void ss_evener_lay_out(ss_evener *evener, ss_room *room) {
     int32_t vertices = patch->vertex_count, springs = evener->sheet->spring_count;
     evener->next_weight = SS_TAKE(room, double, vertices);
     evener->next_hold = SS_TAKE(room, double, vertices);
-    evener->moving = SS_TAKE(room, int32_t, vertices);
     evener->bond = SS_TAKE(room, double, springs);
     evener->bonds = SS_TAKE(room, double, vertices);
     evener->load = SS_TAKE(room, double, vertices);
@@ -42,6 +41,7 @@ skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_ro
     evener->paint = SS_NEW(&evener->memory, double, sheet->patch->faces.edge_count);
     evener->weight = SS_NEW(&evener->memory, double, sheet->patch->vertex_count);
     evener->hold = SS_NEW(&evener->memory, double, sheet->patch->vertex_count);
+    evener->moving = SS_NEW(&evener->memory, int32_t, sheet->patch->vertex_count);
     skinslide_status status = evener->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status)
         status = ss_blocks_create(sheet->system, true, room, &evener->K, error);
@@ -195,7 +195,6 @@ bool ss_take_step(ss_evener *evener) {
 }
 
 void ss_set_out(ss_evener *evener, const ss_frame *frame) {
-    memset(evener->whole, 0, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
     ss_take_points(evener->sheet->patch, frame->points, evener->pose.point);
     ss_go_home(evener);
     evener->scale = find_scale(evener, frame->paint);

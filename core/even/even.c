@@ -45,6 +45,10 @@ const ss_sheet *ss_sheet_of(const ss_rest *rest) {
     return ((const even_rest *)rest)->sheet;
 }
 
+skinslide_status ss_multiply_rest(ss_rest *rest, skinslide_error *error) {
+    return ss_sheet_multiply(((even_rest *)rest)->sheet) ? SKINSLIDE_OK : ss_out_of_memory(error);
+}
+
 /* ---- Once a thread ---- */
 
 skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error) {

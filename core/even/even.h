@@ -37,7 +37,7 @@ typedef struct ss_sheet {
     int32_t *degree;         /* [vertex_count] springs at the vertex */
     int32_t spring_count;
     ss_spring *springs;
-    double (*between)[2][2]; /* [spring_count] products of tangents of the first end with those of the second */
+    double (*between)[2][2]; /* [spring_count] as ss_multiply_tangents has them; NULL before ss_sheet_multiply */
     double (*flat)[2];       /* [corner_count] faces at rest, each in its own plane */
     double (*along)[2][2];   /* [corner_count] [tangent][axis] how a corner moves there as its vertex slides */
     double *area;            /* [face_count] twice, in the same plane */
@@ -47,7 +47,15 @@ typedef struct ss_sheet {
 
 /* rest_points is the whole mesh's. */
 skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points, ss_sheet **out, skinslide_error *error);
+/* Lists the products of tangents, for a rule that needs them at each step. False where memory is short. */
+bool ss_sheet_multiply(ss_sheet *sheet);
 void ss_sheet_destroy(ss_sheet *sheet);
+/* Products of the tangents at the first end of a spring with those at the second. */
+static inline void ss_multiply_tangents(const ss_sheet *sheet, const ss_spring *spring, double out[2][2]) {
+    const int32_t *v = spring->end;
+    for (int k = 0; k < 4; k++)
+        out[k / 2][k % 2] = ss_dot(sheet->tangent[v[0]][k / 2], sheet->tangent[v[1]][k % 2]);
+}
 
 /* ---- balance.c ---- */
 
@@ -62,6 +70,7 @@ typedef struct ss_temper {
     double most_stiffened; /* what is added to a hold of 1 where the cache crushes skin wholly: see crush.c */
     double most_lost;      /* by one step, of what a face has over the least area */
     double least_area;     /* of that at rest */
+    bool bonds;            /* whether what bonds and loads are is of use beyond K; where K is as it was, no share is below 1 */
 } ss_temper;
 
 /* Memory of one thread for one patch, and where its slide has got to. */
@@ -73,9 +82,9 @@ typedef struct ss_evener {
     bool factored;
     double *paint;                   /* [edge_count] */
     double *weight, *hold;           /* [vertex_count]; the weight is a share of the largest, and 0 of held vertices */
+    int32_t *moving;                 /* [vertex_count] the unknown, or -1 where it has no weight */
     double most_weight;              /* the largest of the frame; what follows is laid out for a frame alone */
     double *next_weight, *next_hold; /* of the frame that begins */
-    int32_t *moving;                 /* [vertex_count] the unknown, or -1 where it has no weight */
     double *bond;                    /* [spring_count] what holds its ends together, over eta */
     double *bonds;                   /* [vertex_count] the sums of that over its springs ... */
     double *load;                    /* [vertex_count] ... and of k / l^2 */
@@ -185,6 +194,8 @@ int32_t ss_count_turned_over(const ss_sheet *sheet, const ss_place *places, doub
 /* ---- even.c: what rules that even out share, and the plain one ---- */
 
 const ss_sheet *ss_sheet_of(const ss_rest *rest);
+/* ss_sheet_multiply of its sheet. */
+skinslide_status ss_multiply_rest(ss_rest *rest, skinslide_error *error);
 /* Fills what every slide begins with. */
 skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error);
 /* Writes where the evener has vertices, no farther than the frame lets them be, and counts what turned over. */

@@ -38,8 +38,6 @@ static void add_spring(ss_sheet *sheet, int32_t edge) {
     for (int end = 0; end < 2; end++)
         for (int j = 0; j < 2 && own.square > 0; j++)
             own.slope[end][j] = (end ? 1 : -1) * ss_dot(way, sheet->tangent[v[end]][j]) / square;
-    for (int k = 0; k < 4; k++)
-        sheet->between[sheet->spring_count][k / 2][k % 2] = ss_dot(sheet->tangent[v[0]][k / 2], sheet->tangent[v[1]][k % 2]);
     sheet->springs[sheet->spring_count++] = own;
     sheet->degree[v[0]]++, sheet->degree[v[1]]++;
 }
@@ -98,7 +96,6 @@ static bool allocate(ss_sheet *sheet) {
     sheet->tangent = ss_new(memory, patch->vertex_count, sizeof *sheet->tangent);
     sheet->degree = SS_NEW(memory, int32_t, patch->vertex_count);
     sheet->springs = SS_NEW(memory, ss_spring, patch->faces.edge_count);
-    sheet->between = ss_new(memory, patch->faces.edge_count, sizeof *sheet->between);
     sheet->flat = ss_new(memory, patch->faces.corner_count, sizeof *sheet->flat);
     sheet->along = ss_new(memory, patch->faces.corner_count, sizeof *sheet->along);
     sheet->area = SS_NEW(memory, double, patch->faces.face_count);
@@ -144,6 +141,13 @@ skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points
     else
         *out = sheet;
     return status;
+}
+
+bool ss_sheet_multiply(ss_sheet *sheet) {
+    sheet->between = ss_new(&sheet->memory, sheet->spring_count, sizeof *sheet->between);
+    for (int32_t i = 0; i < sheet->spring_count && sheet->between; i++)
+        ss_multiply_tangents(sheet, &sheet->springs[i], sheet->between[i]);
+    return sheet->between != NULL;
 }
 
 void ss_sheet_destroy(ss_sheet *sheet) {

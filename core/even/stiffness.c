@@ -46,8 +46,9 @@ static void add_own(ss_evener *evener, int32_t unknown, const double slope[2], d
 
 static void add_between(ss_evener *evener, int32_t i, double k, double hold) {
     const ss_spring *spring = &evener->sheet->springs[i];
-    const double(*product)[2] = (const double(*)[2])evener->sheet->between[i];
+    double product[2][2];
     bool first_is_row;
+    ss_multiply_tangents(evener->sheet, spring, product);
     double *between = ss_blocks_between(evener->K, spring->edge, &first_is_row);
     for (int a = 0; a < 2; a++)
         for (int b = 0; b < 2; b++)
@@ -104,9 +105,11 @@ skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, con
     bool changed = take(evener->paint, frame->paint, patch->faces.edge_count);
     changed |= take(evener->weight, weight, patch->vertex_count);
     changed |= take(evener->hold, hold, patch->vertex_count);
-    list_moving(evener);
-    list_bonds(evener);
-    ss_find_anchors(evener);
+    if (changed || !evener->factored || evener->temper.bonds) {
+        list_moving(evener);
+        list_bonds(evener);
+        ss_find_anchors(evener);
+    }
     if (evener->factored && !changed)
         return SKINSLIDE_OK;
     evener->factored = false;

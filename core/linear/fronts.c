@@ -256,7 +256,7 @@ skinslide_status ss_find_fronts(ss_system *system, ss_graph *graph, skinslide_er
     ss_memory scratch = {0}, *memory = &system->memory;
     int32_t n = system->n, *place = SS_NEW(&scratch, int32_t, n);
     tree t;
-    system->fronts = SS_NEW(memory, ss_front, n);
+    ss_front *fronts = SS_NEW(&scratch, ss_front, n);
     system->entries = SS_NEW(memory, ss_entry, system->edge_count);
     if (!allocate(&scratch, n, &t) || memory->failed) {
         ss_free(&scratch);
@@ -264,9 +264,13 @@ skinslide_status ss_find_fronts(ss_system *system, ss_graph *graph, skinslide_er
     }
     t.block = system->block;
     find_tree(graph, &t);
+    system->fronts = fronts;
     number_columns(&t, system, place);
+    system->fronts = SS_NEW(memory, ss_front, system->front_count);
+    if (system->fronts)
+        memcpy(system->fronts, fronts, (size_t)system->front_count * sizeof *fronts);
     int64_t rows = 0;
-    for (int32_t f = 0; f < system->front_count; f++)
+    for (int32_t f = 0; f < system->front_count && system->fronts; f++)
         rows += system->fronts[f].row_count, system->fronts[f].row_count = 0;
     system->rows = SS_NEW(memory, int32_t, rows);
     system->place = SS_NEW(memory, int32_t, rows);

@@ -182,7 +182,7 @@ static skinslide_status check_face(const ss_faces *faces, int32_t own, int32_t f
     return SKINSLIDE_OK;
 }
 
-static const int32_t *list_starts(const skinslide_mesh *mesh, ss_memory *memory) {
+const int32_t *ss_list_starts(const skinslide_mesh *mesh, ss_memory *memory) {
     int32_t *face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
     if (face_start)
         ss_start_faces(mesh, face_start);
@@ -192,7 +192,7 @@ static const int32_t *list_starts(const skinslide_mesh *mesh, ss_memory *memory)
 skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
                                const char *label, ss_memory *memory, ss_faces *faces, skinslide_error *error) {
     ss_memory scratch = {0};
-    if (!face_start && !(face_start = list_starts(mesh, &scratch)))
+    if (!face_start && !(face_start = ss_list_starts(mesh, &scratch)))
         return ss_out_of_memory(error);
     int32_t corners = 0;
     for (int32_t f = 0; f < count; f++)
@@ -203,14 +203,12 @@ skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_s
     faces->corner_face = SS_NEW(memory, int32_t, corners);
     faces->corner_twin = SS_NEW(memory, int32_t, corners);
     faces->corner_edge = SS_NEW(memory, int32_t, corners);
-    faces->corner_copy = SS_NEW(memory, int32_t, corners);
     ss_side *sides = SS_NEW(&scratch, ss_side, corners);
     int32_t *sorted = SS_NEW(&scratch, int32_t, corners);
     skinslide_status status = memory->failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     for (int32_t f = 0, c = 0; f < count && !status; f++) {
         const int32_t *vertices = mesh->face_indices + face_start[chosen[f]];
         for (int32_t k = 0; k < mesh->face_counts[chosen[f]]; k++, c++) {
-            faces->corner_copy[c] = vertices[k];
             faces->corner_vertex[c] = ss_one(mesh, vertices[k]);
             faces->corner_face[c] = f;
         }

@@ -20,7 +20,6 @@ typedef struct ss_faces {
     int32_t *corner_face;   /* [corner_count] */
     int32_t *corner_twin;   /* [corner_count] the same edge seen from the other face; -1 on the boundary */
     int32_t *corner_edge;   /* [corner_count] edges are numbered by their lower, then their higher vertex */
-    int32_t *corner_copy; /* [corner_count] the mesh vertex as the face has it, which corner_vertex may be one with; or NULL */
     int32_t edge_count;
 } ss_faces;
 
@@ -124,6 +123,9 @@ static inline void ss_start_faces(const skinslide_mesh *mesh, int32_t *face_star
     for (int32_t f = 0; f < mesh->face_count; f++)
         face_start[f + 1] = face_start[f] + mesh->face_counts[f];
 }
+
+/* The same, in memory; NULL where that is short. */
+const int32_t *ss_list_starts(const skinslide_mesh *mesh, ss_memory *memory);
 
 /* Corners of the largest face. */
 int32_t ss_largest_face(const ss_faces *faces);

@@ -29,12 +29,12 @@ static bool splits_vertices(const ss_patch *patch) {
 }
 
 /* Corners hold mesh vertices before, patch vertices after; edges keep their numbers, since the order of vertices is kept. */
-static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error) {
+static bool number_vertices(ss_patch *patch, ss_memory *scratch) {
     ss_faces *faces = &patch->faces;
-    patch->mesh_vertex = SS_NEW(&patch->memory, int32_t, faces->corner_count);
-    patch->split = SS_NEW(&patch->memory, uint8_t, faces->corner_count);
-    if (patch->memory.failed)
-        return ss_out_of_memory(error);
+    patch->mesh_vertex = SS_NEW(scratch, int32_t, faces->corner_count);
+    patch->split = SS_NEW(scratch, uint8_t, faces->corner_count);
+    if (scratch->failed)
+        return false;
     for (int32_t c = 0; c < faces->corner_count; c++)
         patch->mesh_vertex[c] = faces->corner_vertex[c];
     qsort(patch->mesh_vertex, (size_t)faces->corner_count, sizeof *patch->mesh_vertex, ss_ascending);
@@ -43,21 +43,51 @@ static skinslide_status number_vertices(ss_patch *patch, skinslide_error *error)
             patch->mesh_vertex[patch->vertex_count++] = patch->mesh_vertex[c];
     for (int32_t c = 0; c < faces->corner_count; c++)
         faces->corner_vertex[c] = ss_patch_vertex(patch, faces->corner_vertex[c]);
-    return splits_vertices(patch) && !ss_split_vertices(patch) ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    return !splits_vertices(patch) || ss_split_vertices(patch);
 }
 
-/* pairs is scratch [corner_count]: the patch vertex and the mesh vertex at each corner. */
-static void list_copies(ss_patch *patch, int32_t (*pairs)[2]) {
+/* Keeps as much of what is by vertex as there are of those. False where memory is short. */
+static bool keep_vertices(ss_patch *patch) {
+    int32_t *mesh_vertex = SS_NEW(&patch->memory, int32_t, patch->vertex_count);
+    uint8_t *split = SS_NEW(&patch->memory, uint8_t, patch->vertex_count);
+    if (patch->memory.failed)
+        return false;
+    memcpy(mesh_vertex, patch->mesh_vertex, (size_t)patch->vertex_count * sizeof *mesh_vertex);
+    memcpy(split, patch->split, (size_t)patch->vertex_count * sizeof *split);
+    patch->mesh_vertex = mesh_vertex, patch->split = split;
+    return true;
+}
+
+/* The patch vertex and the mesh vertex at each corner: pairs [corner_count]. */
+static void pair_corners(const ss_faces *faces, const skinslide_mesh *mesh, const int32_t *face_start,
+                         const int32_t *mesh_faces, int32_t (*pairs)[2]) {
+    for (int32_t f = 0; f < faces->face_count; f++)
+        for (int32_t c = faces->face_start[f], k = face_start[mesh_faces[f]]; c < faces->face_start[f + 1]; c++, k++)
+            pairs[c][0] = faces->corner_vertex[c], pairs[c][1] = mesh->face_indices[k];
+}
+
+/* Takes pairs as scratch. False where memory is short. */
+static bool list_copies(ss_patch *patch, int32_t (*pairs)[2]) {
     const ss_faces *faces = &patch->faces;
     int32_t count = 0;
-    for (int32_t c = 0; c < faces->corner_count; c++)
-        pairs[c][0] = faces->corner_vertex[c], pairs[c][1] = faces->corner_copy[c];
     qsort(pairs, (size_t)faces->corner_count, sizeof *pairs, ss_ascending_pairs);
-    for (int32_t c = 0; c < faces->corner_count; c++) {
+    for (int32_t c = 0; c < faces->corner_count; c++)
         if (c == 0 || ss_ascending_pairs(pairs[c], pairs[c - 1]) != 0)
-            patch->copy[count++] = pairs[c][1];
-        patch->copy_start[pairs[c][0] + 1] = count;
+            memmove(pairs[count++], pairs[c], sizeof *pairs);
+    patch->copy = SS_NEW(&patch->memory, int32_t, count);
+    for (int32_t i = 0; i < count && patch->copy; i++) {
+        patch->copy[i] = pairs[i][1];
+        patch->copy_start[pairs[i][0] + 1] = i + 1;
     }
+    return patch->copy != NULL;
+}
+
+/* Vertices on loops, of each of which one side is on the boundary, as soon as their faces are checked. */
+static int32_t count_boundary(const ss_faces *faces) {
+    int32_t count = 0;
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        count += faces->corner_twin[c] < 0;
+    return count;
 }
 
 static void list_edges(ss_patch *patch) {
@@ -157,6 +187,8 @@ static double loop_length(const ss_patch *patch, int32_t loop) {
 /* Makes the longest loop number 0. scratch is [vertices on loops]. */
 static void put_outer_first(ss_patch *patch, int32_t *scratch) {
     int32_t outer = 0, on_loops = patch->loop_start[patch->loop_count];
+    if (patch->loop_count == 0)
+        return;
     for (int32_t loop = 1; loop < patch->loop_count; loop++)
         if (loop_length(patch, loop) > loop_length(patch, outer))
             outer = loop;
@@ -284,14 +316,13 @@ void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_c
 
 static void allocate(ss_patch *patch) {
     ss_memory *memory = &patch->memory;
-    int32_t vertices = patch->vertex_count, edges = patch->faces.edge_count;
+    int32_t vertices = patch->vertex_count, edges = patch->faces.edge_count, boundary = count_boundary(&patch->faces);
     patch->copy_start = SS_NEW(memory, int32_t, (int64_t)vertices + 1);
-    patch->copy = SS_NEW(memory, int32_t, patch->faces.corner_count);
     patch->vertex_corner = SS_NEW(memory, int32_t, vertices);
     patch->edge_vertex = ss_new(memory, edges, sizeof *patch->edge_vertex);
     patch->rest_length = SS_NEW(memory, double, edges);
-    patch->loop_start = SS_NEW(memory, int32_t, (int64_t)vertices + 1);
-    patch->loop_vertex = SS_NEW(memory, int32_t, vertices);
+    patch->loop_start = SS_NEW(memory, int32_t, (int64_t)boundary + 1);
+    patch->loop_vertex = SS_NEW(memory, int32_t, boundary);
     patch->vertex_loop = SS_NEW(memory, int32_t, vertices);
     patch->loop_place = SS_NEW(memory, int32_t, vertices);
     patch->fixed = SS_NEW(memory, uint8_t, vertices);
@@ -324,10 +355,12 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face
     patch->setup = setup, patch->setup_index = setup_index, patch->piece = piece, patch->piece_count = piece_count;
     patch->weld = mesh->weld, patch->mesh_vertex_count = mesh->vertex_count;
     ss_label(setup, piece, piece_count, patch->label, sizeof patch->label);
+    if (!face_start)
+        face_start = ss_list_starts(mesh, &scratch);
     skinslide_status status =
         ss_take_faces(mesh, face_start, mesh_faces, face_count, patch->label, &patch->memory, &patch->faces, error);
-    if (!status)
-        status = number_vertices(patch, error);
+    if (!status && !(number_vertices(patch, &scratch) && keep_vertices(patch)))
+        status = ss_out_of_memory(error);
     if (!status) {
         allocate(patch);
         patch->mesh_face = SS_NEW(&patch->memory, int32_t, face_count);
@@ -335,7 +368,9 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face
         int32_t(*pairs)[2] = ss_new(&scratch, patch->faces.corner_count, sizeof *pairs);
         status = patch->memory.failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
         if (!status)
-            list_copies(patch, pairs);
+            pair_corners(&patch->faces, mesh, face_start, mesh_faces, pairs);
+        if (!status && !list_copies(patch, pairs))
+            status = ss_out_of_memory(error);
         if (!status)
             status = build(patch, mesh->rest_points, arrays, error);
     }

@@ -5,20 +5,20 @@
 
 #include <string.h>
 
-/* p g' + q h', times the area at rest: p and q are sides of the pose, g and h what is dual to those of rest. */
-static void weigh_triangle(const ss_facet *rest, const double p[3], const double q[3], double area, double out[3][3]) {
+/* p g' + q h', times twice the area at rest, which is given too: p and q are sides of the pose, g and h what is dual to those of rest. */
+static void weigh_triangle(const ss_posed *pose, int32_t triangle, const double p[3], const double q[3], double *area,
+                           double out[3][3]) {
+    const ss_facet *rest = &pose->facet[triangle];
+    double first[3], second[3], product[3];
+    ss_sides(pose, triangle, first, second);
+    ss_cross(first, second, product);
+    *area = ss_length(product);
     for (int k = 0; k < 3; k++) {
-        double g = rest->gram[0] * rest->first[k] + rest->gram[1] * rest->second[k];
-        double h = rest->gram[1] * rest->first[k] + rest->gram[2] * rest->second[k];
+        double g = rest->gram[0] * first[k] + rest->gram[1] * second[k];
+        double h = rest->gram[1] * first[k] + rest->gram[2] * second[k];
         for (int j = 0; j < 3; j++)
-            out[j][k] = area * (p[j] * g + q[j] * h);
+            out[j][k] = *area * (p[j] * g + q[j] * h);
     }
-}
-
-static double area_of(const ss_facet *facet) {
-    double product[3];
-    ss_cross(facet->first, facet->second, product);
-    return ss_length(product);
 }
 
 void ss_find_gradients(ss_relaxer *relaxer) {
@@ -30,15 +30,13 @@ void ss_find_gradients(ss_relaxer *relaxer) {
     memset(relaxer->gradient, 0, (size_t)vertices * sizeof *relaxer->gradient);
     memset(sum, 0, (size_t)vertices * sizeof *sum);
     for (int32_t t = 0; t < triangles->count; t++) {
-        const ss_facet *rest = &sheet->ground.pose.facet[t];
         const int32_t *v = triangles->vertex[t];
         double first[3], second[3], own[3][3], area;
-        if (!rest->has_area)
+        if (!sheet->ground.pose.facet[t].has_area)
             continue;
-        area = area_of(rest);
         ss_subtract(point[v[1]], point[v[0]], first);
         ss_subtract(point[v[2]], point[v[0]], second);
-        weigh_triangle(rest, first, second, area, own);
+        weigh_triangle(&sheet->ground.pose, t, first, second, &area, own);
         for (int k = 0; k < 3; k++) {
             sum[v[k]] += area;
             for (int j = 0; j < 3; j++)

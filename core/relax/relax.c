@@ -3,11 +3,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define STEPS       3
 #define LEAST_SPARE 0.01 /* of the cache's */
 
-static const ss_temper temper = {.hold = 0.3, .most_lost = 0.35, .least_area = 0.25};
+static const ss_temper temper = {.hold = 0.3, .most_lost = 0.35, .least_area = 0.25, .bonds = true};
 
 void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room) {
     int32_t vertices = relaxer->evener->sheet->patch->vertex_count;
@@ -90,6 +91,7 @@ static skinslide_status slide_by(ss_relaxer *relaxer, const ss_frame *frame, con
 skinslide_status ss_relax(ss_relaxer *relaxer, const ss_frame *frame, int32_t *steps, int32_t *cut, skinslide_error *error) {
     ss_evener *evener = relaxer->evener;
     skinslide_status status = SKINSLIDE_OK;
+    memset(evener->whole, 0, (size_t)evener->sheet->patch->vertex_count * sizeof *evener->whole);
     ss_set_out(evener, frame);
     ss_find_gradients(relaxer);
     if (ss_share_weights(evener, frame)) {

@@ -15,8 +15,14 @@ typedef struct relaxed_slide {
 static skinslide_status create(const ss_patch *patch, const float *rest_points, const double *paint, ss_rest **out,
                                skinslide_error *error) {
     skinslide_status status = ss_even_rule.create(patch, rest_points, paint, out, error);
-    if (!status)
-        (*out)->rule = &ss_relaxed_rule;
+    if (status)
+        return status;
+    (*out)->rule = &ss_relaxed_rule;
+    status = ss_multiply_rest(*out, error);
+    if (status) {
+        ss_even_rule.destroy(*out);
+        *out = NULL;
+    }
     return status;
 }
 

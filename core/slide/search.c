@@ -51,7 +51,7 @@ static double nearest_of(const search *s, int32_t triangle, const double target[
     const ss_facet *facet = &s->pose.facet[triangle];
     double to[3], best = INFINITY;
     ss_subtract(target, s->pose.point[s->patch->triangles.vertex[triangle][0]], to);
-    ss_rates_along(facet, to, weight);
+    ss_rates_along(&s->pose, triangle, to, weight);
     weight[0] += 1;
     if (facet->has_area && fmin(weight[0], fmin(weight[1], weight[2])) >= 0)
         return distance_square(s, triangle, weight, target);

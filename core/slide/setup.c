@@ -116,14 +116,14 @@ static skinslide_status prepare(ss_memory *memory, ss_part *part, const skinslid
     const ss_patch *patch = part->patch;
     part->paint = SS_NEW(memory, double, patch->faces.edge_count);
     part->weights = SS_NEW(memory, double, patch->free_count);
-    part->limits = SS_NEW(memory, double, patch->free_count);
+    part->limits = controls->max_distance ? SS_NEW(memory, double, patch->free_count) : NULL;
     part->holds = SS_NEW(memory, double, patch->vertex_count);
     if (memory->failed)
         return ss_out_of_memory(error);
     if (!paint_part(part, controls))
         return ss_out_of_memory(error);
     part->clamped_weights = ss_control_weights(patch, controls, part->weights);
-    part->limited = ss_control_limits(patch, controls, part->limits);
+    part->limited = part->limits && ss_control_limits(patch, controls, part->limits);
     ss_control_holds(patch, controls, part->holds);
     part->stretch_response = controls->stretch_response, part->compression_response = controls->compression_response;
     skinslide_status status = rule_of(patch->setup->rule)->create(patch, mesh->rest_points, part->paint, &part->rest, error);

@@ -12,7 +12,7 @@ typedef struct ss_part {
     ss_rest *rest;
     double *paint;   /* [edge_count] of the set-up's controls */
     double *weights; /* [free_count] weight times envelope of the set-up's controls */
-    double *limits;  /* [free_count] largest distances of the set-up's controls */
+    double *limits;  /* [free_count] largest distances of the set-up's controls; NULL where they have none */
     double *holds;   /* [vertex_count] of the set-up's controls */
     bool limited;    /* whether any is finite */
     double stretch_response, compression_response;
@@ -60,11 +60,10 @@ typedef struct ss_patch_work {
     ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
     double *lengths, *slid_lengths;   /* [edge_count] */
     double *own_paint;                /* [edge_count] */
-    ss_edge_paint *edge_paint;        /* [edge_count] scratch */
     double *own_weights, *own_limits; /* [free_count] */
     double *own_holds;                /* [vertex_count] */
-    double (*displacement)[3];        /* [free_count] */
-    double *corner_weights;           /* [largest face] */
+    double (*displacement)[3];        /* [free_count] in the room, once the rule has finished */
+    double *corner_weights;           /* [largest face] likewise */
     ss_cage_work *cage;               /* NULL unless the part has one */
 } ss_patch_work;
 
@@ -154,6 +153,8 @@ skinslide_status ss_check_frame(const skinslide_workspace *workspace, skinslide_
 skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error);
 
 /* ---- workspace.c ---- */
+
+void ss_lay_out_displacement(ss_patch_work *work, const ss_patch *patch, ss_room *room);
 
 /* skinslide_workspace_create, with EGL by another loader. */
 skinslide_status ss_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,

@@ -7,7 +7,7 @@
 /* ---- Stages of one patch ---- */
 
 /* Paint, weights, limits, holds and responses: the set-up's, or this frame's own. */
-static void apply_controls(const ss_part *part, ss_patch_work *work, const skinslide_controls *controls,
+static void apply_controls(const ss_part *part, ss_patch_work *work, const skinslide_controls *controls, ss_room *room,
                            skinslide_patch_result *result) {
     ss_frame *frame = &work->frame;
     frame->paint = part->paint, frame->weights = part->weights, frame->limits = part->limited ? part->limits : NULL;
@@ -22,7 +22,8 @@ static void apply_controls(const ss_part *part, ss_patch_work *work, const skins
     ss_control_holds(part->patch, controls, work->own_holds);
     frame->holds = work->own_holds;
     frame->stretch_response = controls->stretch_response, frame->compression_response = controls->compression_response;
-    ss_paint(part->patch, controls, work->edge_paint, work->own_paint);
+    ss_begin_turn(room);
+    ss_paint(part->patch, controls, SS_TAKE(room, ss_edge_paint, part->patch->faces.edge_count), work->own_paint);
     if (memcmp(work->own_paint, part->paint, (size_t)part->patch->faces.edge_count * sizeof *part->paint) != 0)
         frame->paint = work->own_paint;
 }
@@ -34,11 +35,21 @@ static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, c
     ss_patch_work *work = &workspace->patches[p];
     skinslide_patch_result *result = &workspace->results[p];
     double time = ss_now();
-    apply_controls(part, work, controls, result);
+    apply_controls(part, work, controls, &workspace->room, result);
     result->zero_length_edges = ss_edge_lengths(part->patch, points, work->lengths);
     work->frame.points = points, work->frame.lengths = work->lengths, work->frame.stop = &workspace->stop;
     ss_lap(&time, &result->density_seconds);
     return part->rest->rule->start(work->slide, &work->frame, result, error);
+}
+
+/* Sums weight times displacement, and weight, over the patches of each vertex. */
+static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
+    for (int32_t i = 0; i < patch->free_count; i++) {
+        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = ss_say(work, i);
+        for (int k = 0; k < 3; k++)
+            total[k] += weight * work->displacement[i][k];
+        total[3] += weight;
+    }
 }
 
 /* Where each vertex belongs, and so on the deformed mesh. */
@@ -51,32 +62,27 @@ static skinslide_status slide_patch(skinslide_workspace *workspace, int32_t p, s
     if (status)
         return status;
     double time = ss_now();
+    ss_begin_turn(&workspace->room);
+    ss_lay_out_displacement(work, part->patch, &workspace->room);
     ss_interpolate(part->patch, &slide->flat, slide->places, work->frame.points, work->corner_weights, work->displacement);
     if (work->cage)
         result->damped_vertices = ss_move_cage(work->cage, &work->frame, slide, work->displacement);
     ss_lap(&time, &result->interpolate_seconds);
+    add_displacement(part->patch, work, workspace->sum);
     return SKINSLIDE_OK;
 }
 
 /* ---- The blend ---- */
 
-/* Sums weight times displacement, and weight, over the patches of each vertex. */
-static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = ss_say(work, i);
-        for (int k = 0; k < 3; k++)
-            total[k] += weight * work->displacement[i][k];
-        total[3] += weight;
-    }
+static void clear_sums(skinslide_workspace *workspace) {
+    const ss_list *own = &workspace->slider->own;
+    for (int32_t i = 0; i < own->count; i++)
+        memset(workspace->sum[own->vertex[i]], 0, sizeof *workspace->sum);
 }
 
-/* sum: from sums over patches to the displacement of each vertex. */
+/* From sums over patches to the displacement of each vertex. */
 static void blend(skinslide_workspace *workspace) {
     const skinslide_slider *slider = workspace->slider;
-    for (int32_t i = 0; i < slider->own.count; i++)
-        memset(workspace->sum[slider->own.vertex[i]], 0, sizeof *workspace->sum);
-    for (int32_t p = 0; p < slider->part_count; p++)
-        add_displacement(slider->parts[p].patch, &workspace->patches[p], workspace->sum);
     for (int32_t i = 0; i < slider->own.count; i++) {
         double *sum = workspace->sum[slider->own.vertex[i]];
         for (int k = 0; k < 3 && sum[3] > 0 && sum[3] != 1; k++)
@@ -220,6 +226,7 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         if ((status = ss_go_on(workspace, start_patch(workspace, p, before, own, error), error)))
             return status;
     }
+    clear_sums(workspace);
     for (int32_t p = 0; p < slider->part_count; p++)
         if ((status = ss_go_on(workspace, slide_patch(workspace, p, error), error)))
             return status;

@@ -4,6 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+void ss_lay_out_displacement(ss_patch_work *work, const ss_patch *patch, ss_room *room) {
+    work->displacement = ss_take_room(room, patch->free_count, sizeof *work->displacement);
+    work->corner_weights = SS_TAKE(room, double, ss_largest_face(&patch->faces));
+}
+
 static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t p, skinslide_error *error) {
     const ss_part *part = &workspace->slider->parts[p];
     ss_memory *memory = &workspace->memory;
@@ -12,14 +17,15 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     work->lengths = SS_NEW(memory, double, edges);
     work->slid_lengths = SS_NEW(memory, double, edges);
     work->own_paint = SS_NEW(memory, double, edges);
-    work->edge_paint = SS_NEW(memory, ss_edge_paint, edges);
     work->own_weights = SS_NEW(memory, double, free_count);
     work->own_limits = SS_NEW(memory, double, free_count);
     work->own_holds = SS_NEW(memory, double, part->patch->vertex_count);
-    work->displacement = ss_new(memory, free_count, sizeof *work->displacement);
-    work->corner_weights = SS_NEW(memory, double, ss_largest_face(&part->patch->faces));
     if (memory->failed)
         return ss_out_of_memory(error);
+    ss_room counted = {0};
+    ss_lay_out_displacement(work, part->patch, &counted);
+    ss_ask_room(&workspace->room, &counted);
+    ss_ask_room(&workspace->room, &(ss_room){.taken = edges * (int64_t)sizeof(ss_edge_paint)});
     skinslide_status status = part->rest->rule->open(part->rest, &workspace->room, workspace->idbuffer, p, &work->slide, error);
     if (!status && part->cage)
         status = ss_cage_work_create(part->cage, &work->cage, error);

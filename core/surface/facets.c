@@ -14,23 +14,21 @@ void ss_posed_lay_out(ss_posed *pose, const ss_patch *patch, ss_room *room) {
     pose->facet = SS_TAKE(room, ss_facet, patch->triangles.count);
 }
 
-static void measure_facet(const double *a, const double *b, const double *c, ss_facet *facet) {
-    ss_subtract(b, a, facet->first);
-    ss_subtract(c, a, facet->second);
-    ss_cross(facet->first, facet->second, facet->normal);
+static void measure_facet(const ss_posed *pose, int32_t triangle, ss_facet *facet) {
+    double first[3], second[3];
+    ss_sides(pose, triangle, first, second);
+    ss_cross(first, second, facet->normal);
     double square = ss_dot(facet->normal, facet->normal);
     facet->has_area = square > 0 && isfinite(1 / square);
-    facet->gram[0] = facet->has_area ? ss_dot(facet->second, facet->second) / square : 0;
-    facet->gram[1] = facet->has_area ? -ss_dot(facet->first, facet->second) / square : 0;
-    facet->gram[2] = facet->has_area ? ss_dot(facet->first, facet->first) / square : 0;
+    facet->gram[0] = facet->has_area ? ss_dot(second, second) / square : 0;
+    facet->gram[1] = facet->has_area ? -ss_dot(first, second) / square : 0;
+    facet->gram[2] = facet->has_area ? ss_dot(first, first) / square : 0;
     ss_normalise(facet->normal);
 }
 
 static void set_facets(ss_posed *pose) {
-    for (int32_t t = 0; t < pose->patch->triangles.count; t++) {
-        const int32_t *v = pose->patch->triangles.vertex[t];
-        measure_facet(pose->point[v[0]], pose->point[v[1]], pose->point[v[2]], &pose->facet[t]);
-    }
+    for (int32_t t = 0; t < pose->patch->triangles.count; t++)
+        measure_facet(pose, t, &pose->facet[t]);
 }
 
 void ss_posed_set(ss_posed *pose, const float *points) {

@@ -36,11 +36,7 @@ static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_
     double share = 1 / ss_dot(product, up);
     ss_cross(q, up, first);
     ss_cross(up, p, second);
-    *out = (ss_wedge){
-        .square = {ss_dot(p, p), ss_dot(p, q), ss_dot(q, q)},
-        .triangle = triangle,
-        .corner = corner,
-    };
+    out->corner = 4 * (uint32_t)triangle + (uint32_t)corner;
     for (int j = 0; j < 2; j++) {
         out->first[j] = share * ss_dot(first, ground->tangent[v[corner]][j]);
         out->second[j] = share * ss_dot(second, ground->tangent[v[corner]][j]);

@@ -17,7 +17,7 @@ int ss_cross_side(const ss_patch *patch, ss_place *place, int corner) {
 
 double ss_measure(ss_meter *meter, int32_t triangle, const double rates[3], double part) {
     double vector[3];
-    ss_vector_along(&meter->pose->facet[triangle], rates, vector);
+    ss_vector_along(meter->pose, triangle, rates, vector);
     double length = part * ss_length(vector), allowed = meter->limit - meter->walked;
     bool too_far = length > allowed;
     meter->walked = too_far ? meter->limit : meter->walked + length; /* where a walk ends it says so to the bit */

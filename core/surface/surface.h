@@ -54,9 +54,8 @@ ss_place ss_flat_middle(const ss_patch *patch, const ss_flat *flat, int32_t face
 /* ---- facets.c: triangles in a pose ---- */
 
 typedef struct ss_facet {
-    double first[3], second[3]; /* from its vertex 0 to 1 and 2 */
-    double gram[3];             /* the inverse of their products: 11, 12, 22 */
-    double normal[3];           /* of unit length */
+    double gram[3];   /* the inverse of the products of its sides: 11, 12, 22 */
+    double normal[3]; /* of unit length */
     bool has_area;
 } ss_facet;
 
@@ -66,6 +65,12 @@ typedef struct ss_posed {
     ss_facet *facet;    /* [triangle_count] */
 } ss_posed;
 
+/* From a triangle's vertex 0 to 1 and 2. */
+static inline void ss_sides(const ss_posed *pose, int32_t triangle, double first[3], double second[3]) {
+    const int32_t *v = pose->patch->triangles.vertex[triangle];
+    ss_subtract(pose->point[v[1]], pose->point[v[0]], first);
+    ss_subtract(pose->point[v[2]], pose->point[v[0]], second);
+}
 bool ss_posed_allocate(ss_memory *memory, const ss_patch *patch, ss_posed *pose);
 void ss_posed_lay_out(ss_posed *pose, const ss_patch *patch, ss_room *room);
 /* points is the whole mesh's. */
@@ -85,16 +90,21 @@ static inline void ss_place_put(ss_place *place, int32_t triangle, const double 
 }
 
 /* How fast the weights change along a vector, which is projected into the plane of the triangle; and back. */
-static inline void ss_rates_along(const ss_facet *facet, const double vector[3], double rates[3]) {
-    double first = ss_dot(facet->first, vector), second = ss_dot(facet->second, vector);
+static inline void ss_rates_along(const ss_posed *pose, int32_t triangle, const double vector[3], double rates[3]) {
+    const ss_facet *facet = &pose->facet[triangle];
+    double sides[2][3];
+    ss_sides(pose, triangle, sides[0], sides[1]);
+    double first = ss_dot(sides[0], vector), second = ss_dot(sides[1], vector);
     rates[1] = facet->gram[0] * first + facet->gram[1] * second;
     rates[2] = facet->gram[1] * first + facet->gram[2] * second;
     rates[0] = -rates[1] - rates[2];
 }
 
-static inline void ss_vector_along(const ss_facet *facet, const double rates[3], double vector[3]) {
+static inline void ss_vector_along(const ss_posed *pose, int32_t triangle, const double rates[3], double vector[3]) {
+    double first[3], second[3];
+    ss_sides(pose, triangle, first, second);
     for (int k = 0; k < 3; k++)
-        vector[k] = rates[1] * facet->first[k] + rates[2] * facet->second[k];
+        vector[k] = rates[1] * first[k] + rates[2] * second[k];
 }
 
 /* The part of the rates that can be gone before a weight, but that of one corner, or -1, is 0: 1 where none gets there. *corner
@@ -152,9 +162,7 @@ double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *
  * to the next corner and second.way of that to the last: inside, where neither is less than 0. */
 typedef struct ss_wedge {
     double first[2], second[2];
-    double square[3]; /* products of these sides: of the first with itself, with the second, and of the second with itself */
-    int32_t triangle;
-    int corner;
+    uint32_t corner; /* 4 times the triangle, and which of its corners */
 } ss_wedge;
 
 typedef struct ss_ground {

@@ -18,7 +18,8 @@ typedef struct walker {
 } walker;
 
 /* Sets the rates in a triangle for a direction tangent at a unit normal; false where it has none there. */
-static bool aim(walker *w, const ss_facet *facet, const double normal[3], const double direction[3]) {
+static bool aim(walker *w, int32_t triangle, const double normal[3], const double direction[3]) {
+    const ss_facet *facet = &w->ground->pose.facet[triangle];
     double along[3] = {direction[0], direction[1], direction[2]};
     ss_add(-ss_dot(direction, facet->normal) / ss_most(ss_dot(normal, facet->normal), LEAST_SLANT), normal, along);
     ss_add(-ss_dot(along, facet->normal), facet->normal, along);
@@ -27,7 +28,7 @@ static bool aim(walker *w, const ss_facet *facet, const double normal[3], const 
         return false;
     for (int k = 0; k < 3; k++)
         along[k] *= w->left / length;
-    ss_rates_along(facet, along, w->rates);
+    ss_rates_along(&w->ground->pose, triangle, along, w->rates);
     return isfinite(w->rates[1]) && isfinite(w->rates[2]);
 }
 
@@ -48,10 +49,14 @@ static const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, con
 }
 
 /* The shares of the sides of a wedge that its triangle has of a way of some length; false where it has none there. */
-static bool share_wedge(const ss_wedge *wedge, double length, double rates[2]) {
-    const double *square = wedge->square;
-    double along =
-        rates[0] * (square[0] * rates[0] + square[1] * rates[1]) + rates[1] * (square[1] * rates[0] + square[2] * rates[1]);
+static bool share_wedge(const ss_posed *pose, const ss_wedge *wedge, double length, double rates[2]) {
+    const int32_t *v = pose->patch->triangles.vertex[wedge->corner >> 2];
+    int k = (int)(wedge->corner & 3);
+    double p[3], q[3];
+    ss_subtract(pose->point[v[k == 2 ? 0 : k + 1]], pose->point[v[k]], p);
+    ss_subtract(pose->point[v[k == 0 ? 2 : k - 1]], pose->point[v[k]], q);
+    double pp = ss_dot(p, p), pq = ss_dot(p, q), qq = ss_dot(q, q);
+    double along = rates[0] * (pp * rates[0] + pq * rates[1]) + rates[1] * (pq * rates[0] + qq * rates[1]);
     double scale = length / sqrt(along);
     rates[0] = ss_most(scale * rates[0], 0), rates[1] = ss_most(scale * rates[1], 0);
     return isfinite(scale);
@@ -60,19 +65,20 @@ static bool share_wedge(const ss_wedge *wedge, double length, double rates[2]) {
 /* The end of a walk that does not leave the triangle. */
 static void end_at_once(const ss_wedge *wedge, const double rates[2], ss_place *place) {
     double weight[3];
-    weight[wedge->corner] = 1 - (rates[0] + rates[1]);
-    weight[(wedge->corner + 1) % 3] = rates[0], weight[(wedge->corner + 2) % 3] = rates[1];
+    int k = (int)(wedge->corner & 3);
+    weight[k] = 1 - (rates[0] + rates[1]);
+    weight[k == 2 ? 0 : k + 1] = rates[0], weight[k == 0 ? 2 : k - 1] = rates[1];
     double sum = weight[1] + weight[2];
     if (sum > 1)
         weight[1] /= sum, weight[2] = 1 - weight[1];
     weight[0] = ss_most(1 - weight[1] - weight[2], 0);
-    ss_place_put(place, wedge->triangle, weight);
+    ss_place_put(place, (int32_t)(wedge->corner >> 2), weight);
 }
 
 static void set_out(const ss_wedge *wedge, const double rates[2], walker *w, ss_place *place) {
-    int k = wedge->corner, next = (k + 1) % 3, last = (k + 2) % 3;
+    int k = (int)(wedge->corner & 3), next = (k + 1) % 3, last = (k + 2) % 3;
     w->rates[next] = rates[0], w->rates[last] = rates[1], w->rates[k] = -rates[0] - rates[1];
-    ss_place_put(place, wedge->triangle, (double[3]){k == 0, k == 1, k == 2});
+    ss_place_put(place, (int32_t)(wedge->corner >> 2), (double[3]){k == 0, k == 1, k == 2});
 }
 
 /* ---- Over sides ---- */
@@ -84,7 +90,7 @@ static bool go_along_side(walker *w, int32_t triangle) {
     int from = (w->came + 1) % 3, to = (w->came + 2) % 3;
     double side[3], way[3];
     ss_subtract(pose->point[v[to]], pose->point[v[from]], side);
-    ss_vector_along(&pose->facet[triangle], w->rates, way);
+    ss_vector_along(pose, triangle, w->rates, way);
     w->rates[to] = ss_dot(way, side) / ss_dot(side, side);
     w->rates[from] = -w->rates[to], w->rates[w->came] = 0;
     return ++w->turned_back <= MOST_TURNED_BACK && isfinite(w->rates[to]);
@@ -99,7 +105,7 @@ static bool go_over(walker *w, ss_place *place, int corner) {
         return false;
     w->came = ss_cross_side(pose->patch, place, corner);
     ss_ground_normal(w->ground, place, normal);
-    if (!ss_turn(w->up, normal, w->heading, direction) || !aim(w, &pose->facet[there], normal, direction))
+    if (!ss_turn(w->up, normal, w->heading, direction) || !aim(w, there, normal, direction))
         return false;
     return w->rates[w->came] >= 0 || go_along_side(w, there);
 }
@@ -121,7 +127,7 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
 double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place) {
     double length = sqrt(way[0] * way[0] + way[1] * way[1]), rates[2];
     const ss_wedge *wedge = length > 0 ? choose_wedge(ground, vertex, way, rates) : NULL;
-    if (!wedge || !share_wedge(wedge, length, rates)) {
+    if (!wedge || !share_wedge(&ground->pose, wedge, length, rates)) {
         *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
         return !(length > 0);
     }
@@ -144,6 +150,6 @@ void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place 
     ss_add(-ss_dot(way, up), up, w.heading);
     w.left = ss_length(w.heading);
     ss_normalise(w.heading);
-    if (w.left > 0 && aim(&w, &ground->pose.facet[place->triangle], up, w.heading))
+    if (w.left > 0 && aim(&w, place->triangle, up, w.heading))
         walk(&w, NULL, place);
 }

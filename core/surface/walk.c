@@ -41,7 +41,7 @@ static void leave(const ss_posed *plane, ss_place *place, const double step[3], 
     if (ss_place_corner(place) >= 0)
         leave_vertex(plane, place, step, rates);
     else
-        ss_rates_along(&plane->facet[place->triangle], step, rates);
+        ss_rates_along(plane, place->triangle, step, rates);
 }
 
 /* ---- Walking ---- */
@@ -56,11 +56,11 @@ static void go_over(const ss_posed *pose, ss_place *place, int corner, double ra
     ss_normalise(side);
     ss_cross(side, pose->facet[here].normal, out);
     ss_cross(side, pose->facet[there].normal, in);
-    ss_vector_along(&pose->facet[here], rates, vector);
+    ss_vector_along(pose, here, rates, vector);
     double along = ss_dot(vector, side), over = ss_dot(vector, out);
     for (int k = 0; k < 3; k++)
         vector[k] = along * side[k] + over * in[k];
-    ss_rates_along(&pose->facet[there], vector, rates);
+    ss_rates_along(pose, there, vector, rates);
     ss_cross_side(patch, place, corner);
 }
 

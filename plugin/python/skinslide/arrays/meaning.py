@@ -360,7 +360,11 @@ class MeshMeaning(Taker):
         return Weld(vertices, read(WeldInfo, info[0]))
 
     def points(self, value: Value | None) -> np.ndarray:
-        """The points of a frame, float32 (V, 3). Raises Fault."""
+        """The points of a frame, float32 (V, 3): those of the value, if they can be taken as they are. Raises Fault."""
+        found = value.value if value and not value.indices else None
+        if isinstance(found, np.ndarray) and found.dtype == np.float32 and found.flags.c_contiguous:
+            _call(lib.skinslide_stage_points, self.handle, value, ffi.NULL)
+            return found
         out = np.empty((self.shape.vertex_count, 3), np.float32)
         _call(lib.skinslide_stage_points, self.handle, value, writable("float[]", out))
         return out

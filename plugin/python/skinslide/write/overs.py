@@ -22,7 +22,7 @@ _INFLUENCES = (
     UsdSkel.Tokens.skelBlendShapes,
 )
 _OWN_FIELDS = {"primChildren", "comment", "customLayerData"}  # of a layer, that say what is in it
-_UNSAVED_BYTES = 64 << 20  # a crate file takes what is saved out of memory
+_UNSAVED_BYTES = 8 << 20  # a crate file takes what is saved out of memory
 
 
 class OverLayer:
