@@ -6,6 +6,7 @@ import os
 import re
 import signal
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
@@ -361,6 +362,25 @@ def test_a_signal_is_answered_while_a_call_goes_on():
         apart(call, signal.SIGINT)
     assert goes_on()
     end_all(ended)
+
+
+def test_a_signal_is_answered_that_wakes_another_thread():
+    ended = threading.Event()
+
+    def call(number):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [number])
+        time.sleep(0.2)  # by when the main thread waits
+        os.kill(os.getpid(), number)
+        ended.wait(5)
+
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            apart(call, signal.SIGINT)
+        assert goes_on()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        end_all(ended)
 
 
 class Reading:

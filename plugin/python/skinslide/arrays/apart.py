@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from typing import Any, TypeVar
 
 T = TypeVar("T")
 APART = "skinslide"  # what the names of threads begin with that a signal leaves at work
+ANSWERED = 0.1  # seconds after which a signal is answered at the latest
 
 
 def apart(make: Callable[..., T], *arguments: Any) -> T:
@@ -31,6 +32,8 @@ def apart(make: Callable[..., T], *arguments: Any) -> T:
         threading.Thread(target=run, name=APART, daemon=True).start()
     except RuntimeError:  # the machine gives no more threads
         return make(*arguments)
+    while not future.done():  # in turns: a signal that another thread takes, or that comes just before, ends no wait
+        wait([future], ANSWERED)
     return future.result()
 
 
