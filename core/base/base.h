@@ -46,6 +46,8 @@ void *ss_take_room(ss_room *room, int64_t count, size_t size);
 void ss_ask_room(ss_room *room, const ss_room *counted);
 /* Makes what was asked for. False where memory is short. */
 bool ss_make_room(ss_room *room);
+/* Asks the shared room for as much as was counted; where there is none, makes an object's own of it. False where memory is short. */
+bool ss_find_room(ss_room *shared, ss_room *own, const ss_room *counted);
 
 /* ---- error.c ---- */
 

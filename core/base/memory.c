@@ -46,3 +46,8 @@ bool ss_make_room(ss_room *room) {
     room->bytes = SS_NEW(&room->memory, char, room->size);
     return room->bytes != NULL;
 }
+
+bool ss_find_room(ss_room *shared, ss_room *own, const ss_room *counted) {
+    ss_ask_room(shared ? shared : own, counted);
+    return shared || ss_make_room(own);
+}

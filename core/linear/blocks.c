@@ -15,12 +15,10 @@ void ss_blocks_lay_out(ss_blocks *blocks, ss_room *room) {
 static skinslide_status find_room(ss_blocks *blocks, ss_room *room, skinslide_error *error) {
     ss_room counted = {0};
     ss_blocks_lay_out(blocks, &counted);
-    ss_ask_room(room ? room : &blocks->own_room, &counted);
-    if (room)
-        return SKINSLIDE_OK;
-    if (!ss_make_room(&blocks->own_room))
+    if (!ss_find_room(room, &blocks->own_room, &counted))
         return ss_out_of_memory(error);
-    ss_blocks_lay_out(blocks, &blocks->own_room);
+    if (!room)
+        ss_blocks_lay_out(blocks, &blocks->own_room);
     return SKINSLIDE_OK;
 }
 

@@ -18,12 +18,10 @@ void ss_factor_lay_out(ss_factor *factor, ss_room *room) {
 static skinslide_status find_room(ss_factor *factor, ss_room *room, skinslide_error *error) {
     ss_room counted = {0};
     ss_factor_lay_out(factor, &counted);
-    ss_ask_room(room ? room : &factor->own, &counted);
-    if (room)
-        return SKINSLIDE_OK;
-    if (!ss_make_room(&factor->own))
+    if (!ss_find_room(room, &factor->own, &counted))
         return ss_out_of_memory(error);
-    ss_factor_lay_out(factor, &factor->own);
+    if (!room)
+        ss_factor_lay_out(factor, &factor->own);
     return SKINSLIDE_OK;
 }
 
