@@ -21,9 +21,9 @@
 /* An edge of which an end may slide. */
 typedef struct ss_spring {
     int32_t edge;
-    int32_t end[2], unknown[2]; /* of the system, -1 of a held end */
-    double square;              /* of its length at rest; 0 where that is under the patch's shortest: such an edge only holds */
-    double slope[2][2];         /* J: of its z as either end slides along its tangents */
+    int32_t end[2];
+    double square;      /* of its length at rest; 0 where that is under the patch's shortest: such an edge only holds */
+    double slope[2][2]; /* J: of its z as either end slides along its tangents */
 } ss_spring;
 
 /* A patch at rest, and what of that every frame needs: immutable. */

@@ -117,12 +117,6 @@ static void fill(ss_sheet *sheet, const float *rest_points) {
     }
 }
 
-static void number_springs(ss_sheet *sheet) {
-    for (int32_t i = 0; i < sheet->spring_count; i++)
-        for (int end = 0; end < 2; end++)
-            sheet->springs[i].unknown[end] = sheet->system->unknown[sheet->springs[i].end[end]];
-}
-
 skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points, ss_sheet **out, skinslide_error *error) {
     ss_sheet *sheet = calloc(1, sizeof *sheet);
     if (!sheet)
@@ -134,8 +128,6 @@ skinslide_status ss_sheet_create(const ss_patch *patch, const float *rest_points
         ss_net net = {patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, sheet->held};
         status = ss_block_system_create(&net, patch->label, &sheet->system, error);
     }
-    if (!status)
-        number_springs(sheet);
     if (status)
         ss_sheet_destroy(sheet);
     else
