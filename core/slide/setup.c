@@ -333,15 +333,6 @@ static skinslide_status bring_rest(const skinslide_slider *slider, skinslide_mes
                          : SKINSLIDE_OK;
 }
 
-static skinslide_status list_face_starts(skinslide_slider *slider, const skinslide_mesh *mesh, ss_memory *memory,
-                                         skinslide_error *error) {
-    slider->face_start = SS_NEW(memory, int32_t, (int64_t)mesh->face_count + 1);
-    if (!slider->face_start)
-        return ss_out_of_memory(error);
-    ss_start_faces(mesh, slider->face_start);
-    return SKINSLIDE_OK;
-}
-
 /* Drops pointers to what is the caller's. */
 static void forget_arrays(skinslide_slider *slider) {
     for (int32_t i = 0; i < slider->setup_count; i++) {
@@ -373,8 +364,8 @@ skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skins
         status = bring_rest(slider, &taken.mesh, &scratch, error);
     if (!status)
         status = copy_setups(slider, mesh, setups, error);
-    if (!status)
-        status = list_face_starts(slider, mesh, &scratch, error);
+    if (!status && !(slider->face_start = ss_list_starts(mesh, &scratch)))
+        status = ss_out_of_memory(error);
     for (int32_t i = 0; i < setup_count && !status; i++)
         status = add_setup(slider, mesh, i, error);
     if (!status)

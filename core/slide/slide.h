@@ -41,11 +41,11 @@ struct skinslide_slider {
     int32_t part_room;     /* for parts, while the slider is built */
     int32_t *weld;         /* [vertex_count] the mesh's; NULL: none */
     ss_topology *topology; /* while the slider is built, once a set-up needs it */
-    int32_t *face_start;   /* of the mesh, while the slider is built */
-    ss_around around;      /* the patches' vertices, for smooth normals */
-    ss_list own;           /* the patches' vertices, and what is one with them */
-    ss_list reads;         /* vertices of a face at a patch */
-    ss_space *space;       /* NULL: the mesh's own */
+    const int32_t *face_start; /* of the mesh, while the slider is built */
+    ss_around around;          /* the patches' vertices, for smooth normals */
+    ss_list own;               /* the patches' vertices, and what is one with them */
+    ss_list reads;             /* vertices of a face at a patch */
+    ss_space *space;           /* NULL: the mesh's own */
 };
 
 /* What is painted on an edge by name, maybe on several copies of it. */
