@@ -110,6 +110,11 @@ static inline float ss_half_to_float(uint16_t half) {
     return half & 0x8000 ? -size : size;
 }
 
+/* Of a point as a mesh has it. */
+static inline bool ss_is_finite(const float point[3]) {
+    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
+}
+
 /* ---- Vectors of three doubles ---- */
 
 #define SS_PI 3.14159265358979323846

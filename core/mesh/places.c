@@ -103,14 +103,10 @@ typedef struct box {
     double margin;
 } box;
 
-static bool is_finite(const float *point) {
-    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
-}
-
 static box box_around(const float *points, int32_t count, double tolerance) {
     box b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 1.001 * tolerance};
     for (int32_t v = 0; v < count; v++)
-        for (int k = 0; k < 3 && is_finite(points + 3 * (int64_t)v); k++) {
+        for (int k = 0; k < 3 && ss_is_finite(points + 3 * (int64_t)v); k++) {
             float x = points[3 * (int64_t)v + k];
             b.low[k] = x < b.low[k] ? x : b.low[k], b.high[k] = x > b.high[k] ? x : b.high[k];
         }
@@ -118,7 +114,7 @@ static box box_around(const float *points, int32_t count, double tolerance) {
 }
 
 static bool is_at(const box *b, const float *point) {
-    bool near = is_finite(point);
+    bool near = ss_is_finite(point);
     for (int k = 0; k < 3; k++)
         near = near && (double)b->low[k] - point[k] <= b->margin && (double)point[k] - b->high[k] <= b->margin;
     return near;

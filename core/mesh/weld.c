@@ -354,7 +354,7 @@ static skinslide_status check_shared(const skinslide_weld *weld, const float *po
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no points");
     for (int32_t i = 0; i < weld->shared_count; i++) {
         const float *point = points + 3 * (int64_t)weld->shared[i];
-        if (!isfinite(point[0]) || !isfinite(point[1]) || !isfinite(point[2]))
+        if (!ss_is_finite(point))
             return ss_refuse_vertex("points", weld->shared[i], point, 3, SKINSLIDE_BAD_POINTS, error);
     }
     return SKINSLIDE_OK;

@@ -2,7 +2,6 @@
  * pass as they are, whatever they hold, and cost a frame nothing. */
 #include "slide.h"
 
-#include <math.h>
 #include <stdio.h>
 
 static bool is_at_patch(const skinslide_mesh *mesh, const int32_t *vertices, int32_t count, const uint8_t *chosen) {
@@ -46,16 +45,12 @@ bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, cons
     return done;
 }
 
-static bool is_finite(const float *point) {
-    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
-}
-
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error) {
     if (!points)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
     for (int32_t i = 0; i < slider->reads.count; i++) {
         int32_t v = slider->reads.vertex[i];
-        if (!is_finite(points + 3 * (int64_t)v))
+        if (!ss_is_finite(points + 3 * (int64_t)v))
             return ss_refuse_vertex(what, v, points + 3 * (int64_t)v, 3, SKINSLIDE_BAD_POINTS, error);
     }
     return SKINSLIDE_OK;
@@ -79,7 +74,7 @@ skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, c
     skinslide_status status = ss_check_reads(slider, points, "points", error);
     int32_t count = 0, first = -1;
     for (int32_t v = 0; v < slider->vertex_count && !status; v++)
-        if (!is_finite(points + 3 * (int64_t)v))
+        if (!ss_is_finite(points + 3 * (int64_t)v))
             first = count++ ? first : v;
     if (!status)
         *passed = count;

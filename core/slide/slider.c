@@ -107,15 +107,11 @@ static void land(const skinslide_workspace *workspace, const float *points, int3
     }
 }
 
-static bool is_finite(const float point[3]) {
-    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
-}
-
 static skinslide_status check_landing(const skinslide_workspace *workspace, const ss_patch *patch, int32_t vertex,
                                       const float *points, skinslide_error *error) {
     float to[3];
     land(workspace, points, vertex, to);
-    if (is_finite(to))
+    if (ss_is_finite(to))
         return SKINSLIDE_OK;
     return ss_fail(error, SKINSLIDE_BAD_POINTS, "%s: vertex %d slides to where it is not finite: (%g, %g, %g)", patch->label,
                    vertex, to[0], to[1], to[2]);
@@ -147,7 +143,7 @@ static skinslide_status write_points(const skinslide_workspace *workspace, const
     bool finite = true;
     for (int32_t i = 0; i < own->count; i++) {
         land(workspace, points, own->vertex[i], workspace->landed[i]);
-        finite = finite && is_finite(workspace->landed[i]);
+        finite = finite && ss_is_finite(workspace->landed[i]);
     }
     skinslide_status status = finite ? SKINSLIDE_OK : refuse_landing(workspace, points, error);
     if (status)

@@ -2,15 +2,10 @@
 #include "mesh.h"
 #include "stage.h"
 
-#include <math.h>
 #include <string.h>
 
 skinslide_bool skinslide_stage_patch_wants_neighbours(const skinslide_stage_patch *patch) {
     return patch && patch->mesh->weld != 0 && patch->faces.count && patch->taken[SS_ROW_HOLES].choice != SKINSLIDE_HOLES_PINNED;
-}
-
-static bool is_finite(const float *point) {
-    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
 }
 
 /* points and met are [vertices.count] of the patch. One that has a point at each of them is a copy of it, such as a proxy, and holds
@@ -18,7 +13,7 @@ static bool is_finite(const float *point) {
 static void hold(const skinslide_stage_patch *patch, const float *points, const uint8_t *met, uint8_t *held) {
     bool all = true;
     for (int32_t i = 0; i < patch->vertices.count; i++)
-        all = all && (met[i] || !is_finite(points + 3 * (int64_t)i));
+        all = all && (met[i] || !ss_is_finite(points + 3 * (int64_t)i));
     for (int32_t i = 0; i < patch->vertices.count && !all; i++)
         held[((const int32_t *)patch->vertices.values)[i]] |= met[i];
 }

@@ -1,7 +1,6 @@
 /* Rest points: the pose in which nothing slides. Of several candidates the first that is authored counts, good or bad. */
 #include "stage.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,7 +20,7 @@ static skinslide_status none_found(skinslide_error *error) {
 
 static skinslide_status check_finite(const float *rest, int64_t count, const char *source, skinslide_error *error) {
     for (int64_t i = 0; i < count; i++, rest += 3)
-        if (!isfinite(rest[0]) || !isfinite(rest[1]) || !isfinite(rest[2]))
+        if (!ss_is_finite(rest))
             return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED "[%lld] is (%g, %g, %g)", SS_NAME(source),
                            (long long)i, (double)rest[0], (double)rest[1], (double)rest[2]);
     return SKINSLIDE_OK;
