@@ -1,6 +1,7 @@
 """The report page in a real browser, headless Chromium: what it shows, what it does, and that it loads nothing."""
 
 import base64
+import contextlib
 import io
 import json
 import math
@@ -814,18 +815,76 @@ def test_a_rate_that_cannot_be_played(report, rate):
 # ---- On a phone, on paper, by ear ----
 
 
-@pytest.mark.parametrize("width", [1280, 800, 400])
-def test_it_fits_the_screen(shot, driver, width):
+@contextlib.contextmanager
+def screen(driver, width: int):
+    """A screen so wide; under 500 pixels that of a phone."""
     metrics = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": width < 500}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
     try:
+        yield
+    finally:
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+@pytest.mark.parametrize("width", [1280, 800, 400])
+def test_it_fits_the_screen(shot, driver, width):
+    with screen(driver, width):
         assert shot.run("return [innerWidth, document.documentElement.scrollWidth]")[1] <= width
         texts = shot.run(
             "return [...document.querySelectorAll('.chart text')].map((t) => t.getBoundingClientRect().height)"
         )
         assert 9 <= min(texts) <= max(texts) <= 20  # pixels
-    finally:
-        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+VIEWS = ("chequer", "stretch", "density", "slide", "texture")
+RULES = ("before", "unit", "fast", "relaxed", "even")
+
+
+@pytest.fixture
+def every_view(show, report) -> Shown:
+    """All there is to choose among: every view, and every rule."""
+    strips = []
+    for each in strips_of(report):
+        pictures = {view: each.pictures["chequer"] for view in VIEWS}
+        strips.append(replace(each, pictures=pictures, columns=RULES))
+    return show(strips, report)
+
+
+@pytest.mark.parametrize("width", [360, 390, 768, 1280])
+def test_every_choice_is_within_the_screen(every_view, driver, width):
+    with screen(driver, width):
+        assert every_view.run("return document.documentElement.scrollWidth") <= width
+        for choice in every_view.all(".choice label"):
+            every_view.run("arguments[0].scrollIntoView({block: 'nearest', inline: 'nearest'})", choice)
+            left, right = every_view.run(
+                "const b = arguments[0].getBoundingClientRect(); return [b.left, b.right]", choice
+            )
+            assert 0 <= left < right <= width
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_link_leads_to_a_heading_in_sight(every_view, driver, width):
+    """Below the player, which takes more lines the narrower the page is."""
+    with screen(driver, width):
+        every_view.next_paint()
+        every_view.all(".summary a")[1].click()
+        heading = "return arguments[0].getBoundingClientRect().top"
+        player = every_view.run("return document.querySelector('.player').getBoundingClientRect().bottom")
+        assert player <= every_view.run(heading, every_view.one("h2", every_view.sections[1])) < 800
+
+
+def test_on_a_phone_the_gain_is_in_sight(shot, driver):
+    with screen(driver, 390):
+        change = shot.all(".summary tbody tr:first-child td")[3]
+        assert change.text.endswith("%")
+        assert shot.run("return arguments[0].getBoundingClientRect().right", change) <= 390
+
+
+def test_many_problems_leave_room_for_the_pictures(show, report):
+    report = replace(report, warnings=[Problem("warning", SHEET, "skin", None, f"warning {i}") for i in range(100)])
+    shown = show(strips_of(report), report)
+    assert len(shown.all(".problems tbody tr")) >= 100
+    assert shown.run("return document.querySelector('.problems').offsetHeight") < 300
 
 
 def test_it_is_light_dark_and_on_paper_light(shot, driver):
@@ -871,7 +930,7 @@ def test_a_page_of_many_shots_is_sorted_by_its_headings(open_file, tmp_path, cap
         return [row.text.split(".usda")[0].split("/")[-1] for row in shown.all(".sorted tbody tr")]
 
     assert names() == ["second", "first", "third"]  # by what is left
-    heading = shown.all(".sorted thead button")[2]
+    heading = shown.all(".sorted thead button")[8]
     heading.click()
     assert names() == ["second", "first", "third"] and heading.text == "frames"
     heading.click()

@@ -46,7 +46,7 @@ def test_the_command(baked, capsys):
     said = capsys.readouterr().out
     assert f"{baked / 'shots.html'}: written" in said and said.count("bake.json") == 2
     text = (baked / "shots.html").read_text()
-    assert 'href="b/report.html"' in text and "a/bake.json" in text
+    assert 'href="b/report.html"' in text and "a/<wbr>bake.json" in text
     assert main(["report", str(baked), "-o", str(baked / "b" / "all.html"), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["page"] == str(baked / "b" / "all.html") and len(told["shots"]) == 2

@@ -230,12 +230,16 @@ function makeJump(place) {
 }
 
 const strips = [...document.querySelectorAll(".strip")].map(readStrip);
-document.querySelector(".player").hidden = !document.querySelector(".player > :not([hidden])");
+const player = document.querySelector(".player");
+player.hidden = !player.querySelector(":scope > :not([hidden])");
+/* What a link leads to comes to stand below the player, however many lines that takes. */
+new ResizeObserver(() => (document.documentElement.style.scrollPaddingTop = `${player.offsetHeight}px`)).observe(player);
 slider.addEventListener("input", () => go(Number(slider.value)));
 play.addEventListener("click", () => setPlaying(due === null));
 document.addEventListener("keydown", pressed);
 document.querySelectorAll(".choice input").forEach((choice) => choice.addEventListener("change", () => go(current)));
 if (place) {
+  document.querySelector(".keys").hidden = false;
   place.addEventListener("click", () => setPlace(!inOnePlace()));
   flicker.addEventListener("click", () => setFlickering(flickering === null));
   wipe.addEventListener("input", () => setFlickering(false) ?? setWipe(Number(wipe.value)));
