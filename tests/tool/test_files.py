@@ -95,6 +95,19 @@ def test_variants_that_are_not_selected(tmp_path):
         refused(tmp_path / "shot.usda", tmp_path / f"{read}.usda")
 
 
+@pytest.mark.parametrize("texture", ["skin.<UDIM>.png", "gone.<UDIM>.png", "gone.png"])
+def test_nothing_is_said_of_textures(texture, tmp_path, capfd):
+    """Which are often elsewhere than the shot, and no concern of a bake."""
+    stage, _mesh = stages.patched_stage()
+    shader = stage.DefinePrim("/World/skin", "Shader")
+    shader.CreateAttribute("inputs:file", Sdf.ValueTypeNames.Asset).Set(Sdf.AssetPath(f"./{texture}"))
+    shot = stages.save(stage, tmp_path / "shot.usda")
+    (tmp_path / "skin.1001.png").touch()
+    for _ in range(2):  # the second time it might be what the stage reads
+        assert main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--quiet"]) == 0
+    assert capfd.readouterr() == ("", "")
+
+
 def test_an_input_that_appears_while_it_is_read(shot, tmp_path, monkeypatch):
     """What is not there when the bake starts can still be a clip that the stage reads in the end."""
     output = tmp_path / "late.usda"

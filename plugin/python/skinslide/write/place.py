@@ -154,8 +154,10 @@ def _dependencies(stage: Usd.Stage) -> list[str]:
         found.extend(layer.ComputeAbsolutePath(file) for file in files if file)
         return UsdUtils.DependencyInfo() if clips else named  # USD would look for a file of the template's name
 
+    unsaid = UsdUtils.CoalescingDiagnosticDelegate()  # while it lives, USD's warnings of missing textures
     with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
         UsdUtils.ComputeAllDependencies(stage.GetRootLayer().identifier, collect)
+    unsaid.TakeUncoalescedDiagnostics()
     return found
 
 
