@@ -24,6 +24,7 @@ typedef struct search {
     skinslide_stage_prim prim;
     const char **patches;
     patch_name *by_name; /* [patch_count] */
+    ss_paint_names paint;
     const skinslide_stage_problem **problems;
     int32_t room; /* for problems, before there must be more */
 } search;
@@ -110,14 +111,18 @@ typedef struct place {
     size_t name_length;
 } place;
 
+/* How long a name is without the ending of indices of a primvar. */
+static size_t without_indices(const char *property) {
+    static const char indices[] = ":indices";
+    size_t length = strlen(property), ending = sizeof indices - 1;
+    return length > ending && strcmp(property + length - ending, indices) == 0 ? length - ending : length;
+}
+
 static place place_of(const char *property) {
     for (int32_t space = 0; space < SPACES; space++) {
-        static const char indices[] = ":indices";
-        size_t skipped = strlen(spaces[space]), length = strlen(property);
+        size_t skipped = strlen(spaces[space]), length = without_indices(property);
         if (strncmp(property, spaces[space], skipped) != 0)
             continue;
-        if (length > sizeof indices - 1 && strcmp(property + length - (sizeof indices - 1), indices) == 0)
-            length -= sizeof indices - 1;
         if (length < skipped)
             break;
         const char *patch = property + skipped, *name = property + length;
@@ -179,7 +184,8 @@ static void say_unapplied(search *own) {
     int32_t count = 0;
     for (int32_t i = 0; names && i < own->prim.property_count; i++) {
         place at = place_of(own->prim.properties[i]);
-        if (!at.patch_length || is_applied(own, &at) || ss_is_reserved(at.patch, strcspn(at.patch, ":")))
+        if (!at.patch_length || is_applied(own, &at) || ss_is_reserved(at.patch, strcspn(at.patch, ":")) ||
+            ss_is_paint(&own->paint, own->prim.properties[i]))
             continue;
         char *name = SS_NEW(&own->memory, char, (int64_t)at.patch_length + 1);
         if (!name)
@@ -218,7 +224,7 @@ static int32_t list_strays(const search *own, int32_t property, stray *out) {
     place at = place_of(own->prim.properties[property]);
     bool applied = at.patch_length && is_applied(own, &at);
     int32_t count = 0;
-    if (applied && is_setting(&at))
+    if ((applied && is_setting(&at)) || ss_is_paint(&own->paint, own->prim.properties[property]))
         return 0;
     for (size_t length = at.patch_length; length > 0; length = applied ? 0 : outer(at.patch, length)) {
         int32_t first, end = find_named(own, at.patch, length, &first);
@@ -243,6 +249,43 @@ static void say_unknown(search *own) {
     for (int32_t i = 0; i < count; i++)
         say(own, SKINSLIDE_SEVERITY_WARNING, own->patches[strays[i].patch],
             "%s is no setting of a patch, and counts for nothing", own->prim.properties[strays[i].property]);
+}
+
+/* ---- Paint under names that are none ---- */
+
+/* Whether the mesh says if case counts. */
+static bool says_case(const skinslide_stage_prim *prim) {
+    int32_t count;
+    const skinslide_stage_input *input = &ss_inputs(SKINSLIDE_STAGE_MESH, &count)[SS_ROW_FOLD_CASE].shown;
+    bool found = false;
+    for (int32_t i = 0; i < prim->property_count; i++) {
+        const char *name = prim->properties[i];
+        size_t length = strlen(input->prefix);
+        found = found || (strncmp(name, input->prefix, length) == 0 && strcmp(name + length, input->name) == 0);
+    }
+    return found;
+}
+
+/* Whether a name that is like those of paint has a patch in it, and an input: what a bake tells of the skin has one part. */
+static bool has_parts(const char *name) {
+    const char *patch = name + sizeof "primvars:" SS_NAMESPACE - 1;
+    size_t length = strcspn(patch, ":_");
+    return patch[length] && !ss_is_reserved(patch, length);
+}
+
+static void say_misnamed(search *own) {
+    bool case_is_said = says_case(&own->prim);
+    for (int32_t i = 0; i < own->paint.count; i++) {
+        const char *name = own->paint.names[i], *patch = own->paint.patches[i];
+        if (name[without_indices(name)])
+            continue; /* said of what they index */
+        if (patch && own->paint.in_another_case[i] && !case_is_said)
+            say(own, SKINSLIDE_SEVERITY_WARNING, patch,
+                "%s is paint in another case, and counts for nothing unless " SS_NAMESPACE "foldCase is on", name);
+        else if (!patch && !place_of(name).patch_length && has_parts(name))
+            say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "%s is no paint of a patch that is applied, and counts for nothing",
+                name);
+    }
 }
 
 /* ---- UsdSkel ---- */
@@ -331,8 +374,11 @@ static void look(search *own) {
     bool named = list_patches(own);
     if (own->memory.failed || !sort_patches(own))
         return;
-    if (own->prim.is_mesh)
-        say_unapplied(own), say_unknown(own);
+    if (own->prim.is_mesh) {
+        own->paint =
+            ss_list_paint(&own->memory, own->prim.properties, own->prim.property_count, own->patches, own->finding.patch_count);
+        say_unapplied(own), say_unknown(own), say_misnamed(own);
+    }
     if (has_influences(&own->prim) && !why_not_skinned(&own->prim))
         own->finding.skinned_by = ss_copy_text(&own->memory, own->prim.skeleton);
     if (own->finding.patch_count)

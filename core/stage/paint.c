@@ -2,6 +2,8 @@
  * colours, by point, by face, or by face corner. */
 #include "stage.h"
 
+#include "schema.inc"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,10 +23,10 @@ static likeness like_letter(char wanted, char letter) {
     return letter == wanted ? LIKE_ITSELF : wanted == ':' && letter == '_' ? LIKE_UNDERSCORED : LIKE_FOLDED;
 }
 
-/* An input of a patch under the schema's name: the parts of that. */
-enum { PARTS = 4 };
-#define PARTS_OF(patch, input)                                                                                                 \
-    { (input)->prefix, (patch)->name, ":", (input)->name }
+/* An input of a patch under the schema's name: the parts of that. more: what follows, such as :indices. */
+enum { PARTS = 5 };
+#define PARTS_OF(patch, input, more)                                                                                           \
+    { (input)->prefix, patch, ":", (input)->name, more }
 
 /* As strcmp, folded, of a text that is joined of parts with a name; NULL is an empty one. */
 static int compare(const char *const *parts, int count, const char *name) {
@@ -48,8 +50,7 @@ void skinslide_stage_sort_names(const char **names, int32_t count) {
         qsort(names, (size_t)count, sizeof *names, by_folded);
 }
 
-static likeness like_input(const skinslide_stage_patch *patch, const skinslide_stage_input *input, const char *name) {
-    const char *const parts[PARTS] = PARTS_OF(patch, input);
+static likeness like_parts(const char *const *parts, const char *name) {
     if (!name || strncmp(name, SS_PRIMVARS, strlen(SS_PRIMVARS)) != 0 || compare(parts, PARTS, name) != 0)
         return LIKE_NOTHING;
     likeness found = LIKE_ITSELF;
@@ -58,7 +59,7 @@ static likeness like_input(const skinslide_stage_patch *patch, const skinslide_s
             likeness own = like_letter(*letter, *name);
             found = own < found ? own : found;
         }
-    return found == LIKE_FOLDED && !patch->mesh->fold_case ? LIKE_NOTHING : found;
+    return found;
 }
 
 /* Of sorted names, the first that is not before an input's. */
@@ -78,15 +79,68 @@ int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const
                                        const char *const *names, int32_t count) {
     if (!patch || !input || !input->is_primvar)
         return -1;
-    const char *const parts[PARTS] = PARTS_OF(patch, input);
-    likeness best = LIKE_NOTHING;
+    const char *const parts[PARTS] = PARTS_OF(patch->name, input, "");
+    likeness best = patch->mesh->fold_case ? LIKE_NOTHING : LIKE_FOLDED;
     int32_t found = -1;
     for (int32_t i = first_like(parts, names, count); i < count && compare(parts, PARTS, names[i]) == 0; i++) {
-        likeness own = like_input(patch, input, names[i]);
+        likeness own = like_parts(parts, names[i]);
         if (own > best)
             best = own, found = i;
     }
     return found;
+}
+
+/* ---- What of a prim's names is like those of paint ---- */
+
+/* Whether a name begins as those of paint do, folded. */
+static bool begins_like_paint(const char *name) {
+    static const char start[] = SS_PRIMVARS SS_NAMESPACE;
+    size_t i = 0;
+    while (start[i] && folded(start[i]) == folded(name[i]))
+        i++;
+    return strncmp(name, SS_PRIMVARS, strlen(SS_PRIMVARS)) == 0 && !start[i];
+}
+
+/* Of a name that is like paint of several patches, the one whose case it has. */
+static void match_input(const char *patch, const skinslide_stage_input *input, const char *more, ss_paint_names *all) {
+    const char *const parts[PARTS] = PARTS_OF(patch, input, more);
+    int32_t first = first_like(parts, all->names, all->count);
+    for (int32_t i = first; i < all->count && compare(parts, PARTS, all->names[i]) == 0; i++)
+        if (!all->patches[i] || all->in_another_case[i]) {
+            all->patches[i] = patch;
+            all->in_another_case[i] = like_parts(parts, all->names[i]) == LIKE_FOLDED;
+        }
+}
+
+static void match_patch(const char *patch, ss_paint_names *all) {
+    for (int32_t group = SKINSLIDE_STAGE_PATCH; group <= SKINSLIDE_STAGE_CONTROLS; group++) {
+        int32_t count;
+        const ss_input *inputs = ss_inputs((skinslide_stage_group)group, &count);
+        for (int32_t i = 0; i < count; i++)
+            if (inputs[i].shown.is_primvar)
+                match_input(patch, &inputs[i].shown, "", all), match_input(patch, &inputs[i].shown, ":indices", all);
+    }
+}
+
+ss_paint_names ss_list_paint(ss_memory *memory, const char *const *properties, int32_t count, const char *const *patches,
+                             int32_t patch_count) {
+    ss_paint_names all = {.names = SS_NEW(memory, const char *, count)};
+    for (int32_t i = 0; all.names && i < count; i++)
+        if (begins_like_paint(properties[i]))
+            all.names[all.count++] = properties[i];
+    all.patches = SS_NEW(memory, const char *, all.count);
+    all.in_another_case = SS_NEW(memory, bool, all.count);
+    if (memory->failed)
+        return (ss_paint_names){0};
+    skinslide_stage_sort_names(all.names, all.count);
+    for (int32_t i = 0; all.count && i < patch_count; i++)
+        match_patch(patches[i], &all);
+    return all;
+}
+
+bool ss_is_paint(const ss_paint_names *all, const char *property) {
+    const char **found = all->count ? bsearch(&property, all->names, (size_t)all->count, sizeof *all->names, by_folded) : NULL;
+    return found && all->patches[found - all->names];
 }
 
 /* ---- Types ---- */
@@ -205,7 +259,8 @@ skinslide_bool skinslide_stage_patch_describe(const skinslide_stage_patch *patch
     const skinslide_value *own = &record.value;
     bool has_channel = own->width > 1 && channel_of(patch) >= 0;
     bool is_plain_type = own->type <= SKINSLIDE_VALUE_INT32 || own->type == SKINSLIDE_VALUE_FLOAT;
-    bool is_itself = like_input(patch, input, own->name) == LIKE_ITSELF;
+    const char *const parts[PARTS] = PARTS_OF(patch->name, input, "");
+    bool is_itself = like_parts(parts, own->name) == LIKE_ITSELF;
     if (is_itself && is_plain_type && ss_is_plain_paint(&record))
         return 0;
     snprintf(text, 512, "%s comes from " SS_NAMED ", " SS_NAMED "%s%s%s", input->name, SS_NAME(own->name),

@@ -297,6 +297,20 @@ struct skinslide_stage_patch {
 
 /* ---- paint.c ---- */
 
+/* The properties of a prim whose names begin as those of paint do, but for case and underscores; sorted. */
+typedef struct ss_paint_names {
+    int32_t count;
+    const char **names;
+    const char **patches;  /* [count] whose paint each is, but for those; NULL: of none */
+    bool *in_another_case; /* [count] */
+} ss_paint_names;
+
+/* Empty where memory failed. */
+ss_paint_names ss_list_paint(ss_memory *memory, const char *const *properties, int32_t count, const char *const *patches,
+                             int32_t patch_count);
+/* Whether a property is paint of a patch, or indices of it, but for case and underscores. */
+bool ss_is_paint(const ss_paint_names *all, const char *property);
+
 /* Checks that a record is of real numbers, or of what chooses faces, of which one counts for each element. patch: which says what
  * channel that is; NULL: none does. */
 skinslide_status ss_check_paint_type(const skinslide_stage_patch *patch, const ss_record *record, bool of_faces,

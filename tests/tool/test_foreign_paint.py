@@ -1,6 +1,7 @@
 """Paint as tools leave it: what `check` says of it, and a set-up beside a cache that is exported again."""
 
 import numpy as np
+import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 import skinslide
@@ -27,6 +28,20 @@ def test_check_says_what_it_took():
         "the mean over the face corners at each point",
         "forceDensity comes from primvars:skinSlide:elbow_L:forceDensity, double[]",
     ]
+
+
+@pytest.mark.parametrize("fold", [False, True])
+def test_check_says_what_it_did_not_take(fold):
+    stage, mesh = stages.patched_stage()
+    for name in (f"{PLACE}_wieght", f"{PLACE}_weight".lower(), f"{PLACE}:MaxDistance"):
+        stages.set_primvar(mesh, name.replace(f"{PLACE}_", f"skinSlide_{PATCH}_"), Types.FloatArray, "constant", [1.0])
+    if fold:
+        mesh.GetPrim().CreateAttribute("skinSlide:foldCase", Types.Bool).Set(True)
+    told = [problem.message for problem in skinslide.check(stage).problems if problem.severity == "warning"]
+    case = "is paint in another case, and counts for nothing unless skinSlide:foldCase is on"
+    assert told == [
+        f"primvars:{name} {case}" for name in (f"{PLACE}:MaxDistance", f"{PLACE}_weight".lower()) if not fold
+    ] + [f"primvars:skinSlide_{PATCH}_wieght is no paint of a patch that is applied, and counts for nothing"]
 
 
 def exported(path, amount: float) -> None:

@@ -182,7 +182,7 @@ typedef struct skinslide_stage_prim {
     skinslide_bool has_joint_indices; /* primvars:skel:jointIndices has a value, be it inherited */
     int32_t blend_shape_count;        /* targets of skel:blendShapeTargets */
     int32_t schema_count;             /* of applied schemas */
-    int32_t property_count;           /* of authored properties whose names begin with skinSlide: or primvars:skinSlide: */
+    int32_t property_count;           /* of authored properties that begin with skinSlide: or primvars: */
     const char *const *schemas;       /* [schema_count] their names, in order */
     const char *const *properties;    /* [property_count] their names */
     const char *uncomposed;           /* what USD says that it could not compose of it, in one line; or NULL */

@@ -196,6 +196,42 @@ static void settings_that_are_none(void **state) {
     skinslide_stage_finding_destroy(finding);
 }
 
+#define NO_PAINT "is no paint of a patch that is applied, and counts for nothing"
+#define CASE     "is paint in another case, and counts for nothing unless skinSlide:foldCase is on"
+
+/* Under names of tools that know no namespaces, or no case; what a bake tells of the skin is no paint. */
+static void paint_that_counts_for_nothing(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow_L", "SkinSlideAPI:left:knee");
+    HAS(&prim, "primvars:skinSlide_elbow_L_weight", "primvars:skinSlide_elbow_L_weight:indices",
+        "primvars:skinSlide:left_knee:patch", "primvars:skinSlide_stretch", "primvars:skinSlide:areaRatio",
+        "primvars:skinSlide_elbow_L_wieght", "primvars:skinSlide_elbow_L_wieght:indices", "primvars:SKINSLIDE:ankle_weight",
+        "primvars:skinslide_elbow_l_hold", "primvars:skinslide_elbow_l_hold:indices", "primvars:skinSlide:elbow_l:weight",
+        "primvars:st", "primvars:skin", "skinslide_elbow_l_weight");
+    skinslide_stage_finding *finding = find(&prim);
+    assert_true(finding->slides);
+    assert_int_equal(finding->problem_count, 4);
+    expect_problem(finding, 0, SKINSLIDE_SEVERITY_WARNING, NULL, "primvars:SKINSLIDE:ankle_weight " NO_PAINT);
+    expect_problem(finding, 1, SKINSLIDE_SEVERITY_WARNING, "elbow_L", "primvars:skinslide_elbow_l_hold " CASE);
+    expect_problem(finding, 2, SKINSLIDE_SEVERITY_WARNING, "elbow_L", "primvars:skinSlide:elbow_l:weight " CASE);
+    expect_problem(finding, 3, SKINSLIDE_SEVERITY_WARNING, NULL, "primvars:skinSlide_elbow_L_wieght " NO_PAINT);
+    skinslide_stage_finding_destroy(finding);
+}
+
+/* Where the mesh says whether case counts, there is nothing to say; of patches that differ in case each has its own. */
+static void paint_in_another_case(void **state) {
+    (void)state;
+    skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow_L", "SkinSlideAPI:ELBOW_L");
+    HAS(&prim, "skinSlide:foldCase", "primvars:skinslide_elbow_l_weight", "primvars:skinSlide:elbow_l:patch:indices",
+        "primvars:skinSlide:elbow_L:Hold", "primvars:skinSlide:ELBOW_L:weight");
+    for (int32_t said = 1; said >= 0; said--) {
+        prim.properties += !said, prim.property_count -= !said;
+        skinslide_stage_finding *finding = find(&prim);
+        assert_int_equal(finding->problem_count, said ? 0 : 2);
+        skinslide_stage_finding_destroy(finding);
+    }
+}
+
 /* Every input is a setting, so that none is warned of. */
 static void every_input_is_a_setting(void **state) {
     (void)state;
@@ -366,6 +402,8 @@ int main(void) {
         cmocka_unit_test(a_schema_without_a_name_is_an_error),
         cmocka_unit_test(patches_that_are_not_applied),
         cmocka_unit_test(settings_that_are_none),
+        cmocka_unit_test(paint_that_counts_for_nothing),
+        cmocka_unit_test(paint_in_another_case),
         cmocka_unit_test(every_input_is_a_setting),
         cmocka_unit_test(many_and_long_names),
         cmocka_unit_test(strays_are_those_of_each_patch),

@@ -9,7 +9,7 @@ from pxr import Plug, Sdf, Usd, UsdGeom
 from skinslide.arrays.meaning import SCHEMA, PrimFacts, find
 
 NAMESPACE = "skinSlide"
-SPACES = (NAMESPACE, f"primvars:{NAMESPACE}")
+SPACES = (NAMESPACE, "primvars")
 # Values of the cache that a bake into the same layer has taken the place of.
 CACHED = f"{NAMESPACE}:cached"
 
