@@ -413,7 +413,7 @@ def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.
         source = np.asarray(values)
     except (TypeError, ValueError) as error:  # rows of different lengths
         raise SliderError("BAD_ARGUMENT", f"{what}: {error}") from error
-    if source.ndim != len(shape) or any(size not in (-1, got) for size, got in zip(shape, source.shape, strict=True)):
+    if source.shape != shape and not _fits(source.shape, shape):
         wanted = " x ".join("n" if size == -1 else str(size) for size in shape)
         got = " x ".join(map(str, source.shape)) or "a single value"
         raise SliderError("BAD_ARGUMENT", f"{what}: the shape is {got}; it must be {wanted}")
@@ -428,6 +428,10 @@ def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.
     if not fits or (dtype == np.int32 and not np.array_equal(result, source)):
         raise SliderError("BAD_ARGUMENT", f"{what}: {source.dtype} values do not fit {np.dtype(dtype)}")
     return result
+
+
+def _fits(got: tuple[int, ...], shape: tuple[int, ...]) -> bool:
+    return len(got) == len(shape) and all(wanted in (-1, size) for wanted, size in zip(shape, got, strict=True))
 
 
 def writable(ctype: str, array: np.ndarray) -> Any:
@@ -465,7 +469,9 @@ def read(kind: type[Record], *structs: Any) -> Record:
     """A record of the fields of structs, text and tokens as str."""
     values: dict[str, Any] = {}
     for struct in structs:
-        names, get, meanings = _fields(ffi.typeof(struct))
+        names, get, meanings = _fields(kind._fields, ffi.typeof(struct))
+        if names == kind._fields and not meanings:
+            return kind._make(get(struct))  # numbers alone, as each patch has them in each frame
         values.update(zip(names, get(struct), strict=True))
         for name, meaning in meanings.items():
             values[name] = meaning(values[name])
@@ -473,13 +479,16 @@ def read(kind: type[Record], *structs: Any) -> Record:
 
 
 @cache
-def _fields(struct: Any) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]], dict[str, Callable[[Any], str]]]:
-    """The names of the fields of a type, what gets them all, and of those that are no numbers what they mean."""
-    names, meanings = tuple(name for name, _ in struct.fields), dict[str, Callable[[Any], str]]()
-    for name, field_ in struct.fields:
-        if field_.type.kind == "enum":
-            meanings[name] = partial(token_of, field_.type.cname.removeprefix("enum skinslide_"))
-        elif field_.type.kind != "primitive":
+def _fields(
+    wanted: tuple[str, ...], struct: Any
+) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]], dict[str, Callable[[Any], str]]]:
+    """Which of the wanted fields a type has, what gets them all, and of those that are no numbers what they mean."""
+    types = {name: field_.type for name, field_ in struct.fields}
+    names, meanings = tuple(name for name in wanted if name in types), dict[str, Callable[[Any], str]]()
+    for name in names:
+        if types[name].kind == "enum":
+            meanings[name] = partial(token_of, types[name].cname.removeprefix("enum skinslide_"))
+        elif types[name].kind != "primitive":
             meanings[name] = text
     return names, operator.attrgetter(*names), meanings
 
