@@ -134,13 +134,30 @@ def test_the_command_is_installed(command):
     assert skinslide.__version__ in done.stdout
 
 
+def test_numpy_starts_no_threads_in_a_command():
+    """As its BLAS does, one for each processor, where it is let."""
+    said = run_python("""
+        import os
+        from skinslide.command import cli, start
+
+        def main():
+            import numpy
+            print(numpy.__name__, len(os.listdir("/proc/self/task")))
+            return 0
+
+        cli.main = main
+        start.run()
+    """)
+    assert said.split() == ["numpy", "1"]
+
+
 def test_an_interruption_while_the_command_is_loaded(tmp_path):
     code = """
-        import os, signal, sys
-        from skinslide.command.start import main
+        import os, signal
+        from skinslide.command.start import run
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         os.kill(os.getpid(), signal.SIGINT)  # comes as soon as it is let through
-        sys.exit(main())
+        run()
     """
     command = [sys.executable, "-c", textwrap.dedent(code), "check", tmp_path / "shot.usda"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -150,16 +167,16 @@ def test_an_interruption_while_the_command_is_loaded(tmp_path):
 def test_an_interruption_while_a_patch_is_set_up(tmp_path):
     """Which may take minutes, within one call of the library."""
     code = """
-        import os, signal, sys, threading
+        import os, signal, threading
         from skinslide.arrays import slider
-        from skinslide.command.start import main
+        from skinslide.command.start import run
 
         def create(*_arguments):
             os.kill(os.getpid(), signal.SIGINT)
             threading.Event().wait()
 
         slider._create = create
-        sys.exit(main())
+        run()
     """
     shot, out = stages.save(stages.patched_stage()[0], tmp_path / "shot.usda"), tmp_path / "out.usda"
     command = [sys.executable, "-c", textwrap.dedent(code), "bake", shot, "-o", out]

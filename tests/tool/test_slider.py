@@ -17,7 +17,7 @@ import skinslide
 import stages
 from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.arrays import slider
-from skinslide.arrays.apart import APART, apart, goes_on
+from skinslide.arrays.apart import APART, apart
 from skinslide.shot.workers import pool_of
 from skinslide.stage.textures import give_files
 
@@ -329,6 +329,11 @@ def test_a_signal_stops_the_frames_of_a_pool(own_sheet, rest):
         frames = [pool.submit(slid_until_stopped, own_sheet, bumped(rest)) for _ in range(9)]
         raise KeyboardInterrupt
     assert all(frame.cancelled() or frame.result() == "INTERRUPTED" for frame in frames)
+
+
+def goes_on():
+    """Whether something goes on that nobody waits for."""
+    return any(thread.name.startswith(APART) for thread in threading.enumerate())
 
 
 def end_all(ended):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
+from skinslide.command.start import run
 
-from skinslide.command.start import main
-
-sys.exit(main())
+run()

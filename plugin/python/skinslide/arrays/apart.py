@@ -35,8 +35,3 @@ def apart(make: Callable[..., T], *arguments: Any) -> T:
     while not future.done():  # in turns: a signal that another thread takes, or that comes just before, ends no wait
         wait([future], ANSWERED)
     return future.result()
-
-
-def goes_on() -> bool:
-    """Whether something goes on that nobody waits for."""
-    return any(thread.name.startswith(APART) for thread in threading.enumerate())

@@ -1,17 +1,33 @@
-"""The command `skinslide` from its first moment: Ctrl-C while the tool is being loaded ends it as it does later."""
+"""The command `skinslide` from its first moment to its last.
+
+Ctrl-C while the tool is being loaded ends it as it does later. A process that is done ends at once: to take down what
+USD and the core hold would take as long as some frames, and be for nothing.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
+from typing import NoReturn
+
+
+def run() -> NoReturn:
+    """The process of a command."""
+    # No matrices are multiplied here, for which numpy's BLAS would have a thread for each processor wait busily.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    code = main()
+    try:
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+    except OSError:
+        sys.exit(code)  # which says so, and fails
+    os._exit(code)
 
 
 def main() -> int:
+    """One command; gives its exit code."""
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # until cli.main can say what became of it
-    from skinslide.arrays.apart import goes_on
     from skinslide.command import cli
 
-    code = cli.main()
-    if goes_on():
-        os._exit(code)  # it would work in what the end of a process takes down
-    return code
+    return cli.main()
