@@ -6,9 +6,10 @@
  *
  *     d = argmin  sum (n.(L d - (t - L Md)))^2 + E(edges)      in fit.c
  *
- * A row of L has the weights with which free vertices make a sample; t is the point looked up, and n the normal there. To take
- * samples to t itself would slide them by exactly what was looked up, but rings where the slide changes within a few faces, and
- * bunches the texture up. L depends on the mesh alone, and what is factored of it is so once a shot.
+ * A row of L has the weights with which free vertices make a sample; t is the point looked up, and n the normal there, shorter where
+ * the pose crumples the surface. To take samples to t itself would slide them by exactly what was looked up, but rings where the
+ * slide changes within a few faces, and bunches the texture up. L depends on the mesh alone, and what is factored of it is so once
+ * a shot.
  *
  * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near where each
  * sample is looked up, so that where the mesh is does not matter. */
@@ -31,6 +32,7 @@ struct ss_cage {
     bool loop; /* the scheme is */
     ss_limit_surfaces *surfaces;
     ss_fit *fit;
+    ss_crumple *crumple;
     int32_t sample_count; /* free_count limit points, then face_count middles */
     sample *samples;
     int32_t *free_index; /* [vertex_count] place in free_vertex, -1 where held */
@@ -47,7 +49,8 @@ struct ss_cage_work {
     int32_t *face_start;   /* [face_count + 1] samples by the face that they are looked up in */
     int32_t *by_face;      /* [sample_count] */
     double (*residual)[3]; /* [sample_count] t - L Md */
-    double (*normal)[3];   /* [sample_count] n */
+    double (*normal)[3];   /* [sample_count] n, shorter where the pose crumples the surface */
+    double *part;          /* [free_count] scratch for that */
     double (*solution)[3]; /* [free_count] d */
     double *scratch;       /* [ss_limit_surfaces_scratch] */
 };
@@ -167,17 +170,24 @@ static void prepare_face(const ss_cage *cage, int32_t face, const float *points,
     ss_limit_prepare(cage->surfaces, face, points, origin, scratch);
 }
 
-static skinslide_status create_fit(ss_cage *cage, const float *rest_points, skinslide_error *error) {
+/* What is known of samples by their normals at rest. */
+static skinslide_status learn_rest(ss_cage *cage, const float *rest_points, skinslide_error *error) {
     ss_memory memory = {0};
     double(*normal)[3] = ss_new(&memory, cage->sample_count, sizeof *normal), origin[3], point[3];
+    double *square = SS_NEW(&memory, double, cage->sample_count);
     double *scratch = SS_NEW(&memory, double, ss_limit_surfaces_scratch(cage->surfaces));
     for (int32_t s = 0; s < cage->sample_count && !memory.failed; s++) {
-        prepare_face(cage, cage->samples[s].face, rest_points, origin, scratch);
-        ss_limit_normal(cage->surfaces, cage->samples[s].face, &cage->samples[s].at, scratch, point, normal[s]);
+        const sample *own = &cage->samples[s];
+        prepare_face(cage, own->face, rest_points, origin, scratch);
+        square[s] = ss_limit_normal(cage->surfaces, own->face, &own->at, scratch, point, normal[s]);
     }
     skinslide_status status = memory.failed ? ss_out_of_memory(error)
                                             : ss_fit_create(cage->patch, cage->free_index, &cage->free_rows,
                                                             (const double(*)[3])normal, &cage->fit, error);
+    for (int32_t s = 0; s < cage->sample_count && !status; s++)
+        ss_shorten_flat(square[s], normal[s]);
+    if (!status)
+        status = ss_crumple_create(&cage->free_rows, (const double(*)[3])normal, &cage->crumple, error);
     ss_free(&memory);
     return status;
 }
@@ -192,7 +202,7 @@ static skinslide_status build(ss_cage *cage, const float *rest_points, skinslide
     skinslide_status status = list_stencils(cage, error);
     if (!status)
         status = restrict_to_free(cage, error);
-    return status ? status : create_fit(cage, rest_points, error);
+    return status ? status : learn_rest(cage, rest_points, error);
 }
 
 skinslide_status ss_cage_create(const ss_topology *topology, const ss_patch *patch, const float *rest_points, bool loop,
@@ -216,6 +226,7 @@ void ss_cage_destroy(ss_cage *cage) {
     if (!cage)
         return;
     ss_fit_destroy(cage->fit);
+    ss_crumple_destroy(cage->crumple);
     ss_limit_surfaces_destroy(cage->surfaces);
     ss_free(&cage->memory);
     free(cage);
@@ -231,6 +242,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     work->by_face = SS_NEW(&work->memory, int32_t, cage->sample_count);
     work->residual = ss_new(&work->memory, cage->sample_count, sizeof *work->residual);
     work->normal = ss_new(&work->memory, cage->sample_count, sizeof *work->normal);
+    work->part = SS_NEW(&work->memory, double, cage->patch->free_count);
     work->solution = ss_new(&work->memory, cage->patch->free_count, sizeof *work->solution);
     work->scratch = SS_NEW(&work->memory, double, ss_limit_surfaces_scratch(cage->surfaces));
     skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
@@ -286,7 +298,7 @@ static void list_target(const ss_cage_work *work, const float *points, const ss_
     bool stays = place->triangle == SS_STAYS;
     ss_parameter at = stays ? cage->samples[s].at : ss_parametrise(cage->patch, cage->loop, flat, place);
     double residual[3];
-    ss_limit_normal(cage->surfaces, face, &at, work->scratch, residual, work->normal[s]);
+    ss_shorten_flat(ss_limit_normal(cage->surfaces, face, &at, work->scratch, residual, work->normal[s]), work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
             residual[axis] -= stencils->value[k] * (points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
@@ -352,10 +364,11 @@ int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, const ss_slide *
     int32_t damped = 0, count = work->cage->patch->free_count;
     if (!any_slides(slide, count))
         return 0;
-    memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
     list_targets(work, frame, slide);
     if (ss_is_set(frame->stop))
         return 0;
+    ss_crumple_shorten(work->cage->crumple, work->solution, work->part, work->normal);
+    memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
     ss_fit_samples(work->fit, frame, (const double(*)[3])work->residual, (const double(*)[3])work->normal, work->solution);
     for (int32_t i = 0; i < count; i++)
         damped += take_damped(work->solution[i], bound(work->cage, frame->lengths, &slide->places[i], i), displacement[i]);

@@ -5,8 +5,8 @@
  *          samples               edges
  *
  * where an edge is e0 in the linear result and e = e0 + D y after, D the edge-vertex incidence. Samples may slip in their planes,
- * which a coarse cage must let them; where vertices go there the edges say, by their length and a little by their direction.
- * Without edges nearness is bought with stretch: the stiffer they are, the less of both.
+ * which a coarse cage must let them, and count by the length of n; where vertices go there the edges say, by their length and a
+ * little by their direction. Without edges nearness is bought with stretch: the stiffer they are, the less of both.
  *
  * Gauss-Newton, each step by conjugate gradients on
  *

@@ -338,8 +338,8 @@ void ss_limit_point(const ss_limit_surfaces *surfaces, int32_t face, const ss_pa
     surface.Evaluate(&uv.x, scratch, 3, out);
 }
 
-void ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
-                     double point[3], double normal[3]) {
+double ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
+                       double point[3], double normal[3]) {
     const Surface &surface = surfaces->faces[size_t(face)];
     glm::dvec2 uv = coordinates(surface, *at);
     glm::dvec3 along_u, along_v;
@@ -347,6 +347,8 @@ void ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_p
     glm::dvec3 across = glm::cross(along_u, along_v), unit = glm::normalize(across);
     for (int k = 0; k < 3; k++)
         normal[k] = glm::length(across) > 0 ? unit[k] : 0;
+    double squares = glm::dot(along_u, along_u) + glm::dot(along_v, along_v);
+    return squares > 0 ? 2 * glm::length(across) / squares : 0;
 }
 
 ss_parameter ss_limit_parameter(const ss_limit_surfaces *surfaces, int32_t face, int32_t corner, double s, double t) {

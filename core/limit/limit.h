@@ -51,9 +51,10 @@ void ss_limit_prepare(const ss_limit_surfaces *surfaces, int32_t face, const flo
 int32_t ss_limit_vertices(const ss_limit_surfaces *surfaces, int32_t face, const int32_t **vertices);
 void ss_limit_point(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
                     double out[3]);
-/* The same with the unit normal, of zeros where the surface has none, and the other way round where faces are left-handed. */
-void ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
-                     double point[3], double normal[3]);
+/* The same with the unit normal, of zeros where the surface has none, and the other way round where faces are left-handed. Returns
+ * how far from one line the tangents are: 1 where they are square and as long, 0 without a normal. */
+double ss_limit_normal(const ss_limit_surfaces *surfaces, int32_t face, const ss_parameter *at, const double *scratch,
+                       double point[3], double normal[3]);
 /* The parameters of a place in the quad at a corner: see skinslide_limit_place. */
 ss_parameter ss_limit_parameter(const ss_limit_surfaces *surfaces, int32_t face, int32_t corner, double s, double t);
 
@@ -71,9 +72,22 @@ void ss_fit_destroy(ss_fit *fit);
 skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinslide_error *error);
 void ss_fit_work_destroy(ss_fit_work *work);
 /* displacement [free_count]: in the linear one, out the one that brings each sample nearer to where it is to move by residual,
- * along normal: unit, or 0 for in every direction. Both are [row_count]. */
+ * along normal: of a length by which the sample counts, or 0 for in every direction. Both are [row_count]. */
 void ss_fit_samples(ss_fit_work *work, const ss_frame *frame, const double (*residual)[3], const double (*normal)[3],
                     double (*displacement)[3]);
+
+/* ---- crumple.c: how much samples count where a pose crumples the surface ---- */
+
+typedef struct ss_crumple ss_crumple; /* immutable */
+
+/* Shortens the unit normal of a sample whose tangents are nearly along one line: square is what ss_limit_normal returned. */
+void ss_shorten_flat(double square, double normal[3]);
+/* samples are those of the fit, kept, and normal [row_count] theirs at rest, shortened so. */
+skinslide_status ss_crumple_create(const ss_rows *samples, const double (*normal)[3], ss_crumple **out, skinslide_error *error);
+void ss_crumple_destroy(ss_crumple *crumple);
+/* Shortens such normals [row_count] of a frame where they turn from one sample to the next by more than at rest. sum and part
+ * [column_count] are scratch. */
+void ss_crumple_shorten(const ss_crumple *crumple, double (*sum)[3], double *part, double (*normal)[3]);
 
 /* ---- middle.c: where the middles of faces are looked up ---- */
 

@@ -1,0 +1,82 @@
+/* Where a pose crumples the surface, its normals turn from one sample to the next, and from one frame to the next, by more than there
+ * is of a shape to keep: skin that followed them would jump. There a sample counts less, by n shortened twice:
+ *
+ *     n <- n / sqrt(1 + (0.2 / c)^2)         c how far from one line the tangents are: ss_limit_normal
+ *     n <- n mean of 1 / (1 + (x / 0.15)^4)  over the vertices of the sample, by L
+ *
+ * with x of a vertex how much shorter the mean normal of the samples around it is than at rest, as a share of that, and no less than 0:
+ * rims that are sharp at rest are not crumpled. */
+#include "limit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double flat = 0.2, apart = 0.15;
+
+struct ss_crumple {
+    ss_memory memory;
+    const ss_rows *samples; /* L */
+    double *together;       /* [column_count] length of the mean normal at rest, times what L has of the vertex */
+};
+
+/* sum = L' normal */
+static void gather(const ss_rows *samples, const double (*normal)[3], double (*sum)[3]) {
+    memset(sum, 0, (size_t)samples->column_count * sizeof *sum);
+    for (int32_t s = 0; s < samples->row_count; s++)
+        for (int32_t k = samples->start[s]; k < samples->start[s + 1]; k++)
+            ss_add(samples->value[k], normal[s], sum[samples->column[k]]);
+}
+
+skinslide_status ss_crumple_create(const ss_rows *samples, const double (*normal)[3], ss_crumple **out,
+                                   skinslide_error *error) {
+    ss_crumple *crumple = calloc(1, sizeof *crumple);
+    ss_memory scratch = {0};
+    if (!crumple)
+        return ss_out_of_memory(error);
+    crumple->samples = samples;
+    crumple->together = SS_NEW(&crumple->memory, double, samples->column_count);
+    double(*sum)[3] = ss_new(&scratch, samples->column_count, sizeof *sum);
+    skinslide_status status = scratch.failed || crumple->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+    if (!status) {
+        gather(samples, normal, sum);
+        for (int32_t i = 0; i < samples->column_count; i++)
+            crumple->together[i] = ss_length(sum[i]);
+        *out = crumple;
+    } else
+        ss_crumple_destroy(crumple);
+    ss_free(&scratch);
+    return status;
+}
+
+void ss_crumple_destroy(ss_crumple *crumple) {
+    if (!crumple)
+        return;
+    ss_free(&crumple->memory);
+    free(crumple);
+}
+
+void ss_shorten_flat(double square, double normal[3]) {
+    double part = square > 0 ? 1 / sqrt(1 + flat * flat / (square * square)) : 1;
+    for (int axis = 0; axis < 3; axis++)
+        normal[axis] *= part;
+}
+
+static double part_of(double together, double at_rest) {
+    double less = at_rest > 0 ? ss_most(1 - together / at_rest, 0) / apart : 0;
+    return 1 / (1 + less * less * less * less);
+}
+
+void ss_crumple_shorten(const ss_crumple *crumple, double (*sum)[3], double *part, double (*normal)[3]) {
+    const ss_rows *samples = crumple->samples;
+    gather(samples, (const double(*)[3])normal, sum);
+    for (int32_t i = 0; i < samples->column_count; i++)
+        part[i] = part_of(ss_length(sum[i]), crumple->together[i]);
+    for (int32_t s = 0; s < samples->row_count; s++) {
+        double mean = 0, total = 0;
+        for (int32_t k = samples->start[s]; k < samples->start[s + 1]; k++)
+            mean += samples->value[k] * part[samples->column[k]], total += samples->value[k];
+        for (int axis = 0; axis < 3 && total > 0; axis++)
+            normal[s][axis] *= mean / total;
+    }
+}
