@@ -40,17 +40,52 @@ def test_a_camera_shows_its_own_view_in_every_picture(size, tmp_path):
     assert max(abs(count - side) for count in across) <= 3
 
 
+def columns(folder, frame: str) -> np.ndarray:
+    """Those of the left half in which a sheet is seen, ascending."""
+    left = halves(picture(folder, frame=frame))[0].astype(int)
+    return np.flatnonzero(np.abs(left - [59, 59, 63]).sum(axis=2).max(axis=0) > 60)  # the background
+
+
+def across(folder, frame: str) -> int:
+    return len(columns(folder, frame))
+
+
 def test_following_frames_the_patch_anew(tmp_path):
-    """A mesh that flies away stays in the middle of the picture."""
+    """A mesh that shrinks fills the picture; to a camera of the whole shot it becomes small."""
     stage, mesh = sheet()
-    UsdGeom.Xformable(mesh).AddTranslateOp().Set((30, 0, 0), 1003)
-    UsdGeom.Xformable(mesh).GetOrderedXformOps()[0].Set((0, 0, 0), 1001)
-    draw(stage, tmp_path, follow=True)
-    follow = [contrast(halves(picture(tmp_path, frame=frame))[0]) for frame in ("1001", "1003")]
+    size = UsdGeom.Xformable(mesh).AddScaleOp()
+    size.Set((1, 1, 1), 1001)
+    size.Set((0.2, 0.2, 0.2), 1003)
+    draw(stage, tmp_path / "followed", follow=True)
     draw(stage, tmp_path / "still")
-    still = np.mean(np.abs(np.diff(halves(picture(tmp_path / "still", frame="1001"))[0], axis=1)))
-    moved = np.mean(np.abs(np.diff(halves(picture(tmp_path, frame="1001"))[0], axis=1)))
-    assert min(follow) > 100 and moved > 2 * still
+    first, last = (across(tmp_path / "followed", frame) for frame in ("1001", "1003"))
+    assert abs(first - last) <= 2
+    first, last = (across(tmp_path / "still", frame) for frame in ("1001", "1003"))
+    assert last < 0.3 * first
+
+
+@pytest.mark.parametrize("way", [(30.0, 0.0, 0.0), (0.0, 20.0, -40.0)])
+def test_the_camera_goes_along_with_a_patch_that_goes_far(way, tmp_path):
+    """Such as that of a character that walks by, which is as large in every picture as if it stayed."""
+    stage, mesh = sheet()
+    draw(stage, tmp_path / "stays")
+    walk = UsdGeom.Xformable(mesh).AddTranslateOp()
+    walk.Set((0, 0, 0), 1001)
+    walk.Set(way, 1003)
+    draw(stage, tmp_path / "walks")
+    for frame in ("1001", "1002", "1003"):
+        assert abs(across(tmp_path / "stays", frame) - across(tmp_path / "walks", frame)) <= 2
+
+
+def test_the_camera_stands_still_where_that_shows_enough(tmp_path):
+    """A sheet that goes by a third of its width does so in the pictures too."""
+    stage, mesh = sheet()
+    walk = UsdGeom.Xformable(mesh).AddTranslateOp()
+    walk.Set((0, 0, 0), 1001)
+    walk.Set((0.35, 0, 0), 1003)
+    draw(stage, tmp_path)
+    first, last = (columns(tmp_path, frame) for frame in ("1001", "1003"))
+    assert last[0] - first[0] > 20
 
 
 def test_the_camera_does_not_depend_on_the_frames_drawn(shot, tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from pxr import Gf, Usd, UsdGeom
@@ -16,6 +16,8 @@ from skinslide.problems import NO_SUCH_PRIM, Fault, FrameProblem, SliderError
 from skinslide.stage.mesh import PatchedMesh
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
+# So many times as far as a camera that goes along with the patch, one that stands still shows too little of it.
+_FAR = 1.5
 
 
 class Eye(Protocol):
@@ -67,26 +69,39 @@ def _blindness(camera: Gf.Camera) -> str | None:
 
 
 class ShotCamera:
-    """Stands still, with a patch in sight all through the shot: the same camera whichever frames are drawn."""
+    """Has a patch in sight all through the shot: the same camera whichever frames are drawn.
+
+    It stands still, or goes along with the middle of a patch that goes so far that it would be small.
+    """
 
     def __init__(self, mesh: PatchedMesh, faces: np.ndarray, aspect: float):
         """Raises FrameProblem for a time that no camera could show."""
         times = [Usd.TimeCode(time) for time in mesh.sample_times()] or [Usd.TimeCode.Default()]
         chosen = [times[i] for i in np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))]
-        self._camera = _framed(mesh, faces, chosen, aspect)
+        self._subject = _Subject(mesh, faces)
+        poses = [self._subject.pose(time) for time in chosen]
+        still = self._subject.framed(poses, aspect)
+        middles = np.array([self._subject.middle(pose) for pose in poses])
+        ways = middles - middles[0]
+        along = self._subject.framed([pose.moved(-way) for pose, way in zip(poses, ways, strict=True)], aspect)
+        goes = bool(_depths(still, middles).max() > _FAR * _depths(along, middles[:1])[0])
+        self._camera, self._start = (along if goes else still), (middles[0] if goes else None)
 
     def camera(self, time: Usd.TimeCode) -> Camera:
-        return self._camera
+        if self._start is None:
+            return self._camera
+        way = self._subject.middle(self._subject.pose(time)) - self._start
+        return self._camera._replace(to_camera=_moving(-way) @ self._camera.to_camera)
 
 
 class FollowingCamera:
     """Frames a patch anew in each frame."""
 
     def __init__(self, mesh: PatchedMesh, faces: np.ndarray, aspect: float):
-        self._mesh, self._faces, self._aspect = mesh, faces, aspect
+        self._subject, self._aspect = _Subject(mesh, faces), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:
-        return _framed(self._mesh, self._faces, [time], self._aspect)
+        return self._subject.framed([self._subject.pose(time)], self._aspect)
 
 
 def to_world(mesh: PatchedMesh, time: Usd.TimeCode) -> np.ndarray:
@@ -97,16 +112,56 @@ def to_world(mesh: PatchedMesh, time: Usd.TimeCode) -> np.ndarray:
     return matrix
 
 
-def _framed(mesh: PatchedMesh, faces: np.ndarray, times: Sequence[Usd.TimeCode], aspect: float) -> Camera:
-    """Raises FrameProblem for a pose that cannot be, and SliderError where no camera sees them."""
-    up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
-    poses = [mesh.drawn_points(mesh.points_at(time)) for time in times]
-    matrices = np.array([to_world(mesh, time) for time in times])
-    shape = Shape(mesh.face_counts, mesh.face_indices)
-    try:
-        return frame_faces(shape, faces, poses, matrices, up, aspect, left_handed=mesh.left_handed)
-    except SliderError as error:
-        pose = re.match(r"pose (\d+): ", str(error))
-        if not pose:
-            raise
-        raise FrameProblem(mesh.problem(str(error)[pose.end() :], times[int(pose[1])])) from error
+class _Pose(NamedTuple):
+    """A mesh at a time."""
+
+    time: Usd.TimeCode
+    points: np.ndarray  # (V, 3)
+    to_world: np.ndarray  # (4, 4)
+
+    def moved(self, way: np.ndarray) -> _Pose:
+        """The same elsewhere in the world."""
+        return self._replace(to_world=self.to_world @ _moving(way))
+
+
+class _Subject:
+    """The faces that a camera looks at."""
+
+    def __init__(self, mesh: PatchedMesh, faces: np.ndarray):
+        self._mesh, self._faces = mesh, faces
+        self._vertices = mesh.topology.vertices_of(faces)
+
+    def pose(self, time: Usd.TimeCode) -> _Pose:
+        """Raises FrameProblem where there is none."""
+        return _Pose(time, self._mesh.drawn_points(self._mesh.points_at(time)), to_world(self._mesh, time))
+
+    def middle(self, pose: _Pose) -> np.ndarray:
+        """The mean of the faces' vertices in the world, (3,)."""
+        mean = pose.points[self._vertices].mean(axis=0, dtype=np.float64)
+        return np.asarray(np.append(mean, 1) @ pose.to_world)[:3]
+
+    def framed(self, poses: Sequence[_Pose], aspect: float) -> Camera:
+        """Raises FrameProblem for a pose that cannot be, and SliderError where no camera sees them."""
+        mesh = self._mesh
+        up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
+        shape, points = Shape(mesh.face_counts, mesh.face_indices), [pose.points for pose in poses]
+        matrices = np.array([pose.to_world for pose in poses])
+        try:
+            return frame_faces(shape, self._faces, points, matrices, up, aspect, left_handed=mesh.left_handed)
+        except SliderError as error:
+            pose = re.match(r"pose (\d+): ", str(error))
+            if not pose:
+                raise
+            raise FrameProblem(mesh.problem(str(error)[pose.end() :], poses[int(pose[1])].time)) from error
+
+
+def _moving(way: np.ndarray) -> np.ndarray:
+    """The matrix, for points as rows, of a way, (3,)."""
+    matrix = np.eye(4)
+    matrix[3, :3] = way
+    return matrix
+
+
+def _depths(camera: Camera, points: np.ndarray) -> np.ndarray:
+    """How far into the picture points (n, 3) are."""
+    return np.asarray(-(np.column_stack([points, np.ones(len(points))]) @ camera.to_camera)[:, 2])

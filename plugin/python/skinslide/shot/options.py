@@ -227,7 +227,8 @@ class PictureOptions(Options):
         or_none(checks.prim),
         "--camera",
         metavar="PATH",
-        help="a Camera of the stage (default: one that stands still and has the patch in sight all through the shot)",
+        help="a Camera of the stage (default: one that has the patch in sight all through the shot, standing still, or "
+        "going along where the patch goes far)",
     )
     follow: bool = option(
         False, checks.truth, "--follow", action="store_true", help="frame the patch anew in each frame"
