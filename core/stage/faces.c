@@ -11,6 +11,19 @@ static int32_t face_count_of(const skinslide_stage_patch *patch) {
     return patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count;
 }
 
+/* Lists those of [count] that are marked. False where memory is short. */
+static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t count, ss_array *out) {
+    int32_t found = 0, *list;
+    for (int32_t i = 0; i < count; i++)
+        found += marked[i];
+    list = SS_NEW(memory, int32_t, found);
+    *out = (ss_array){list, 0};
+    for (int32_t i = 0; list && i < count; i++)
+        if (marked[i])
+            list[out->count++] = i;
+    return list != NULL;
+}
+
 /* ---- Chosen by a primvar ---- */
 
 static skinslide_status check_finite(const ss_record *record, skinslide_error *error) {
@@ -52,6 +65,18 @@ static bool is_chosen(const skinslide_stage_mesh *mesh, const ss_record *record,
     return mesh->face_start[face] < mesh->face_start[face + 1];
 }
 
+static bool list_chosen(const skinslide_stage_mesh *mesh, const ss_record *record, bool by_face, ss_memory *memory,
+                        ss_array *out) {
+    ss_memory scratch = {0};
+    int32_t count = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
+    uint8_t *marked = SS_NEW(&scratch, uint8_t, count);
+    for (int32_t face = 0; marked && face < count; face++)
+        marked[face] = is_chosen(mesh, record, by_face, face);
+    bool done = marked && list_marked(memory, marked, count, out);
+    ss_free(&scratch);
+    return done;
+}
+
 /* The chosen faces into memory, ascending. */
 static skinslide_status choose(const skinslide_stage_patch *patch, const ss_record *given, ss_memory *memory, ss_array *faces,
                                skinslide_error *error) {
@@ -67,20 +92,12 @@ static skinslide_status choose(const skinslide_stage_patch *patch, const ss_reco
         status = check_finite(record, error);
     if (status)
         return status;
-    int32_t count = 0;
-    for (int32_t face = 0; face < face_count_of(patch); face++)
-        count += is_chosen(patch->mesh, record, by_face, face);
-    if (!count)
-        return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is above 0 %s", SS_NAME(record->value.name),
-                       by_face ? "on no face" : "on all points of no face");
-    int32_t *chosen = SS_NEW(memory, int32_t, count);
-    if (!chosen)
+    if (!list_chosen(patch->mesh, record, by_face, memory, faces))
         return ss_out_of_memory(error);
-    for (int32_t face = 0, i = 0; i < count; face++)
-        if (is_chosen(patch->mesh, record, by_face, face))
-            chosen[i++] = face;
-    *faces = (ss_array){chosen, count};
-    return SKINSLIDE_OK;
+    if (faces->count)
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_PATCH, "has no faces: " SS_NAMED " is above 0 %s", SS_NAME(record->value.name),
+                   by_face ? "on no face" : "on all points of no face");
 }
 
 skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_record *record, skinslide_error *error) {
@@ -273,19 +290,6 @@ skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32
 }
 
 /* ---- What is inside ---- */
-
-/* Lists those of [count] that are marked. False where memory is short. */
-static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t count, ss_array *out) {
-    int32_t found = 0, *list;
-    for (int32_t i = 0; i < count; i++)
-        found += marked[i];
-    list = SS_NEW(memory, int32_t, found);
-    *out = (ss_array){list, 0};
-    for (int32_t i = 0; list && i < count; i++)
-        if (marked[i])
-            list[out->count++] = i;
-    return list != NULL;
-}
 
 /* How far around what was chosen the patch reaches. Without rest points it does not. */
 static double way_of(const skinslide_stage_patch *patch) {

@@ -10,7 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
 /* Rest is of another scale beyond this, either way; an inch has 2.54 cm. A character that grows by less only stretches. */
 static const double other_scale = 2;
@@ -38,23 +38,38 @@ static void add_face(ratios *own, int32_t face) {
     }
 }
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 typedef struct likeness {
     double median, spread, apart; /* factors */
 } likeness;
 
-static likeness compare(ratios *own) {
+/* The value that k others would come before, were all in order: found by their bytes, from the highest on, of which positive
+ * numbers have the order. */
+static double ranked(const double *values, int64_t count, int64_t k) {
+    uint64_t found = 0, bits;
+    for (int shift = 56; shift >= 0; shift -= 8) {
+        int64_t counts[256] = {0};
+        for (int64_t i = 0; i < count; i++) {
+            memcpy(&bits, &values[i], sizeof bits);
+            counts[bits >> shift & 255] += ((bits ^ found) >> shift) < 256;
+        }
+        int byte = 0;
+        while (k >= counts[byte])
+            k -= counts[byte++];
+        found |= (uint64_t)byte << shift;
+    }
+    double value;
+    memcpy(&value, &found, sizeof value);
+    return value;
+}
+
+static likeness compare(const ratios *own) {
     if (!own->count)
         return (likeness){1, 1, 1};
-    qsort(own->values, (size_t)own->count, sizeof *own->values, ascending);
-    double median = own->values[own->count / 2], spread = 0, apart = 0;
+    double median = ranked(own->values, own->count, own->count / 2), spread = 0, apart = 0;
+    double middle = ss_log(median), most = ss_log(most_of_one);
     for (int64_t i = 0; i < own->count; i++) {
         double off = ss_log(own->values[i]);
-        spread += fmin(fabs(off - ss_log(median)), ss_log(most_of_one));
+        spread += fmin(fabs(off - middle), most);
         apart += off * off;
     }
     return (likeness){median, ss_exp(spread / (double)own->count), ss_exp(sqrt(apart / (double)own->count))};

@@ -74,6 +74,52 @@ static void another_scale_is_taken_out(void **state) {
     }
 }
 
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double length_of(const float *points, int32_t a, int32_t b) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        double off = (double)points[3 * (int64_t)a + k] - (double)points[3 * (int64_t)b + k];
+        sum += off * off;
+    }
+    return sqrt(sum);
+}
+
+/* The middle of the quotients of all sides, in order. */
+static double middle_of(const scene *s) {
+    double *quotients = malloc((size_t)s->grid.index_count * sizeof *quotients);
+    for (int32_t c = 0; c < s->grid.index_count; c++) {
+        int32_t a = s->grid.face_indices[c], b = s->grid.face_indices[c % 4 < 3 ? c + 1 : c - 3];
+        quotients[c] = length_of(s->first, a, b) / length_of(s->rest, a, b);
+    }
+    qsort(quotients, (size_t)s->grid.index_count, sizeof *quotients, ascending);
+    double middle = quotients[s->grid.index_count / 2];
+    free(quotients);
+    return middle;
+}
+
+/* Where no two edges agree, it is the scale of the one in the middle: that of one beside it is beyond the tolerance. */
+static void the_scale_is_that_of_the_edge_in_the_middle(void **state) {
+    (void)state;
+    for (int i = 0; i < 5; i++) {
+        scene s = set_up();
+        skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
+        for (int32_t k = 0; k < 3 * s.grid.vertex_count; k++)
+            s.rest[k] = (float)(pow(7, i - 5) * ((double)s.grid.points[k] + 0.01 * sin(99.0 * k + i)));
+        read(&s, true);
+        assert_ok(s.status, &error);
+        assert_non_null(skinslide_stage_mesh_warning(s.mesh));
+        assert_ok(skinslide_stage_mesh_get(s.mesh, &out, &error), &error);
+        double middle = middle_of(&s);
+        for (int32_t k = 0; k < 3 * s.grid.vertex_count; k++)
+            assert_near(out.rest_points[k], middle * (double)s.rest[k], 1e-6 * fabs((double)out.rest_points[k]));
+        tear_down(&s);
+    }
+}
+
 static void expect_untouched(scene *s) {
     skinslide_mesh out = SKINSLIDE_MESH_DEFAULT;
     assert_ok(s->status, &error);
@@ -148,9 +194,9 @@ static void what_has_no_length_tells_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(another_scale_is_taken_out),       cmocka_unit_test(poses_leave_rest_alone),
-        cmocka_unit_test(another_order_is_refused),         cmocka_unit_test(a_poor_likeness_is_told),
-        cmocka_unit_test(what_has_no_length_tells_nothing),
+        cmocka_unit_test(another_scale_is_taken_out), cmocka_unit_test(the_scale_is_that_of_the_edge_in_the_middle),
+        cmocka_unit_test(poses_leave_rest_alone),     cmocka_unit_test(another_order_is_refused),
+        cmocka_unit_test(a_poor_likeness_is_told),    cmocka_unit_test(what_has_no_length_tells_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
