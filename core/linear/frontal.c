@@ -21,10 +21,15 @@ ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front) {
     return s;
 }
 
+/* How far apart columns of a tile of an update are, of which c is one. */
+static ptrdiff_t next_in_update(const ss_shape *s, int32_t c) {
+    return (ptrdiff_t)s->height - 4 * (ptrdiff_t)(c / 4);
+}
+
 /* Where column c of an update begins, so that row r is r further: columns are stored from their own tile of four on. */
 static ptrdiff_t place_in_update(const ss_shape *s, int32_t c) {
     ptrdiff_t tile = c / 4, height = (ptrdiff_t)s->height;
-    return 4 * tile * height - 8 * tile * (tile - 1) + c % 4 * (height - 4 * tile) - 4 * tile;
+    return 4 * tile * height - 8 * tile * (tile - 1) + c % 4 * next_in_update(s, c) - 4 * tile;
 }
 
 /* How many numbers it is. */
@@ -163,29 +168,33 @@ static int32_t list_rows(ss_frontal *frontal, const ss_front *child, const ss_fr
 
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
 
-/* Adds a column of a child's update, from a row on. */
-INLINE void add_column(int block, const double *column, int32_t begin, int32_t end, const ptrdiff_t *place, double *to) {
+/* Adds the columns of a row of a child's update, from that row on: they begin from_next and to_next after each other. What is above
+ * the diagonal of a block is added, too, and not read. */
+INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const ptrdiff_t *place,
+                        double *to, ptrdiff_t to_next) {
     for (int32_t i = begin; i < end; i++)
-        if (block == 2)
-            *(pair *)(to + place[i]) += *(const pair *)(column + 2 * i);
-        else
-            to[place[i]] += column[i];
+        if (block == 2) {
+            *(pair *)(to + place[i]) += *(const pair *)(from + 2 * i);
+            *(pair *)(to + to_next + place[i]) += *(const pair *)(from + from_next + 2 * i);
+        } else {
+            to[place[i]] += from[i];
+        }
 }
 
-/* Adds a child's update where its rows are, column by column. What is above the diagonal of a block is added, too, and not read. */
+/* Adds a child's update where its rows are, column by column. */
 INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
                    double *update) {
     const ss_front *own = &frontal->system->fronts[child];
     ss_shape from = ss_shape_of(frontal, own);
     int32_t inside = list_rows(frontal, own, front, s);
     const double *origin = frontal->stack[frontal->odd[child]] + frontal->update[child];
-    for (int32_t j = 0; j < from.below; j++) {
-        int32_t row = j / block;
+    for (int32_t row = 0; row < own->row_count; row++) {
         bool is_inside = row < inside;
-        const double *column = origin + place_in_update(&from, j);
-        ptrdiff_t there = frontal->to_update[row] + j % block;
+        const double *column = origin + place_in_update(&from, block * row);
+        ptrdiff_t there = frontal->to_update[row], next = is_inside ? 4 : next_in_update(s, (int32_t)there);
         double *to = is_inside ? panel + 4 * (block * front->count + there) : update + place_in_update(s, (int32_t)there);
-        add_column(block, column, row, own->row_count, is_inside ? frontal->to_panel : frontal->to_update, to);
+        add_columns(block, column, next_in_update(&from, block * row), row, own->row_count,
+                    is_inside ? frontal->to_panel : frontal->to_update, to, next);
         double *extras = is_inside ? to + 4 * (size_t)s->columns * (size_t)(s->tiles - 1) : to + s->height - 4;
         for (int k = 0; k < 3 && frontal->dominant; k++)
             extras[k] += column[from.height - 4 + (size_t)k];
