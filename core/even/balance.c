@@ -18,6 +18,7 @@ void ss_evener_lay_out(ss_evener *evener, ss_room *room) {
     evener->crush = SS_TAKE(room, double, vertices);
     ss_posed_lay_out(&evener->pose, patch, room);
     evener->place = SS_TAKE(room, ss_place, vertices);
+    evener->walking = SS_TAKE(room, int32_t, vertices);
     evener->at = ss_take_room(room, vertices, sizeof *evener->at);
     evener->up = ss_take_room(room, vertices, sizeof *evener->up);
     evener->slide = ss_take_room(room, vertices, sizeof *evener->slide);
@@ -92,21 +93,33 @@ void ss_go_home(ss_evener *evener) {
     ss_measure_stretch(evener);
 }
 
-/* Walks anew from the vertex's own place; what is beyond the border is no slide. */
-static void slide_vertex(ss_evener *evener, int32_t v) {
+/* Adds the step of every vertex that may slide to its way. Lists those that slide over faces, and walks along loops with others.
+ * Returns how many the list has. */
+static int32_t add_steps(ss_evener *evener, int32_t *over_faces) {
     const ss_sheet *sheet = evener->sheet;
-    double *slide = evener->slide[v];
-    for (int j = 0; j < 2; j++)
-        slide[j] += evener->step[v][j];
-    if (sheet->patch->vertex_loop[v] >= 0) {
+    int32_t count = 0;
+    for (int32_t v = 0; v < sheet->patch->vertex_count; v++) {
+        if (!(evener->weight[v] > 0))
+            continue;
+        for (int j = 0; j < 2; j++)
+            evener->slide[v][j] += evener->step[v][j];
+        if (sheet->patch->vertex_loop[v] < 0) {
+            over_faces[count++] = v;
+            continue;
+        }
         evener->place[v] = ss_place_of_vertex(sheet->patch, NULL, v);
-        ss_walk_border(&sheet->ground.pose, &evener->place[v], slide[0]);
-    } else {
-        double part = ss_walk_turned(&sheet->ground, v, slide, NULL, &evener->place[v]);
-        for (int j = 0; j < 2 && part < 1; j++)
-            slide[j] *= part;
+        ss_walk_border(&sheet->ground.pose, &evener->place[v], evener->slide[v][0]);
     }
-    ss_place_point(&evener->pose, &evener->place[v], evener->at[v]);
+    return count;
+}
+
+/* Walks anew from the vertices' own places; what is beyond the border is no slide. */
+static void slide_all(ss_evener *evener) {
+    int32_t count = add_steps(evener, evener->walking);
+    ss_walk_turned_all(&evener->sheet->ground, count, evener->walking, evener->slide, evener->place);
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
+        if (evener->weight[v] > 0)
+            ss_place_point(&evener->pose, &evener->place[v], evener->at[v]);
 }
 
 /* ---- The balance ---- */
@@ -180,12 +193,6 @@ void ss_write_places(const ss_evener *evener, ss_place *places) {
         bool slides = evener->weight[v] != 0 && !stays(evener, v);
         places[i] = slides ? evener->place[v] : ss_place_staying((double[2]){0, 0});
     }
-}
-
-static void slide_all(ss_evener *evener) {
-    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
-        if (evener->weight[v] > 0)
-            slide_vertex(evener, v);
 }
 
 bool ss_take_step(ss_evener *evener) {

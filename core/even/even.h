@@ -91,6 +91,7 @@ typedef struct ss_evener {
     double *crush;                   /* [vertex_count] how much the cache crushes skin */
     ss_posed pose;                   /* its facets are set where ways are limited */
     ss_place *place;                 /* [vertex_count] where each vertex is, if its weight is not 0 */
+    int32_t *walking;                /* [vertex_count] scratch for those that walk over faces */
     double (*at)[3];                 /* [vertex_count] of it in the pose */
     double (*up)[3];                 /* [vertex_count] scratch for normals */
     double (*slide)[2];              /* [vertex_count] d */

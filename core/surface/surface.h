@@ -89,8 +89,9 @@ static inline void ss_place_put(ss_place *place, int32_t triangle, const double 
         place->weight[k] = weights[k];
 }
 
-/* How fast the weights change along a vector, which is projected into the plane of the triangle; and back. */
-static inline void ss_rates_along(const ss_posed *pose, int32_t triangle, const double vector[3], double rates[3]) {
+/* How fast the weights change along a vector, which is projected into the plane of the triangle; and back. Returns the length of what
+ * is in the plane. */
+static inline double ss_rates_along(const ss_posed *pose, int32_t triangle, const double vector[3], double rates[3]) {
     const ss_facet *facet = &pose->facet[triangle];
     double sides[2][3];
     ss_sides(pose, triangle, sides[0], sides[1]);
@@ -98,6 +99,7 @@ static inline void ss_rates_along(const ss_posed *pose, int32_t triangle, const 
     rates[1] = facet->gram[0] * first + facet->gram[1] * second;
     rates[2] = facet->gram[1] * first + facet->gram[2] * second;
     rates[0] = -rates[1] - rates[2];
+    return sqrt(rates[1] * first + rates[2] * second);
 }
 
 static inline void ss_vector_along(const ss_posed *pose, int32_t triangle, const double rates[3], double vector[3]) {
@@ -159,9 +161,10 @@ double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *
 /* ---- ground.c: a pose with normals, blended from vertex to vertex ---- */
 
 /* A corner of a triangle as it is seen along the normal of the vertex there. A way along the tangents there is first.way of the side
- * to the next corner and second.way of that to the last: inside, where neither is less than 0. */
+ * to the next corner and second.way of that to the last: inside, where neither is less than 0. What has those shares in the triangle
+ * is sqrt(square[0] x^2 + 2 square[1] x y + square[2] y^2) long, x and y the way. */
 typedef struct ss_wedge {
-    double first[2], second[2];
+    double first[2], second[2], square[3];
     uint32_t corner; /* 4 times the triangle, and which of its corners */
 } ss_wedge;
 
@@ -176,12 +179,16 @@ typedef struct ss_ground {
 bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *ground);
 /* points is the whole mesh's. */
 void ss_ground_set(ss_ground *ground, const float *points);
-/* The unit normal at a place. */
-static inline void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out[3]) {
+/* The normals about a place, blended by its weights: of any length. */
+static inline void ss_ground_blend(const ss_ground *ground, const ss_place *place, double out[3]) {
     const int32_t *v = ground->pose.patch->triangles.vertex[place->triangle];
     out[0] = out[1] = out[2] = 0;
     for (int k = 0; k < 3; k++)
         ss_add(place->weight[k], ground->normal[v[k]], out);
+}
+/* The unit normal at a place. */
+static inline void ss_ground_normal(const ss_ground *ground, const ss_place *place, double out[3]) {
+    ss_ground_blend(ground, place, out);
     ss_normalise(out);
 }
 
@@ -201,6 +208,9 @@ static inline bool ss_turn(const double from[3], const double to[3], const doubl
 /* Walks from a vertex for the length of a way along the tangents there, in the direction that this has at each place that the walk
  * comes to: see turned.c. With a meter, no farther than that lets it. Returns the part that was walked. */
 double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place);
+/* The same of several vertices [count], each with its way and its place by vertex, to the bit: one walk goes on while another waits
+ * for a result. Ways are cut to what was walked. */
+void ss_walk_turned_all(const ss_ground *ground, int32_t count, const int32_t *vertices, double (*way)[2], ss_place *place);
 /* The same from a place inside a triangle, or on a side of it, by what of the vector is tangent there. */
 void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place *place);
 

@@ -8,28 +8,31 @@
 #define MOST_TURNED_BACK 100
 #define LEAST_SLANT      0.1 /* cosine between the normals of place and triangle, that carrying takes for less */
 
+enum { WALKERS = 32 }; /* that go on in turn */
+
 typedef struct walker {
     const ss_ground *ground;
     const double *up;      /* normal where it set out */
     double heading[3];     /* unit, tangent there */
-    double left;           /* of its length */
+    double left, whole;    /* of its length, and all of that */
     double rates[3];       /* of the weights of its place, to its end */
     int came, turned_back; /* corner opposite the side that it came over, or -1; how often the direction led back over one */
 } walker;
 
-/* Sets the rates in a triangle for a direction tangent at a unit normal; false where it has none there. */
-static bool aim(walker *w, int32_t triangle, const double normal[3], const double direction[3]) {
+/* Sets the rates in a triangle by the blended normal at the place, of any length; false where there is no direction. What is along
+ * the normal n is left out of the direction turned, heading - turn (up + n): carrying takes it off. */
+static inline bool aim(walker *w, int32_t triangle, const double blended[3]) {
     const ss_facet *facet = &w->ground->pose.facet[triangle];
-    double along[3] = {direction[0], direction[1], direction[2]};
-    ss_add(-ss_dot(direction, facet->normal) / ss_most(ss_dot(normal, facet->normal), LEAST_SLANT), normal, along);
-    ss_add(-ss_dot(along, facet->normal), facet->normal, along);
-    double length = ss_length(along);
-    if (!(length > 0))
-        return false;
+    double length = ss_length(blended), share = length > 0 ? 1 / length : 0; /* n = share blended */
+    double whole = 1 + share * ss_dot(w->up, blended), turn = share * ss_dot(blended, w->heading) / whole;
+    double slant = share * ss_dot(blended, facet->normal), along[3] = {w->heading[0], w->heading[1], w->heading[2]};
+    ss_add(-turn, w->up, along);
+    double carry = turn + (ss_dot(along, facet->normal) - turn * slant) / ss_most(slant, LEAST_SLANT);
+    ss_add(-carry * share, blended, along);
+    double scale = w->left / ss_rates_along(&w->ground->pose, triangle, along, w->rates);
     for (int k = 0; k < 3; k++)
-        along[k] *= w->left / length;
-    ss_rates_along(&w->ground->pose, triangle, along, w->rates);
-    return isfinite(w->rates[1]) && isfinite(w->rates[2]);
+        w->rates[k] *= scale;
+    return whole > SS_LEAST_TURN && isfinite(w->rates[1]) && isfinite(w->rates[2]);
 }
 
 /* ---- From the vertex ---- */
@@ -48,15 +51,10 @@ static const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, con
     return chosen;
 }
 
-/* The shares of the sides of a wedge that its triangle has of a way of some length; false where it has none there. */
-static bool share_wedge(const ss_posed *pose, const ss_wedge *wedge, double length, double rates[2]) {
-    const int32_t *v = pose->patch->triangles.vertex[wedge->corner >> 2];
-    int k = (int)(wedge->corner & 3);
-    double p[3], q[3];
-    ss_subtract(pose->point[v[k == 2 ? 0 : k + 1]], pose->point[v[k]], p);
-    ss_subtract(pose->point[v[k == 0 ? 2 : k - 1]], pose->point[v[k]], q);
-    double pp = ss_dot(p, p), pq = ss_dot(p, q), qq = ss_dot(q, q);
-    double along = rates[0] * (pp * rates[0] + pq * rates[1]) + rates[1] * (pq * rates[0] + qq * rates[1]);
+/* Scales its shares of the sides of a wedge to a way of some length in the triangle; false where it has none there. */
+static bool scale_shares(const ss_wedge *wedge, const double way[2], double length, double rates[2]) {
+    const double *square = wedge->square;
+    double along = way[0] * (square[0] * way[0] + 2 * square[1] * way[1]) + square[2] * way[1] * way[1];
     double scale = length / sqrt(along);
     rates[0] = ss_most(scale * rates[0], 0), rates[1] = ss_most(scale * rates[1], 0);
     return isfinite(scale);
@@ -75,7 +73,7 @@ static void end_at_once(const ss_wedge *wedge, const double rates[2], ss_place *
     ss_place_put(place, (int32_t)(wedge->corner >> 2), weight);
 }
 
-static void set_out(const ss_wedge *wedge, const double rates[2], walker *w, ss_place *place) {
+static void aim_in_wedge(const ss_wedge *wedge, const double rates[2], walker *w, ss_place *place) {
     int k = (int)(wedge->corner & 3), next = (k + 1) % 3, last = (k + 2) % 3;
     w->rates[next] = rates[0], w->rates[last] = rates[1], w->rates[k] = -rates[0] - rates[1];
     ss_place_put(place, (int32_t)(wedge->corner >> 2), (double[3]){k == 0, k == 1, k == 2});
@@ -97,50 +95,102 @@ static bool go_along_side(walker *w, int32_t triangle) {
 }
 
 /* Over the side opposite a corner; false where the walk ends there. */
-static bool go_over(walker *w, ss_place *place, int corner) {
+static inline bool go_over(walker *w, ss_place *place, int corner) {
     const ss_posed *pose = &w->ground->pose;
     int32_t there = pose->patch->triangles.neighbour[place->triangle][(corner + 1) % 3];
-    double normal[3], direction[3];
+    double blended[3];
     if (there < 0 || !pose->facet[there].has_area)
         return false;
     w->came = ss_cross_side(pose->patch, place, corner);
-    ss_ground_normal(w->ground, place, normal);
-    if (!ss_turn(w->up, normal, w->heading, direction) || !aim(w, there, normal, direction))
-        return false;
-    return w->rates[w->came] >= 0 || go_along_side(w, there);
+    ss_ground_blend(w->ground, place, blended);
+    return aim(w, there, blended) && (w->rates[w->came] >= 0 || go_along_side(w, there));
 }
 
-/* To the end. */
+/* To the end, or over a side: false where it is the end. */
+static inline bool go_on(walker *w, ss_meter *meter, ss_place *place) {
+    int corner;
+    double whole = ss_reach(place, w->rates, w->came, &corner);
+    double part = meter ? ss_measure(meter, place->triangle, w->rates, whole) : whole;
+    ss_advance(place, w->rates, part, part < whole ? -1 : corner);
+    place->weight[0] = ss_most(place->weight[0], 0); /* which is what rounding leaves of 1 */
+    w->left *= 1 - part;
+    return corner >= 0 && part >= whole && go_over(w, place, corner);
+}
+
 static void walk(walker *w, ss_meter *meter, ss_place *place) {
-    for (int crossed = 0; crossed < MOST_CROSSED; crossed++) {
-        int corner;
-        double whole = ss_reach(place, w->rates, w->came, &corner);
-        double part = meter ? ss_measure(meter, place->triangle, w->rates, whole) : whole;
-        ss_advance(place, w->rates, part, part < whole ? -1 : corner);
-        place->weight[0] = ss_most(place->weight[0], 0); /* which is what rounding leaves of 1 */
-        w->left *= 1 - part;
-        if (corner < 0 || part < whole || !go_over(w, place, corner))
-            break;
-    }
+    for (int crossed = 0; crossed < MOST_CROSSED && go_on(w, meter, place); crossed++)
+        ;
 }
 
-double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place) {
+/* ---- From the first triangle on ---- */
+
+/* False where the walk ends there, of which *part is walked. */
+static bool set_out(const ss_ground *ground, int32_t vertex, const double way[2], const ss_meter *meter, walker *w,
+                    ss_place *place, double *part) {
     double length = sqrt(way[0] * way[0] + way[1] * way[1]), rates[2];
     const ss_wedge *wedge = length > 0 ? choose_wedge(ground, vertex, way, rates) : NULL;
-    if (!wedge || !share_wedge(&ground->pose, wedge, length, rates)) {
+    if (!wedge || !scale_shares(wedge, way, length, rates)) {
         *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
-        return !(length > 0);
+        *part = !(length > 0);
+        return false;
     }
     if (!meter && rates[0] + rates[1] <= 1) {
         end_at_once(wedge, rates, place);
-        return 1;
+        *part = 1;
+        return false;
     }
-    walker w = {.ground = ground, .up = ground->normal[vertex], .left = length, .came = -1};
+    *w = (walker){.ground = ground, .up = ground->normal[vertex], .left = length, .whole = length, .came = -1};
     for (int j = 0; j < 2; j++)
-        ss_add(way[j] / length, ground->tangent[vertex][j], w.heading);
-    set_out(wedge, rates, &w, place);
+        ss_add(way[j] / length, ground->tangent[vertex][j], w->heading);
+    aim_in_wedge(wedge, rates, w, place);
+    return true;
+}
+
+double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[2], ss_meter *meter, ss_place *place) {
+    walker w;
+    double part;
+    if (!set_out(ground, vertex, way, meter, &w, place, &part))
+        return part;
     walk(&w, meter, place);
-    return 1 - w.left / length;
+    return 1 - w.left / w.whole;
+}
+
+static void cut(double way[2], double part) {
+    for (int j = 0; j < 2 && part < 1; j++)
+        way[j] *= part;
+}
+
+/* All of them to their ends, in turn. */
+static void walk_in_turn(walker *w, int32_t count, const int32_t *vertices, ss_place *place) {
+    int32_t going[WALKERS], left = count;
+    for (int32_t i = 0; i < count; i++)
+        going[i] = i;
+    for (int crossed = 0; crossed < MOST_CROSSED && left > 0; crossed++) {
+        int32_t turn = left;
+        left = 0;
+        for (int32_t i = 0; i < turn; i++) {
+            going[left] = going[i];
+            left += go_on(&w[going[i]], NULL, &place[vertices[going[i]]]);
+        }
+    }
+}
+
+void ss_walk_turned_all(const ss_ground *ground, int32_t count, const int32_t *vertices, double (*way)[2], ss_place *place) {
+    walker w[WALKERS];
+    int32_t from[WALKERS], walkers = 0;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t v = vertices[i];
+        double part;
+        if (set_out(ground, v, way[v], NULL, &w[walkers], &place[v], &part))
+            from[walkers++] = v;
+        else
+            cut(way[v], part);
+        if (walkers < WALKERS && i + 1 < count)
+            continue;
+        walk_in_turn(w, walkers, from, place);
+        for (; walkers > 0; walkers--)
+            cut(way[from[walkers - 1]], 1 - w[walkers - 1].left / w[walkers - 1].whole);
+    }
 }
 
 void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place *place) {
@@ -150,6 +200,6 @@ void ss_walk_turned_from(const ss_ground *ground, const double way[3], ss_place 
     ss_add(-ss_dot(way, up), up, w.heading);
     w.left = ss_length(w.heading);
     ss_normalise(w.heading);
-    if (w.left > 0 && aim(&w, place->triangle, up, w.heading))
+    if (w.left > 0 && aim(&w, place->triangle, up))
         walk(&w, NULL, place);
 }

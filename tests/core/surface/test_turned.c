@@ -140,11 +140,40 @@ static void walks_go_round(void **state) {
     free_scene(&s);
 }
 
+/* Several walks in turn are each as alone, to the bit, and leave of their ways what they walked. */
+static void several_as_alone(void **state) {
+    (void)state;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
+        walk_scene s = scene_of(make_fixture(i).mesh);
+        dice d = {(uint64_t)i};
+        int32_t count = s.patch->vertex_count, *vertices = calloc((size_t)count, sizeof *vertices);
+        double(*way)[2] = calloc((size_t)count, sizeof *way), (*cut)[2] = calloc((size_t)count, sizeof *cut);
+        ss_place *places = calloc((size_t)count, sizeof *places);
+        for (int32_t v = 0; v < count; v++) {
+            vertices[v] = count - 1 - v;
+            for (int j = 0; j < 2; j++)
+                way[v][j] = cut[v][j] = roll_below(&d, 8) ? roll_between(&d, -3, 3) * s.patch->mean_edge : 0;
+        }
+        ss_walk_turned_all(&s.ground, count, vertices, cut, places);
+        for (int32_t v = 0; v < count; v++) {
+            ss_place place = {0};
+            double part = ss_walk_turned(&s.ground, v, way[v], NULL, &place);
+            assert_memory_equal(&place.triangle, &places[v].triangle, sizeof place.triangle);
+            assert_memory_equal(place.weight, places[v].weight, sizeof place.weight);
+            for (int j = 0; j < 2; j++)
+                assert_true(cut[v][j] == (part < 1 ? part * way[v][j] : way[v][j]));
+        }
+        free(vertices), free(way), free(cut), free(places);
+        free_scene(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(straight_in_a_plane), cmocka_unit_test(straight_from_a_place),
         cmocka_unit_test(nothing_and_a_meter), cmocka_unit_test(a_meter_ends_at_its_limit),
         cmocka_unit_test(places_stay_places),  cmocka_unit_test(walks_go_round),
+        cmocka_unit_test(several_as_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
