@@ -23,6 +23,7 @@ void ss_evener_lay_out(ss_evener *evener, ss_room *room) {
     evener->up = ss_take_room(room, vertices, sizeof *evener->up);
     evener->slide = ss_take_room(room, vertices, sizeof *evener->slide);
     evener->step = ss_take_room(room, vertices, sizeof *evener->step);
+    evener->straight = ss_take_room(room, vertices, sizeof *evener->straight);
     evener->part = SS_TAKE(room, double, vertices);
     evener->reach = SS_TAKE(room, double, patch->faces.face_count);
     evener->whole = ss_take_room(room, vertices, sizeof *evener->whole);

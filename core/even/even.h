@@ -39,8 +39,8 @@ typedef struct ss_sheet {
     ss_spring *springs;
     double (*between)[2][2]; /* [spring_count] as ss_multiply_tangents has them; NULL before ss_sheet_multiply */
     double (*flat)[2];       /* [corner_count] faces at rest, each in its own plane */
-    double (*along)[2][2];   /* [corner_count] [tangent][axis] how a corner moves there as its vertex slides */
-    double *area;            /* [face_count] twice, in the same plane */
+    double (*normal)[3];     /* [face_count] of that plane, of unit length */
+    double *area;            /* [face_count] twice, in the plane */
     uint8_t *turned;         /* [face_count] which are turned over against the normals of their corners at rest already */
     ss_system *system;       /* of what K joins */
 } ss_sheet;
@@ -73,6 +73,8 @@ typedef struct ss_temper {
     bool bonds;            /* whether what bonds and loads are is of use beyond K; where K is as it was, no share is below 1 */
 } ss_temper;
 
+typedef double ss_pair __attribute__((vector_size(16), may_alias));
+
 /* Memory of one thread for one patch, and where its slide has got to. */
 typedef struct ss_evener {
     ss_memory memory;
@@ -100,9 +102,10 @@ typedef struct ss_evener {
     double scale;                    /* of the frame, to be taken off z */
     double (*whole)[2];              /* [vertex_count] the slide as if all shares were 1, where some are less */
     double *anchor;                  /* [vertex_count] */
-    double *part;                    /* [vertex_count] of a step that is taken */
-    double *reach;                   /* [face_count] the part that each face lets be taken, 1 at most */
-    ss_weighted *sorted;             /* [spring_count] */
+    ss_pair (*straight)[3]; /* [vertex_count] where it has slid to at rest, along its tangents; and the step from there */
+    double *part;           /* [vertex_count] of a step that is taken */
+    double *reach;          /* [face_count] the part that each face lets be taken, 1 at most */
+    ss_weighted *sorted;    /* [spring_count] */
 } ss_evener;
 
 /* Asks the room for its part. */

@@ -44,10 +44,8 @@ static void add_spring(ss_sheet *sheet, int32_t edge) {
 
 /* ---- Faces ---- */
 
-/* Axes of the plane of a face whose area vector is given: the first along a side. The second is 0 where it has no area. */
-static void set_axes(const double area[3], const double side[3], double axes[2][3]) {
-    double normal[3] = {area[0], area[1], area[2]};
-    ss_normalise(normal);
+/* Axes of the plane of a face: the first along a side. The second is 0 where it has no area, and no normal. */
+static void set_axes(const double normal[3], const double side[3], double axes[2][3]) {
     memcpy(axes[0], side, sizeof axes[0]);
     ss_add(-ss_dot(side, normal), normal, axes[0]);
     ss_normalise(axes[0]);
@@ -66,7 +64,8 @@ static void set_face(ss_sheet *sheet, int32_t face) {
     const double(*point)[3] = (const double(*)[3])sheet->ground.pose.point;
     int32_t begin = faces->face_start[face], end = faces->face_start[face + 1];
     const int32_t *v = faces->corner_vertex;
-    double area[3] = {0, 0, 0}, first[3], second[3], product[3], axes[2][3];
+    double *area = sheet->normal[face], first[3], second[3], product[3], axes[2][3];
+    area[0] = area[1] = area[2] = 0;
     for (int32_t c = begin + 1; c + 1 < end; c++) {
         ss_subtract(point[v[c]], point[v[begin]], first);
         ss_subtract(point[v[c + 1]], point[v[begin]], second);
@@ -74,15 +73,13 @@ static void set_face(ss_sheet *sheet, int32_t face) {
         ss_add(1, product, area);
     }
     sheet->area[face] = ss_length(area);
+    ss_normalise(area);
     find_side(point, v + begin, end - begin, first);
     set_axes(area, first, axes);
     for (int32_t c = begin; c < end; c++) {
         ss_subtract(point[v[c]], point[v[begin]], first);
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < 2; i++)
             sheet->flat[c][i] = ss_dot(first, axes[i]);
-            for (int j = 0; j < 2; j++)
-                sheet->along[c][j][i] = ss_dot(axes[i], sheet->tangent[v[c]][j]);
-        }
     }
 }
 
@@ -97,7 +94,7 @@ static bool allocate(ss_sheet *sheet) {
     sheet->degree = SS_NEW(memory, int32_t, patch->vertex_count);
     sheet->springs = SS_NEW(memory, ss_spring, patch->faces.edge_count);
     sheet->flat = ss_new(memory, patch->faces.corner_count, sizeof *sheet->flat);
-    sheet->along = ss_new(memory, patch->faces.corner_count, sizeof *sheet->along);
+    sheet->normal = ss_new(memory, patch->faces.face_count, sizeof *sheet->normal);
     sheet->area = SS_NEW(memory, double, patch->faces.face_count);
     sheet->turned = SS_NEW(memory, uint8_t, patch->faces.face_count);
     return ss_ground_allocate(memory, patch, &sheet->ground);

@@ -12,49 +12,36 @@
 
 /* ---- One face ---- */
 
-typedef double pair __attribute__((vector_size(16), may_alias)); /* of coordinates in the plane of a face */
-typedef double loose_pair __attribute__((vector_size(16), aligned(8), may_alias));
-
-typedef struct moving_point {
-    pair at, by;
-} moving_point;
-
-static inline moving_point corner_of(const ss_evener *evener, int32_t corner) {
-    const loose_pair *along = (const loose_pair *)evener->sheet->along[corner];
-    int32_t v = evener->sheet->patch->faces.corner_vertex[corner];
-    const double *slide = evener->slide[v], *step = evener->step[v];
-    moving_point p = {*(const loose_pair *)evener->sheet->flat[corner] + along[0] * slide[0] + along[1] * slide[1],
-                      along[0] * step[0] + along[1] * step[1]};
-    return p;
-}
-
-static inline moving_point from(moving_point origin, moving_point p) {
-    return (moving_point){p.at - origin.at, p.by - origin.by};
-}
-
-static inline double cross(pair a, pair b) {
-    return a[0] * b[1] - a[1] * b[0];
-}
-
 /* What a face has to spare, and what of that a part of the step takes: slope part + bend part^2. What makes it larger is left out. */
 typedef struct loss {
     double spare, slope, bend;
 } loss;
 
-/* Two triangles of the fan have the area between the diagonals of their quad. */
+static inline void subtract(const ss_pair a[3], const ss_pair b[3], ss_pair out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
+/* Areas are those of what is seen along the normal. Two triangles of the fan have that between the diagonals of their quad. */
 static inline loss loss_of(const ss_evener *evener, int32_t face) {
-    int32_t begin = evener->sheet->patch->faces.face_start[face], end = evener->sheet->patch->faces.face_start[face + 1];
-    double now = 0, slope = 0, bend = 0, rest = evener->sheet->area[face];
-    moving_point origin = corner_of(evener, begin), before = corner_of(evener, begin + 1);
-    for (int32_t c = begin + 2; c < end; c += 2) {
-        moving_point after = c + 1 < end ? corner_of(evener, c + 1) : origin;
-        moving_point p = from(origin, corner_of(evener, c)), q = from(before, after);
-        now += cross(p.at, q.at), bend += cross(p.by, q.by);
-        slope += cross(p.at, q.by) + cross(p.by, q.at);
-        before = after;
+    const ss_faces *faces = &evener->sheet->patch->faces;
+    const int32_t *v = faces->corner_vertex + faces->face_start[face];
+    int32_t count = faces->face_start[face + 1] - faces->face_start[face];
+    const double *n = evener->sheet->normal[face], rest = evener->sheet->area[face];
+    const ss_pair(*corner)[3] = (const ss_pair(*)[3])evener->straight, *origin = corner[v[0]];
+    ss_pair areas = {0, 0}, slopes = {0, 0};
+    for (int32_t c = 2; c < count; c += 2) {
+        ss_pair p[3], q[3];
+        subtract(corner[v[c]], origin, p);
+        subtract(c + 1 < count ? corner[v[c + 1]] : origin, corner[v[c - 1]], q);
+        for (int k = 0; k < 3; k++) {
+            ss_pair across = n[(k + 1) % 3] * p[(k + 2) % 3] - n[(k + 2) % 3] * p[(k + 1) % 3];
+            areas += across * q[k];
+            slopes += across * (ss_pair){q[k][1], q[k][0]};
+        }
     }
-    double spare = evener->temper.most_lost * ss_most(now - evener->temper.least_area * rest, 0);
-    return rest > 0 ? (loss){spare, ss_most(-slope, 0), ss_most(-bend, 0)} : (loss){0, 0, 0};
+    double spare = evener->temper.most_lost * ss_most(areas[0] - evener->temper.least_area * rest, 0);
+    return rest > 0 ? (loss){spare, ss_most(-slopes[0] - slopes[1], 0), ss_most(-areas[1], 0)} : (loss){0, 0, 0};
 }
 
 static inline bool spares(loss own, double part) {
@@ -81,11 +68,25 @@ static bool is_shorter(const ss_evener *evener, int32_t face) {
     return false;
 }
 
+static void set_straight(ss_evener *evener) {
+    const ss_sheet *sheet = evener->sheet;
+    for (int32_t v = 0; v < sheet->patch->vertex_count; v++) {
+        ss_pair first = {evener->slide[v][0], evener->step[v][0]}, second = {evener->slide[v][1], evener->step[v][1]};
+        for (int k = 0; k < 3; k++)
+            evener->straight[v][k] = (ss_pair){sheet->ground.pose.point[v][k], 0} + sheet->tangent[v][0][k] * first +
+                                     sheet->tangent[v][1][k] * second;
+    }
+}
+
 /* Takes the parts of the step; faces none of whose corners have a part keep their reaches. Returns the least. */
 static double scale_step(ss_evener *evener) {
     double least = 1;
-    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
-        evener->step[v][0] *= evener->part[v], evener->step[v][1] *= evener->part[v];
+    for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++) {
+        for (int j = 0; j < 2; j++)
+            evener->step[v][j] *= evener->part[v];
+        for (int k = 0; k < 3; k++)
+            evener->straight[v][k][1] *= evener->part[v];
+    }
     for (int32_t f = 0; f < evener->sheet->patch->faces.face_count; f++) {
         if (is_shorter(evener, f)) {
             loss own = loss_of(evener, f);
@@ -100,6 +101,7 @@ static double scale_step(ss_evener *evener) {
 static double share_reaches(ss_evener *evener) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     double *part = evener->part;
+    set_straight(evener);
     fill_parts(evener, 1);
     for (int32_t f = 0; f < faces->face_count; f++) {
         loss own = loss_of(evener, f);
