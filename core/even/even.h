@@ -137,10 +137,10 @@ double ss_sum_stretch(const ss_evener *evener);
 /* s(z), z over the scale, by what answers stretch and compression, and how fast that changes with z. What drives skin apart comes to
  * half at most. Without a branch or a call, so that several are found at once. */
 static inline double ss_drive(double stretch_response, double compression_response, double z, double *slope) {
-    double share = 2 * ss_least(z, 0), least = sqrt(1 + share * share);
-    double response = z < 0 ? compression_response : stretch_response;
-    *slope = response / (least * least * least);
-    return response * z / least;
+    double share = 2 * ss_least(z, 0), inverse = 1 / sqrt(1 + share * share);
+    double bounded = (z < 0 ? compression_response : stretch_response) * inverse;
+    *slope = bounded * inverse * inverse;
+    return bounded * z;
 }
 /* Shortens the step, and takes it. Returns whether a face cut it short. */
 bool ss_take_step(ss_evener *evener);

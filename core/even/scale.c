@@ -91,7 +91,7 @@ static double median(ss_weighted *values, int32_t count) {
 enum { LANES = 4 }; /* of sums, for the processor's sake: their order is the same everywhere */
 
 static inline void weigh(ss_weighted value, double middle, double *sum, double *weights) {
-    double off = value.z - middle, share = off / WIDTH, weight = value.k / sqrt(1 + share * share);
+    double off = value.z - middle, weight = value.k / sqrt(WIDTH * WIDTH + off * off);
     *sum += weight * off, *weights += weight;
 }
 

@@ -57,19 +57,29 @@ static void blend(const ss_relaxer *relaxer, const ss_place *place, double out[3
     }
 }
 
+/* Two tangents turned as ss_turn turns one, to a normal of any length. */
+static bool turn_both(const double from[3], const double to[3], const double tangent[2][3], ss_pair out[3]) {
+    double length = ss_length(to), inverse = length > 0 ? 1 / length : 0, whole = 1 + inverse * ss_dot(from, to);
+    ss_pair share = {ss_dot(to, tangent[0]), ss_dot(to, tangent[1])};
+    share *= inverse / whole;
+    for (int k = 0; k < 3; k++)
+        out[k] = (ss_pair){tangent[0][k], tangent[1][k]} - (from[k] + inverse * to[k]) * share;
+    return whole > SS_LEAST_TURN;
+}
+
 /* The tangents of the vertex, turned to the normal where it is, and from there into the pose. */
 static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
     const ss_sheet *sheet = relaxer->evener->sheet;
     const ss_place *place = &relaxer->evener->place[vertex];
-    double normal[3], gradient[3][3], way[3];
-    ss_ground_normal(&sheet->ground, place, normal);
+    double normal[3], gradient[3][3];
+    ss_pair way[3], *axis = relaxer->axis[vertex];
+    ss_ground_blend(&sheet->ground, place, normal);
+    bool turns = turn_both(sheet->ground.normal[vertex], normal, (const double(*)[3])sheet->tangent[vertex], way);
     blend(relaxer, place, gradient);
-    for (int j = 0; j < 2; j++) {
-        double *axis = relaxer->axis[vertex][j];
-        bool turns = ss_turn(sheet->ground.normal[vertex], normal, sheet->tangent[vertex][j], way);
-        for (int k = 0; k < 3; k++)
-            axis[k] = turns ? ss_dot(gradient[k], way) : 0;
-    }
+    for (int k = 0; k < 3; k++)
+        axis[k] = gradient[k][0] * way[0] + gradient[k][1] * way[1] + gradient[k][2] * way[2];
+    if (!turns)
+        memset(axis, 0, sizeof relaxer->axis[vertex]);
 }
 
 void ss_find_axes(ss_relaxer *relaxer) {

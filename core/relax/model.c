@@ -66,14 +66,22 @@ static void find_models(double stretch_response, double compression_response, in
 
 /* ---- The blocks ---- */
 
-static void add_own(ss_relaxer *relaxer, int32_t unknown, const double slope[2], double pull, double more,
-                    const double hold[2]) {
-    double *own = ss_blocks_own(relaxer->blocks, unknown), *right = relaxer->blocks->right[unknown];
-    for (int i = 0; i < 2; i++) {
-        right[i] -= pull * slope[i] + hold[i];
-        for (int j = 0; j < 2; j++)
-            own[2 * i + j] += more * slope[i] * slope[j];
-    }
+/* Of one end of an edge: how its length over L changes, and what holds it there. */
+static inline void add_own(ss_relaxer *relaxer, int32_t unknown, ss_pair slope, double pull, double more, ss_pair hold) {
+    ss_pair *own = (ss_pair *)ss_blocks_own(relaxer->blocks, unknown), *right = (ss_pair *)relaxer->blocks->right[unknown];
+    *right -= pull * slope + hold;
+    for (int i = 0; i < 2; i++)
+        own[i] += more * slope[i] * slope;
+}
+
+static inline ss_pair slope_of(const ss_relaxer *relaxer, int32_t vertex, const double way[3]) {
+    const ss_pair *axis = relaxer->axis[vertex];
+    return way[0] * axis[0] + way[1] * axis[1] + way[2] * axis[2];
+}
+
+/* A row of the products of two vertices' axes. */
+static inline ss_pair multiply_axes(const ss_pair a[3], int row, const ss_pair b[3]) {
+    return a[0][row] * b[0] + a[1][row] * b[1] + a[2][row] * b[2];
 }
 
 /* Edge i, which is m's e. across [vertex_count] sums what is to be taken times products of a vertex's own axes. */
@@ -81,28 +89,26 @@ static void add_edge(ss_relaxer *relaxer, int32_t i, const edge_models *m, int32
     const ss_evener *evener = relaxer->evener;
     const ss_spring *spring = &evener->sheet->springs[i];
     const int32_t *v = spring->end, moving[2] = {evener->moving[v[0]], evener->moving[v[1]]};
-    const double(*product)[2] = (const double(*)[2])evener->sheet->between[i];
-    const double *first = evener->slide[v[0]], *second = evener->slide[v[1]], bond = evener->bond[i];
-    double slope[2][2], hold[2][2];
-    for (int j = 0; j < 2; j++) {
-        slope[0][j] = -ss_dot(m->way[e], relaxer->axis[v[0]][j]), slope[1][j] = ss_dot(m->way[e], relaxer->axis[v[1]][j]);
-        hold[0][j] = HOLD * bond * (first[j] - (product[j][0] * second[0] + product[j][1] * second[1]));
-        hold[1][j] = HOLD * bond * (second[j] - (product[0][j] * first[0] + product[1][j] * first[1]));
-    }
+    const ss_pair *slides = (const ss_pair *)evener->slide, first = slides[v[0]], second = slides[v[1]];
+    const ss_pair *product = (const ss_pair *)evener->sheet->between[i];
+    ss_pair turned[2] = {{product[0][0], product[1][0]}, {product[0][1], product[1][1]}};
+    double bond = evener->bond[i];
+    ss_pair slope[2] = {-slope_of(relaxer, v[0], m->way[e]), slope_of(relaxer, v[1], m->way[e])};
+    ss_pair hold[2] = {first - (second[0] * turned[0] + second[1] * turned[1]),
+                       second - (first[0] * product[0] + first[1] * product[1])};
     for (int end = 0; end < 2; end++)
         if (moving[end] >= 0) {
-            add_own(relaxer, moving[end], slope[end], m->pull[e], m->more[e], hold[end]);
+            add_own(relaxer, moving[end], slope[end], m->pull[e], m->more[e], HOLD * bond * hold[end]);
             across[v[end]] += m->across[e];
         }
     if (moving[0] < 0 || moving[1] < 0)
         return;
-    bool first_is_row = moving[0] > moving[1];
-    double *between = relaxer->blocks->between[spring->edge];
+    int row = moving[0] > moving[1] ? 0 : 1;
+    const ss_pair *tangents = row == 0 ? product : turned, *axis = relaxer->axis[v[row]], *other = relaxer->axis[v[1 - row]];
+    ss_pair *between = (ss_pair *)relaxer->blocks->between[spring->edge];
     for (int a = 0; a < 2; a++)
-        for (int b = 0; b < 2; b++)
-            between[first_is_row ? 2 * a + b : 2 * b + a] =
-                m->more[e] * slope[0][a] * slope[1][b] - (HOLD + DAMPING) * bond * product[a][b] -
-                m->across[e] * ss_dot(relaxer->axis[v[0]][a], relaxer->axis[v[1]][b]);
+        between[a] = m->more[e] * slope[row][a] * slope[1 - row] - (HOLD + DAMPING) * bond * tangents[a] -
+                     m->across[e] * multiply_axes(axis, a, other);
 }
 
 /* What of a vertex is not of one edge: products of its axes, what holds and damps it, and its anchors. */
@@ -115,8 +121,7 @@ static void add_vertex(ss_relaxer *relaxer, int32_t v, double across) {
     double a = relaxer->anchor[v], share = evener->anchor[v], damping = (HOLD + DAMPING) * evener->bonds[v];
     for (int i = 0; i < 2 && evener->moving[v] >= 0; i++) {
         const double *slide = evener->slide[v], *tangent = evener->sheet->tangent[v][i];
-        for (int j = 0; j < 2; j++)
-            own[2 * i + j] += across * ss_dot(relaxer->axis[v][i], relaxer->axis[v][j]);
+        ((ss_pair *)own)[i] += across * multiply_axes(relaxer->axis[v], i, relaxer->axis[v]);
         own[3 * i] += damping * ss_dot(tangent, tangent) + a + share;
         right[i] -= a * (slide[i] - relaxer->even[v][i]) + share * (slide[i] - evener->weight[v] * evener->whole[v][i]);
     }

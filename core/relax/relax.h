@@ -20,7 +20,7 @@ typedef struct ss_relaxer {
     ss_evener *evener;        /* where skin is */
     ss_blocks *blocks;        /* it and what follows are laid out for a frame alone */
     double (*gradient)[3][3]; /* [vertex_count] how a point of the pose moves with the place on rest that it is of */
-    double (*axis)[2][3];     /* [vertex_count] how each vertex moves in the pose by its unknowns */
+    ss_pair (*axis)[3];       /* [vertex_count] how each vertex moves in the pose by its two unknowns */
     double (*even)[2];        /* [vertex_count] d_even */
     double *anchor;           /* [vertex_count] a */
 } ss_relaxer;

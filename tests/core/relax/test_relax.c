@@ -57,7 +57,7 @@ static void axes_of_a_linear_map(void **state) {
         for (int i = 0; i < 6; i++) {
             const double *way = sheet->tangent[v][i / 3];
             double mapped = map[i % 3][0] * way[0] + map[i % 3][1] * way[1];
-            assert_near(relaxer->axis[v][i / 3][i % 3], sheet->held[v] ? 0 : mapped, 1e-6); /* points are floats */
+            assert_near(relaxer->axis[v][i % 3][i / 3], sheet->held[v] ? 0 : mapped, 1e-6); /* points are floats */
         }
     free(points);
     ss_relaxer_destroy(relaxer);
