@@ -384,6 +384,33 @@ def test_the_column_beside_the_cache_is_chosen(show, report):
     ]
 
 
+def test_side_by_side_names_stand_over_their_columns(show, report):
+    names = ("before", "unit", "even", "relaxed")
+    shown = show([strip(SHEET, report.meshes[0].patches[0], columns=names)], report)
+    shown.press("w")
+    lefts = shown.run(
+        """const box = document.querySelector(".pair").getBoundingClientRect();
+        return [...document.querySelectorAll(".picture:first-of-type .name")].map(
+            (name) => (4 * (name.getBoundingClientRect().left - box.left)) / box.width);"""
+    )
+    assert lefts == pytest.approx([0, 1, 2, 3], abs=0.01)
+
+
+def test_rules_that_are_compared_have_a_curve_each(show, report):
+    patch = report.meshes[0].patches[0]
+    left = {rule: list(share * patch.column("stretch_before")) for rule, share in (("unit", 0.75), ("even", 0.5))}
+    shown = show([strip(SHEET, patch, columns=("before", *left), compared=left)], report)
+    worst = patch.results[patch.worst].stretch_before
+    shown.go_to(patch.worst)
+    stretch = shown.all(".chart")[0]
+    assert shown.legend(stretch) == {name: f"{share * worst:.4f}" for name, share in
+                                     (("before", 1), ("unit", 0.75), ("even", 0.5))}  # fmt: skip
+    assert len(shown.all("polyline", stretch)) == 3
+    minus = "\N{MINUS SIGN}"
+    lead = shown.one(".lead").text
+    assert f"unit {0.75 * worst:.4f} {minus}25 %" in lead and f"even {0.5 * worst:.4f} {minus}50 %" in lead
+
+
 # ---- A strip of frames ----
 
 
@@ -950,6 +977,7 @@ def test_compressed_pictures_are_small_and_alike():
     small = compressed(pixels)
     image = Image.open(io.BytesIO(small))
     assert (image.format, image.size) == ("WEBP", (1600, 225))
+    assert Image.open(io.BytesIO(compressed(pixels, columns=4))).size == (3200, 450)  # of which one is seen at a time
     scaled = np.asarray(Image.fromarray(pixels).resize(image.size)).astype(int)
     assert np.abs(np.asarray(image) - scaled).max() < 12
     assert len(small) < pixels.size / 50

@@ -329,6 +329,25 @@ def test_rules_are_compared_side_by_side(tmp_path):
     assert report.meshes[0].patches[0].results[0].relax_steps == 0
 
 
+def test_the_page_has_the_stretch_that_each_rule_leaves(tmp_path):
+    stage, mesh = sheet()
+    html = tmp_path / "page.html"
+    skinslide.preview(stage, html=html, compare=("unit", "relaxed"), size=(96, 32), views="stretch")
+    for rule in ("unit", "relaxed"):
+        mesh.GetPrim().CreateAttribute(f"skinSlide:{PATCH}:forceDensityRule", Sdf.ValueTypeNames.Token).Set(rule)
+        patch = skinslide.bake(stage, frames="authored").meshes[0].patches[0]
+        left = f"{patch.results[patch.worst].stretch_after:.4f}"
+        assert f'<span class="quiet">{rule}</span> <span class="after">{left}</span>' in html.read_text()
+
+
+def test_poses_side_by_side_are_as_large_as_two(tmp_path):
+    stage, _mesh = sheet()
+    for number, compare in enumerate((None, ("unit", "even", "relaxed"))):
+        skinslide.preview(stage, tmp_path / str(number), compare=compare, views="stretch", frames="1003")
+    sizes = [picture(tmp_path / str(number), "stretch", "1003").shape[:2] for number in range(2)]
+    assert sizes == [(1080, 1920), (1080, 3840)]
+
+
 def test_a_rule_that_cannot_slide_a_patch_is_named(tmp_path, capfd):
     stage, _mesh = stages.patched_stage(stages.box(), np.arange(6))
     stage.GetPrimAtPath(stages.MESH).GetAttribute(f"skinSlide:{PATCH}:forceDensityRule").Set("even")

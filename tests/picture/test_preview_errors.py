@@ -62,7 +62,7 @@ def test_a_stage_that_cannot_be_played_has_no_page(rate, tmp_path, capfd):
     assert main(["preview", path, *words]) == 0
 
 
-@pytest.mark.parametrize("size", [None, 64, (64, 32, 3), "64x32"])
+@pytest.mark.parametrize("size", [0, 64, (64, 32, 3), "64x32"])
 def test_what_is_no_size(size, shot, tmp_path):
     with pytest.raises(skinslide.UsageError, match=r"size is .*; it must be a width and a height"):
         draw(shot, tmp_path / "out", size=size)

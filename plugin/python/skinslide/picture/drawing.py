@@ -94,6 +94,13 @@ class _Encoded(NamedTuple):
     small: bytes | None  # for a page
 
 
+class _Drawn(NamedTuple):
+    """The pictures of a time."""
+
+    pictures: list[Future[_Encoded]]
+    left: dict[str, list[float]]  # by column but the first: the stretch of each series
+
+
 class MeshPictures(MeshMaking):
     """The pictures of one mesh."""
 
@@ -116,6 +123,7 @@ class MeshPictures(MeshMaking):
         # A strip for each series and view.
         self.thumbnails: list[list[bytes]] = [[] for _ in range(self.picture_count)]
         self._small: list[list[bytes]] = [[] for _ in range(self.picture_count)]
+        self._left: list[dict[str, list[float]]] = []  # of each time
 
     @property
     def total(self) -> int:
@@ -191,22 +199,27 @@ class MeshPictures(MeshMaking):
             for number in range(self.picture_count):
                 yield self._path(folder, number, time)
 
-    def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], list[Future[_Encoded]]]:
+    def read(self, time: Usd.TimeCode) -> Callable[[SlidFrame], _Drawn]:
         moments = [series.moment(time) for series in self._series]
 
-        def work(frame: SlidFrame) -> list[Future[_Encoded]]:
+        def work(frame: SlidFrame) -> _Drawn:
             slid = {rule: frame.by(slider) for rule, slider in zip(self._rules, self.sliders, strict=True)}
             with self._easel.canvases.taken() as canvas:
                 drawn = self._draw(canvas, moments, frame, slid or {"after": frame})
                 works = (partial(self._encode, each, time in self._on_sheet) for each in drawn)
-                return [self._easel.encoders.encode(each) for each in works]
+                pictures = [self._easel.encoders.encode(each) for each in works]
+            return _Drawn(pictures, {rule: self._stretch(each) for rule, each in slid.items()})
 
         return work
 
-    def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: list[Future[_Encoded]]) -> None:
+    def _stretch(self, frame: SlidFrame) -> list[float]:
+        return [frame.patches[series.index].stretch_after for series in self._series]
+
+    def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: _Drawn) -> None:
         """Writes the files; keeps what sheet and page want."""
-        self._easel.drawn.pictures += len(made)
-        for number, encoded in enumerate(made):
+        self._left.append(made.left)
+        self._easel.drawn.pictures += len(made.pictures)
+        for number, encoded in enumerate(made.pictures):
             with core_named(self._mesh, time):
                 picture = encoded.result()
             if picture.thumbnail:
@@ -252,7 +265,7 @@ class MeshPictures(MeshMaking):
         kept, shown = self._easel.folder is not None, cache(lambda: encoding.displayed(pixels))
         file = (encoding.exr(pixels) if self._options.form == "exr" else encoding.png(shown())) if kept else None
         thumbnail = encoding.thumbnail(shown()) if kept and on_sheet else None
-        small = compressed(shown(), self._easel.budget.of_each) if self._easel.page else None
+        small = compressed(shown(), self._easel.budget.of_each, self.columns) if self._easel.page else None
         return _Encoded(file, thumbnail, small)
 
     def strips(self) -> Iterator[Strip]:
@@ -265,7 +278,8 @@ class MeshPictures(MeshMaking):
             files = {view: self._addresses(i) for view, i in zip(views, which, strict=True)}
             settings = settings_of(self._mesh, patch.info.setup)
             columns = ("before", *(self._rules or ("after",)))
-            yield Strip(self._mesh.path, patch, pictures, settings, columns, files)
+            compared = {rule: [left[rule][number] for left in self._left] for rule in self._rules}
+            yield Strip(self._mesh.path, patch, pictures, settings, columns, files, compared)
 
     def _addresses(self, number: int) -> list[str]:
         """Of the pictures in full size, seen from the page; none, where they are not kept."""

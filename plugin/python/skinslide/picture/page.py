@@ -26,7 +26,7 @@ from skinslide.shot.report import BakeReport, PatchReport, milliseconds_text, ro
 _SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg", b"RIFF": "image/webp"}
 _PAGE_BYTES = 6_400_000  # of all pictures, which take a third more as text
 _LEAST_BYTES, _MOST_BYTES = 3_000, 150_000  # of a picture
-# Widths in pixels, qualities, and how many bytes they come to, as shares of those of the first.
+# Widths in pixels, of two columns, qualities, and how many bytes they come to, as shares of those of the first.
 _SIZES = (
     (1600, 84, 1.0),
     (1280, 78, 0.55),
@@ -53,6 +53,9 @@ class Strip:
     files: Mapping[str, Sequence[str]] = field(
         default_factory=dict
     )  # by view: where a frame's full size is, from the page
+    compared: Mapping[str, Sequence[float]] = field(
+        default_factory=dict
+    )  # by column but the first, where they are rules: the stretch left at each frame
 
 
 def page(
@@ -161,6 +164,7 @@ def _templates() -> Environment:
     templates.globals.update(film_of=_film, others=_others)
     templates.filters.update(
         change=_change,
+        changed=_changed,
         digest=_digest,
         milliseconds=milliseconds_text,
         moment=_moment,
@@ -205,6 +209,10 @@ def _change(change: float | None) -> str:
     return "" if change is None else f"{100 * change:+.0f} %".replace("-", "\N{MINUS SIGN}")
 
 
+def _changed(after: float, before: float) -> str:
+    return _change(after / before - 1 if before > 0 else None)
+
+
 def _others(pictures: Sequence[bytes], but: int) -> list[str | None]:
     """Every picture for the script, but one that is in the markup."""
     return [None if i == but else _uri(picture) for i, picture in enumerate(pictures)]
@@ -239,19 +247,23 @@ def bytes_of_each(count: int) -> int:
     return max(_LEAST_BYTES, min(_MOST_BYTES, _PAGE_BYTES // max(count, 1)))
 
 
-def compressed(pixels: np.ndarray, most: int = _MOST_BYTES) -> bytes:
-    """A rendered picture, uint8 (height, width, 3), for a page of many: so wide and good as `most` bytes allow."""
+def compressed(pixels: np.ndarray, most: int = _MOST_BYTES, columns: int = 2) -> bytes:
+    """A rendered picture, uint8 (height, width, 3), for a page of many: so wide and good as `most` bytes allow.
+
+    One of more columns is so much wider, since the page shows one at a time.
+    """
     image, at = Image.fromarray(pixels), 0
-    made = _encoded(image, at)
+    made = _encoded(image, at, columns)
     while len(made) > most and at + 1 < len(_SIZES):
         fitting = [i for i, (*_, share) in enumerate(_SIZES) if share / _SIZES[at][2] * len(made) <= most]
         at = max(at + 1, min(fitting, default=len(_SIZES) - 1))
-        made = _encoded(image, at)
+        made = _encoded(image, at, columns)
     return made
 
 
-def _encoded(image: Image.Image, size: int) -> bytes:
+def _encoded(image: Image.Image, size: int, columns: int) -> bytes:
     width, quality, _ = _SIZES[size]
+    width = width * columns // 2
     scaled = image.resize((width, max(1, round(image.height * width / image.width)))) if image.width > width else image
     with io.BytesIO() as out:
         scaled.save(out, "WEBP", quality=quality, method=3)

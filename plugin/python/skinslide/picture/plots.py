@@ -6,7 +6,7 @@ Everything is placed here, in the units of an SVG: a page shows it without a scr
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -18,6 +18,7 @@ from skinslide.problems import frame_text
 from skinslide.shot.report import PatchReport, milliseconds_text, stretch_text, time_text
 
 _X_TICKS, _Y_TICKS = 5, 5  # at most
+_COMPARED = ("after", "relax", "locate", "interpolate")  # classes of lines, of as many rules as there are
 
 
 @dataclass(frozen=True)
@@ -96,12 +97,18 @@ class Chart:
         return [self.bottom - share * (self.bottom - self.top) for share in self._value_axis.shares(values)]
 
 
-def charts(patch: PatchReport) -> list[Chart]:
-    """What is drawn of a patch. Stages that took no time, such as relax under most rules, are left out."""
+def charts(patch: PatchReport, compared: Mapping[str, Sequence[float]]) -> list[Chart]:
+    """What is drawn of a patch. Stages that took no time, such as relax under most rules, are left out.
+
+    Args:
+        patch: What happened at each frame.
+        compared: The stretch that each of several rules leaves; of none, that of the patch's own is drawn.
+    """
+    lines = {"before": patch.column("stretch_before"), **{rule: np.array(left) for rule, left in compared.items()}}
+    lines |= {} if compared else {"after": patch.column("stretch_after")}
     stretch = [
-        Quantity(when, when, values, [stretch_text(value) for value in values])
-        for when in ("before", "after")
-        for values in [patch.column(f"stretch_{when}")]
+        Quantity(name, style, values, [stretch_text(value) for value in values])
+        for style, (name, values) in zip(("before", *_COMPARED), lines.items(), strict=False)
     ]
     slide = patch.column("largest_slide")
     counts = [

@@ -191,6 +191,9 @@ class FarmOptions(Options):
     )
 
 
+_WIDTH, _HEIGHT = 960, 1080  # pixels of a pose, where nobody says how many
+
+
 @dataclass(frozen=True, kw_only=True)
 class PictureOptions(Options):
     """What pictures are drawn."""
@@ -234,12 +237,12 @@ class PictureOptions(Options):
         False, checks.truth, "--follow", action="store_true", help="frame the patch anew in each frame"
     )
     size: tuple[int, int] = option(
-        (1920, 1080),
-        checks.picture_size,
+        None,  # what it is then, the poses side by side say
+        or_none(checks.picture_size),
         "--size",
         type=checks.size_text,
         metavar="WxH",
-        help="pixels (default: 1920x1080)",
+        help="pixels (default: 960x1080 for each of the poses side by side)",
     )
     form: str = option(
         "png",
@@ -276,6 +279,8 @@ class PictureOptions(Options):
         if self.camera is not None and self.follow:
             raise UsageError("a camera of the stage does not follow a patch: give one or the other")
         super().__post_init__()
+        if self.size is None:
+            object.__setattr__(self, "size", (_WIDTH * (1 + len(self.compare or ("after",))), _HEIGHT))
 
 
 class PictureKeywords(TypedDict, total=False):
@@ -287,7 +292,7 @@ class PictureKeywords(TypedDict, total=False):
     wire: bool
     camera: PrimLike | None
     follow: bool
-    size: tuple[int, int]
+    size: tuple[int, int] | None
     form: str
     st: str | None
     squares: float | None
