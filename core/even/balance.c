@@ -7,6 +7,8 @@
 #define STEPS        4
 #define LEAST_SQUARE 1e-12 /* of an edge's length over that at rest */
 
+static const ss_caution own_caution = {.most_lost = 0.5, .least_area = 0.1};
+
 void ss_evener_lay_out(ss_evener *evener, ss_room *room) {
     const ss_patch *patch = evener->sheet->patch;
     int32_t vertices = patch->vertex_count, springs = evener->sheet->spring_count;
@@ -33,13 +35,13 @@ void ss_evener_lay_out(ss_evener *evener, ss_room *room) {
     ss_blocks_lay_out(evener->K, room);
 }
 
-skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_room *room, ss_evener **out,
+skinslide_status ss_evener_create(const ss_sheet *sheet, bool bonds_needed, ss_room *room, ss_evener **out,
                                   skinslide_error *error) {
     ss_evener *evener = calloc(1, sizeof *evener);
     if (!evener)
         return ss_out_of_memory(error);
     ss_room counted = {0};
-    evener->sheet = sheet, evener->temper = temper;
+    evener->sheet = sheet, evener->bonds_needed = bonds_needed;
     evener->paint = SS_NEW(&evener->memory, double, sheet->patch->faces.edge_count);
     evener->weight = SS_NEW(&evener->memory, double, sheet->patch->vertex_count);
     evener->hold = SS_NEW(&evener->memory, double, sheet->patch->vertex_count);
@@ -196,8 +198,8 @@ void ss_write_places(const ss_evener *evener, ss_place *places) {
     }
 }
 
-bool ss_take_step(ss_evener *evener) {
-    bool cut = ss_shorten_step(evener);
+bool ss_take_step(ss_evener *evener, ss_caution caution) {
+    bool cut = ss_shorten_step(evener, caution);
     slide_all(evener);
     return cut;
 }
@@ -216,7 +218,7 @@ skinslide_status ss_slide_by(ss_evener *evener, const ss_frame *frame, const dou
         if (step > 0)
             ss_measure_stretch(evener);
         solve(evener, frame);
-        *cut += ss_take_step(evener);
+        *cut += ss_take_step(evener, own_caution);
     }
     return status;
 }

@@ -4,7 +4,7 @@
  *
  *     max(0, mu - z - onset)^2
  *
- * z and the scale mu of the cache, spread twice over the neighbours; its hold is then 1 + most x / (1 + x) as stiff, with
+ * z and the scale mu of the cache, spread twice over the neighbours; its hold is then 1 + most x / (1 + x) times as stiff, with
  * x = steepness crush. */
 #include "even.h"
 
@@ -12,6 +12,7 @@
 
 #define ONSET     0.1
 #define STEEPNESS 10.0
+#define MOST      7.0
 #define SPREADS   2
 
 static void measure(ss_evener *evener) {
@@ -46,6 +47,6 @@ void ss_stiffen_holds(ss_evener *evener, const double *holds) {
         spread(evener);
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++) {
         double x = STEEPNESS * evener->crush[v];
-        evener->next_hold[v] = holds[v] * (1 + evener->temper.most_stiffened * x / (1 + x));
+        evener->next_hold[v] = holds[v] * (1 + MOST * x / (1 + x));
     }
 }

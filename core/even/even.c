@@ -3,8 +3,6 @@
 
 #include <stdlib.h>
 
-static const ss_temper temper = {.hold = 0.05, .most_stiffened = 7, .most_lost = 0.5, .least_area = 0.1};
-
 typedef struct even_rest {
     ss_rest head;
     ss_sheet *sheet;
@@ -74,7 +72,7 @@ static skinslide_status open_slide(const ss_rest *rest, ss_room *room, struct ss
     own->room = room;
     skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
     if (!status)
-        status = ss_evener_create(ss_sheet_of(rest), temper, room, &own->evener, error);
+        status = ss_evener_create(ss_sheet_of(rest), false, room, &own->evener, error);
     if (status)
         close_slide(&own->head);
     else

@@ -64,14 +64,11 @@ typedef struct ss_weighted {
     double z, k;
 } ss_weighted;
 
-/* What rules that even out differ in. */
-typedef struct ss_temper {
-    double hold;           /* eta */
-    double most_stiffened; /* what is added to a hold of 1 where the cache crushes skin wholly: see crush.c */
-    double most_lost;      /* by one step, of what a face has over the least area */
-    double least_area;     /* of that at rest */
-    bool bonds;            /* whether what bonds and loads are is of use beyond K; where K is as it was, no share is below 1 */
-} ss_temper;
+/* How much of a face one step may take. */
+typedef struct ss_caution {
+    double most_lost;  /* of what it has over the least area */
+    double least_area; /* of that at rest */
+} ss_caution;
 
 typedef double ss_pair __attribute__((vector_size(16), may_alias));
 
@@ -79,8 +76,8 @@ typedef double ss_pair __attribute__((vector_size(16), may_alias));
 typedef struct ss_evener {
     ss_memory memory;
     const ss_sheet *sheet;
-    ss_temper temper;
-    ss_blocks *K; /* factored for the paint, weights and holds below, from frame to frame */
+    bool bonds_needed; /* what bonds and loads are is of use beyond K; else, where K is as it was, no share is below 1 */
+    ss_blocks *K;      /* factored for the paint, weights and holds below, from frame to frame */
     bool factored;
     double *paint;                   /* [edge_count] */
     double *weight, *hold;           /* [vertex_count]; the weight is a share of the largest, and 0 of held vertices */
@@ -98,6 +95,7 @@ typedef struct ss_evener {
     double (*up)[3];                 /* [vertex_count] scratch for normals */
     double (*slide)[2];              /* [vertex_count] d */
     double (*step)[2];               /* [vertex_count] to be added to it */
+    ss_caution caution;              /* of that step */
     double *stretch;                 /* [spring_count] z */
     double scale;                    /* of the frame, to be taken off z */
     double (*whole)[2];              /* [vertex_count] the slide as if all shares were 1, where some are less */
@@ -109,7 +107,7 @@ typedef struct ss_evener {
 } ss_evener;
 
 /* Asks the room for its part. */
-skinslide_status ss_evener_create(const ss_sheet *sheet, ss_temper temper, ss_room *room, ss_evener **out,
+skinslide_status ss_evener_create(const ss_sheet *sheet, bool bonds_needed, ss_room *room, ss_evener **out,
                                   skinslide_error *error);
 void ss_evener_destroy(ss_evener *evener);
 /* Begins a turn. */
@@ -143,7 +141,7 @@ static inline double ss_drive(double stretch_response, double compression_respon
     return bounded * z;
 }
 /* Shortens the step, and takes it. Returns whether a face cut it short. */
-bool ss_take_step(ss_evener *evener);
+bool ss_take_step(ss_evener *evener, ss_caution caution);
 /* Where every free vertex is, in their order: [free_count]. */
 void ss_write_places(const ss_evener *evener, ss_place *places);
 
@@ -186,7 +184,7 @@ double ss_find_scale(ss_weighted *values, int32_t count);
 
 /* Shortens the step so that no face turns over. Returns whether some face had to be kept from it, beyond the ease that all steps
  * have. */
-bool ss_shorten_step(ss_evener *evener);
+bool ss_shorten_step(ss_evener *evener, ss_caution caution);
 
 /* ---- folds.c ---- */
 

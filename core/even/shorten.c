@@ -40,7 +40,7 @@ static inline loss loss_of(const ss_evener *evener, int32_t face) {
             slopes += across * (ss_pair){q[k][1], q[k][0]};
         }
     }
-    double spare = evener->temper.most_lost * ss_most(areas[0] - evener->temper.least_area * rest, 0);
+    double spare = evener->caution.most_lost * ss_most(areas[0] - evener->caution.least_area * rest, 0);
     return rest > 0 ? (loss){spare, ss_most(-slopes[0] - slopes[1], 0), ss_most(-areas[1], 0)} : (loss){0, 0, 0};
 }
 
@@ -153,7 +153,8 @@ static void ease_off(ss_evener *evener) {
     }
 }
 
-bool ss_shorten_step(ss_evener *evener) {
+bool ss_shorten_step(ss_evener *evener, ss_caution caution) {
+    evener->caution = caution;
     double least = share_reaches(evener);
     for (int round = 0; round < ROUNDS; round++) {
         if (least >= 1)

@@ -9,6 +9,7 @@
 
 #include <string.h>
 
+#define HOLD     0.05  /* eta */
 #define TIE      1e6   /* of the ends of an edge without length: of eta k, over the square of the mean edge */
 #define FIRMNESS 1e-10 /* far over rounding, far under what holds skin of a million faces that is closed */
 
@@ -64,7 +65,7 @@ static void add_spring(ss_evener *evener, int32_t i) {
         if (moving[end] >= 0)
             add_own(evener, moving[end], spring->slope[end], k);
     if (moving[0] >= 0 && moving[1] >= 0)
-        add_between(evener, i, k, evener->temper.hold * evener->bond[i]);
+        add_between(evener, i, k, HOLD * evener->bond[i]);
 }
 
 void ss_firm(double own[4]) {
@@ -77,7 +78,7 @@ static void add_diagonal(ss_evener *evener, int32_t v) {
     int32_t unknown = ss_blocks_unknown(evener->K, v);
     if (unknown < 0)
         return;
-    double *own = ss_blocks_own(evener->K, unknown), hold = evener->temper.hold * evener->bonds[v];
+    double *own = ss_blocks_own(evener->K, unknown), hold = HOLD * evener->bonds[v];
     for (int j = 0; j < 2 && evener->moving[v] >= 0; j++)
         own[3 * j] += hold * ss_dot(evener->sheet->tangent[v][j], evener->sheet->tangent[v][j]) + evener->anchor[v];
     ss_firm(own);
@@ -105,7 +106,7 @@ skinslide_status ss_need_stiffness(ss_evener *evener, const ss_frame *frame, con
     bool changed = take(evener->paint, frame->paint, patch->faces.edge_count);
     changed |= take(evener->weight, weight, patch->vertex_count);
     changed |= take(evener->hold, hold, patch->vertex_count);
-    if (changed || !evener->factored || evener->temper.bonds) {
+    if (changed || !evener->factored || evener->bonds_needed) {
         list_moving(evener);
         list_bonds(evener);
         ss_find_anchors(evener);

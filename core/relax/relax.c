@@ -8,7 +8,8 @@
 #define STEPS       3
 #define LEAST_SPARE 0.01 /* of the cache's */
 
-static const ss_temper temper = {.hold = 0.3, .most_lost = 0.35, .least_area = 0.25, .bonds = true};
+/* The model says less of what large steps come to than the balance does. */
+static const ss_caution caution = {.most_lost = 0.35, .least_area = 0.25};
 
 void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room) {
     int32_t vertices = relaxer->evener->sheet->patch->vertex_count;
@@ -25,7 +26,7 @@ skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_room *room, ss_rela
     if (!relaxer)
         return ss_out_of_memory(error);
     ss_room counted = {0};
-    skinslide_status status = ss_evener_create(sheet, temper, room, &relaxer->evener, error);
+    skinslide_status status = ss_evener_create(sheet, true, room, &relaxer->evener, error);
     if (!status)
         status = ss_blocks_create(sheet->system, false, room, &relaxer->blocks, error);
     if (status) {
@@ -79,7 +80,7 @@ static skinslide_status slide_by(ss_relaxer *relaxer, const ss_frame *frame, con
     ss_measure_stretch(evener);
     double even = ss_sum_stretch(evener);
     for (*steps = 0; *steps < STEPS && !ss_is_set(frame->stop) && find_step(relaxer, frame); ++*steps) {
-        *cut += ss_take_step(evener);
+        *cut += ss_take_step(evener, caution);
         ss_measure_stretch(evener);
     }
     double part = part_without_gain(cache, even, ss_sum_stretch(evener));

@@ -387,11 +387,11 @@ static void holds_and_responses(void **state) {
     test_mesh mesh = quad_grid(16, 16);
     rig r = rig_of(&mesh, even());
     float *points = bumped(&mesh, 7, 8, 4, 4);
-    double some = mean_slide_held(&r, &mesh, points, 4, 1);
+    double some = mean_slide_held(&r, &mesh, points, 8, 1);
     assert_true(mean_slide_held(&r, &mesh, points, 20, 1) < 0.9 * some);
     assert_true(mean_slide_held(&r, &mesh, points, 0.8f, 1) > 1.2 * some);
-    assert_true(mean_slide_held(&r, &mesh, points, 4, 0.5f) < 0.8 * some);
-    assert_true(mean_slide_held(&r, &mesh, points, 4, 0) == 0);
+    assert_true(mean_slide_held(&r, &mesh, points, 8, 0.5f) < 0.8 * some);
+    assert_true(mean_slide_held(&r, &mesh, points, 8, 0) == 0);
     free(points);
     free_rig(&r);
     free_mesh(&mesh);

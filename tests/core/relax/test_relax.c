@@ -131,6 +131,28 @@ static void stretch_is_less_than_by_other_rules(void **state) {
     }
 }
 
+/* A ribbon that nothing holds, drawn out at one end and pressed together at the other: skin must come from far along it. */
+static void skin_comes_from_far(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(40, 4);
+    float *points = copy_points(&mesh);
+    for (int32_t v = 0; v < mesh.vertex_count; v++)
+        points[3 * v] += 0.0075f * points[3 * v] * (points[3 * v] - 40);
+    double left[2];
+    for (int i = 0; i < 2; i++) {
+        skinslide_patch_setup choices = by_rule(i ? SKINSLIDE_RULE_RELAXED : SKINSLIDE_RULE_EVEN);
+        choices.holes = SKINSLIDE_HOLES_FREE_ALL;
+        rig r = rig_of(&mesh, choices);
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+        free(slide_with(&r, &mesh, points, NULL, &result));
+        left[i] = result.stretch_after;
+        free_rig(&r);
+    }
+    assert_true(left[1] < left[0]);
+    free(points);
+    free_mesh(&mesh);
+}
+
 /* On every fixture, in poses that shear, bump and shake it: on the surface whatever the weights. */
 static void slides_stay_on_the_surface(void **state) {
     (void)state;
@@ -333,6 +355,7 @@ int main(void) {
         cmocka_unit_test(axes_of_a_linear_map),
         cmocka_unit_test(a_slide_by_hand),
         cmocka_unit_test(stretch_is_less_than_by_other_rules),
+        cmocka_unit_test(skin_comes_from_far),
         cmocka_unit_test(slides_stay_on_the_surface),
         cmocka_unit_test(no_stretch_is_added_on_crumpled_rest),
         cmocka_unit_test(nothing_turns_over),
