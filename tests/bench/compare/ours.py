@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from compare.patch import Patch, Slid
@@ -29,16 +27,13 @@ class Ours:
         return self._slider.embedding(0) if self._embeds else None
 
     def frame(self, points: np.ndarray) -> Slid:
-        """The core's stages are by the clock: each counts as the thread ran, unless it waited for a device."""
-        clock, start = time.perf_counter(), time.thread_time()
         frame = self._slider.slide(points, embeddings=self._embeds)
-        ran, passed = time.thread_time() - start, time.perf_counter() - clock
-        share = ran / passed if self._lookup == "exact" else 1
         of_patch = frame.patches[0]
         seconds = {
-            "embed": share * (of_patch.density_seconds + of_patch.embed_seconds),
-            "relax": share * of_patch.relax_seconds,
-            "locate": share * of_patch.locate_seconds,
-            "interpolate": share * of_patch.interpolate_seconds,
+            "embed": of_patch.density_seconds + of_patch.embed_seconds,
+            "relax": of_patch.relax_seconds,
+            "locate": of_patch.locate_seconds,
+            "interpolate": of_patch.interpolate_seconds,
         }
-        return Slid(seconds, frame.embeddings[0] if self._embeds else None, frame.points)
+        # With a device the thread waits for it.
+        return Slid(seconds, frame.embeddings[0] if self._embeds else None, frame.points, self._lookup == "exact")

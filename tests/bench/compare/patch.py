@@ -64,8 +64,10 @@ class Slid:
         seconds: Of a thread, by stage: embed, locate, interpolate.
         embedding: In the plane (V, 2).
         points: Where vertices went (V, 3).
+        by_clock: Seconds are by the clock, in which the thread may have had to wait for its turn.
     """
 
     seconds: dict[str, float]
     embedding: np.ndarray | None
     points: np.ndarray
+    by_clock: bool = False
