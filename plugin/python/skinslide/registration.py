@@ -8,7 +8,6 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
-from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
@@ -71,7 +70,7 @@ def registered() -> bool:
     return Sdf.FileFormat.FindById("skinslide") is not None
 
 
-class _Finder(MetaPathFinder):
+class _Finder:
     """Finds USD's modules as Python does, and has skinslide registered once they are loaded."""
 
     @classmethod

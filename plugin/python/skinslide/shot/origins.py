@@ -130,15 +130,15 @@ def _coordinates(mesh: PatchedMesh) -> Value | None:
 def _digest(*values: Any) -> str:
     digest = hashlib.blake2b(digest_size=_BYTES)
     for part in _parts(values):
-        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(memoryview(part).nbytes.to_bytes(8, "little"))
         digest.update(part)
     return digest.hexdigest()
 
 
-def _parts(value: Any) -> Iterator[bytes]:
+def _parts(value: Any) -> Iterator[bytes | memoryview]:
     if isinstance(value, np.ndarray):
         yield f"{value.dtype.str}{value.shape}".encode()
-        yield np.ascontiguousarray(value).tobytes()
+        yield np.ascontiguousarray(value).data
     elif is_dataclass(value):
         yield type(value).__name__.encode()
         for each in fields(value):

@@ -8,11 +8,12 @@ import os
 import posixpath
 from pathlib import Path
 
-from pxr import Ar, Sdf, Tf, Usd, UsdUtils
+from pxr import Ar, Sdf, Tf, Usd
 
 from skinslide.arrays.meaning import check_text, say
 from skinslide.problems import PATH_TOO_LONG, Fault, StageError, usd_message
 from skinslide.registration import registered
+from skinslide.stage.seldom import usd_utils
 from skinslide.stage.sources import EXTENSION, TEXT_ONLY, check_regular, not_opened, open_sources
 
 
@@ -102,7 +103,7 @@ def anchor_assets(layer: Sdf.Layer, path: Path) -> None:
         # An expression is evaluated first and anchored by USD, or names a full path.
         return asset if not asset or asset.startswith("`") else resolver.CreateIdentifier(asset, anchor)
 
-    UsdUtils.ModifyAssetPaths(layer, anchored)
+    usd_utils().ModifyAssetPaths(layer, anchored)
     layer.Traverse(Sdf.Path.absoluteRootPath, lambda at: _anchor_clip_template(layer, at, path.absolute().parent))
 
 

@@ -6,10 +6,11 @@ import os
 from collections.abc import Iterator
 from contextlib import ExitStack
 
-from pxr import Ar, Sdf, Tf, Usd, UsdShade
+from pxr import Ar, Sdf, Tf, Usd
 
 from skinslide.arrays.apart import apart
 from skinslide.arrays.meaning import ControlsMeaning, File, inputs, is_texture
+from skinslide.stage.seldom import usd_shade
 from skinslide.stage.values import FIRST, Source, layer_of
 
 
@@ -38,8 +39,9 @@ def texture_files(prim: Usd.Prim, patch: str) -> Iterator[str]:
 
 
 def _all_files(attribute: Usd.Attribute, time: Usd.TimeCode, asset: Sdf.AssetPath) -> Iterator[str]:
-    if UsdShade.UdimUtils.IsUdimIdentifier(asset.path):
-        for path, _ in UsdShade.UdimUtils.ResolveUdimTilePaths(asset.path, layer_of(attribute, time)):
+    udims = usd_shade().UdimUtils
+    if udims.IsUdimIdentifier(asset.path):
+        for path, _ in udims.ResolveUdimTilePaths(asset.path, layer_of(attribute, time)):
             yield str(path)
     elif asset.resolvedPath:
         yield asset.resolvedPath

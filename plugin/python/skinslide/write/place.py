@@ -15,13 +15,17 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from pxr import Tf, Usd, UsdUtils
+from pxr import Tf, Usd
 
 from skinslide.arrays.meaning import say
 from skinslide.problems import PATH_TOO_LONG, StageError, UsageError, usd_message
 from skinslide.stage.given import StrPath
+from skinslide.stage.seldom import usd_utils
+
+if TYPE_CHECKING:
+    from pxr import UsdUtils
 
 _ABANDONED = 24 * 60 * 60  # seconds
 _MOST_BYTES = 255  # of a name
@@ -146,17 +150,17 @@ def _identities(files: Sequence[str]) -> set[tuple[int, int]]:
 
 def _dependencies(stage: Usd.Stage) -> list[str]:
     """Every file that the layers of a stage name, and those that these name in turn."""
-    found: list[str] = []
+    found, utils = list[str](), usd_utils()
 
     def collect(layer: Any, named: UsdUtils.DependencyInfo) -> UsdUtils.DependencyInfo:
         clips = "#" in named.assetPath and named.dependencies
         files = _clips(named) if clips else [named.assetPath, *named.dependencies]
         found.extend(layer.ComputeAbsolutePath(file) for file in files if file)
-        return UsdUtils.DependencyInfo() if clips else named  # USD would look for a file of the template's name
+        return utils.DependencyInfo() if clips else named  # USD would look for a file of the template's name
 
-    unsaid = UsdUtils.CoalescingDiagnosticDelegate()  # while it lives, USD's warnings of missing textures
+    unsaid = utils.CoalescingDiagnosticDelegate()  # while it lives, USD's warnings of missing textures
     with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
-        UsdUtils.ComputeAllDependencies(stage.GetRootLayer().identifier, collect)
+        utils.ComputeAllDependencies(stage.GetRootLayer().identifier, collect)
     unsaid.TakeUncoalescedDiagnostics()
     return found
 
