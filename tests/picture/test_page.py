@@ -983,6 +983,23 @@ def test_compressed_pictures_are_small_and_alike():
     assert len(small) < pixels.size / 50
 
 
+def test_a_page_of_many_patches_leaves_frames_out(show, report):
+    """Of 20 patches, whose pictures are as small as they can be: still less than 10 MB."""
+    patch = longer(report.meshes[0].patches[0], [float(frame) for frame in range(1, 241)])
+    noise = np.random.default_rng(1)
+    pictures = [{"chequer": [picture(0) + noise.bytes(3000) for _ in patch.frames]} for _ in range(20)]
+    few = [strip(SHEET, patch, pictures=each) for each in pictures]
+    shown = show(few, report)
+    assert shown.run("return document.documentElement.outerHTML.length") < 10e6
+    for index in (0, patch.worst, 101, 239):
+        shown.go_to(index)
+        at = shown.one(".picture .at", shown.sections[3]).text
+        assert index + 1 - 3 < int(at.removeprefix("frame ")) <= index + 1
+        assert shown.run("return document.querySelector('.picture img').complete")
+    shown.go_to(patch.worst)
+    assert shown.one(".picture .at", shown.sections[3]).text == f"frame {patch.worst + 1}"
+
+
 def test_a_page_of_240_frames_may_be_sent_about():
     """A chequer of 40 by 20 bent squares, more than pictures have, in two views: all of it comes to less than 10 MB."""
     across, down = np.meshgrid(np.linspace(0, 1, 1920), np.linspace(0, 1, 1080))

@@ -24,7 +24,9 @@ from skinslide.picture.plots import charts
 from skinslide.shot.report import BakeReport, PatchReport, milliseconds_text, roughness_text, stretch_text, time_text
 
 _SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg", b"RIFF": "image/webp"}
-_PAGE_BYTES = 6_400_000  # of all pictures, which take a third more as text
+_PAGE_BYTES = 6_400_000  # that all pictures are to have, which take a third more as text
+_FULL_BYTES = 7_200_000  # over which, with the numbers, some frames are left out
+_ROW_BYTES = 300  # of the numbers of a frame, at three quarters, as the pictures
 _LEAST_BYTES, _MOST_BYTES = 3_000, 150_000  # of a picture
 # Widths in pixels, of two columns, qualities, and how many bytes they come to, as shares of those of the first.
 _SIZES = (
@@ -83,12 +85,14 @@ def page(
         raise ValueError(f"{time_codes_per_second} time codes per second: a page cannot be played at that")
     timeline = _Timeline.of(strips)
     start = _start(strips, timeline)
+    samples = [timeline.sample(strip.patch, start) for strip in strips]
     return render(
         "page.html",
         title=title,
         facts=facts,
         strips=strips,
-        samples=[timeline.sample(strip.patch, start) for strip in strips],
+        samples=samples,
+        kept=_kept(strips, samples),
         start=start,
         problems=report.problems,
         timeline=timeline,
@@ -213,9 +217,10 @@ def _changed(after: float, before: float) -> str:
     return _change(after / before - 1 if before > 0 else None)
 
 
-def _others(pictures: Sequence[bytes], but: int) -> list[str | None]:
-    """Every picture for the script, but one that is in the markup."""
-    return [None if i == but else _uri(picture) for i, picture in enumerate(pictures)]
+def _others(pictures: Sequence[bytes], but: int, kept: np.ndarray) -> list[str | int | None]:
+    """Every picture for the script, but one that is in the markup; of those left out, which is shown instead."""
+    before = np.maximum.accumulate(np.where(kept, np.arange(len(kept)), 0)).tolist()
+    return [None if i == but else _uri(pictures[i]) if kept[i] else before[i] for i in range(len(pictures))]
 
 
 def _uri(picture: bytes) -> str:
@@ -240,6 +245,22 @@ def _check(strip: Strip) -> None:
 
 def _media_type(picture: bytes) -> str | None:
     return next((kind for signature, kind in _SIGNATURES.items() if picture.startswith(signature)), None)
+
+
+def _kept(strips: Sequence[Strip], samples: Sequence[int]) -> list[np.ndarray]:
+    """Of which frames a strip's pictures are on the page, (frames,): all, or as many as fit, evenly over the shot.
+
+    The first is, that at which the page opens, and the worst of each patch.
+    """
+    total = sum(len(picture) for strip in strips for pictures in strip.pictures.values() for picture in pictures)
+    room = _FULL_BYTES - _ROW_BYTES * sum(len(strip.patch.frames) for strip in strips)
+    share, found = min(1.0, max(room, 0) / max(total, 1)), list[np.ndarray]()
+    for strip, sample in zip(strips, samples, strict=True):
+        count = len(strip.patch.frames)
+        kept = np.isin(np.arange(count), np.linspace(0, count - 1, max(1, int(share * count))).round())
+        kept[[sample, strip.patch.worst]] = True
+        found.append(kept)
+    return found
 
 
 def bytes_of_each(count: int) -> int:

@@ -292,7 +292,7 @@ class PictureKeywords(TypedDict, total=False):
     wire: bool
     camera: PrimLike | None
     follow: bool
-    size: tuple[int, int] | None
+    size: tuple[int, int]
     form: str
     st: str | None
     squares: float | None

@@ -48,13 +48,15 @@ function readPicture(figure) {
   drag(figure.querySelector(".pair"));
   return {
     figure,
+    /* At a frame that is left out, the last before it that is not. */
     show(sample, moment) {
       sources ??= JSON.parse(figure.querySelector(".sources").textContent).map((source) => source ?? own);
       files ??= JSON.parse(figure.querySelector(".files")?.textContent ?? "[]");
-      for (const each of [image, over]) if (each.src !== sources[sample]) each.src = sources[sample];
+      const kept = Number.isInteger(sources[sample]) ? sources[sample] : sample;
+      for (const each of [image, over]) if (each.src !== sources[kept]) each.src = sources[kept];
       if (files.length) figure.querySelector(".full").href = files[sample];
-      image.alt = `${image.dataset.alt}, ${moment}`;
-      figure.querySelector(".at").textContent = moment;
+      image.alt = `${image.dataset.alt}, ${moment(kept)}`;
+      figure.querySelector(".at").textContent = moment(kept);
       const asked = columns.indexOf(document.querySelector(".columns :checked")?.value);
       const shown = asked > 0 ? asked : columns.length - 1;
       figure.style.setProperty("--column", shown);
@@ -104,7 +106,7 @@ function showStrip(strip) {
   const one = strip.pictures.find(({ figure }) => figure.dataset.view === view) ?? strip.pictures[0];
   for (const picture of strip.pictures) {
     picture.figure.hidden = view !== "" && picture !== one;
-    if (!picture.figure.hidden) picture.show(sample, strip.rows[sample].cells[0].dataset.moment);
+    if (!picture.figure.hidden) picture.show(sample, (i) => strip.rows[i].cells[0].dataset.moment);
   }
   for (const chart of strip.charts) if (!chart.figure.classList.contains("hovered")) chart.show(sample);
   const missing = strip.positions.length > 0 && strip.positions[sample] !== current;
