@@ -86,11 +86,12 @@ def compare_rules(field: Field, size: int) -> None:
 
 
 def compare_lookups(field: Field) -> None:
-    """As the paper's table: patches of as many vertices and edges, by both lookups."""
+    """As the paper's table: patches of as many vertices and edges, by both lookups, of which one waits for a device."""
     for patch in papers():
         entries = [entry for lookup in ("exact", "egl") for entry in field.ours("unit", "linear", lookup, name=lookup)]
         costs = contest(entries, patch, field.folder, field.options.rounds)
-        show(f"{patch.name} vertices and edges, as in the paper's table", costs, ("embed", "locate", "interpolate"))
+        stages = ("embed", "locate", "interpolate", "by the clock")
+        show(f"{patch.name} vertices and edges, as in the paper's table", costs, stages)
 
 
 def show(title: str, costs: Mapping[str, Cost], stages: Sequence[str]) -> None:
