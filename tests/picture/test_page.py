@@ -384,6 +384,15 @@ def test_the_column_beside_the_cache_is_chosen(show, report):
     ]
 
 
+def test_before_and_after_are_told_by_numbers(shot, report):
+    """Over a picture that is wiped, too; of the frame that is shown."""
+    for index in (0, 2):
+        shot.go_to(index)
+        result = report.meshes[0].patches[0].results[index]
+        names = [name.text for name in shot.all(".picture:first-of-type .name", shot.sections[0])]
+        assert names[:2] == [f"before {result.stretch_before:.4f}", f"after {result.stretch_after:.4f}"]
+
+
 def test_side_by_side_names_stand_over_their_columns(show, report):
     names = ("before", "unit", "even", "relaxed")
     shown = show([strip(SHEET, report.meshes[0].patches[0], columns=names)], report)

@@ -25,6 +25,7 @@ function readStrip(section, i) {
     film: [...section.querySelectorAll(".still")],
     pictures,
     charts: charts.map((chart) => readChart(chart, rows)),
+    stretch: JSON.parse(charts[0].dataset.columns), // columns of the table that have it
   };
   for (const chart of strip.charts) listen(chart, strip);
   return strip;
@@ -48,15 +49,18 @@ function readPicture(figure) {
   drag(figure.querySelector(".pair"));
   return {
     figure,
-    /* At a frame that is left out, the last before it that is not. */
-    show(sample, moment) {
+    /* At a frame that is left out, the last before it that is not; of a row a moment, and the stretch of each column. */
+    show(sample, rows, stretch) {
       sources ??= JSON.parse(figure.querySelector(".sources").textContent).map((source) => source ?? own);
       files ??= JSON.parse(figure.querySelector(".files")?.textContent ?? "[]");
       const kept = Number.isInteger(sources[sample]) ? sources[sample] : sample;
       for (const each of [image, over]) if (each.src !== sources[kept]) each.src = sources[kept];
       if (files.length) figure.querySelector(".full").href = files[sample];
-      image.alt = `${image.dataset.alt}, ${moment(kept)}`;
-      figure.querySelector(".at").textContent = moment(kept);
+      const { cells } = rows[kept];
+      image.alt = `${image.dataset.alt}, ${cells[0].dataset.moment}`;
+      figure.querySelector(".at").textContent = cells[0].dataset.moment;
+      const numbers = stretch.length === columns.length ? stretch.map((column) => cells[column].textContent) : [];
+      names.forEach((name, i) => (name.lastChild.textContent = numbers[i] ?? ""));
       const asked = columns.indexOf(document.querySelector(".columns :checked")?.value);
       const shown = asked > 0 ? asked : columns.length - 1;
       figure.style.setProperty("--column", shown);
@@ -68,7 +72,7 @@ function readPicture(figure) {
 function named(column) {
   const name = document.createElement("span");
   name.className = "name";
-  name.textContent = column;
+  name.append(`${column} `, document.createElement("strong"));
   return name;
 }
 
@@ -106,7 +110,7 @@ function showStrip(strip) {
   const one = strip.pictures.find(({ figure }) => figure.dataset.view === view) ?? strip.pictures[0];
   for (const picture of strip.pictures) {
     picture.figure.hidden = view !== "" && picture !== one;
-    if (!picture.figure.hidden) picture.show(sample, (i) => strip.rows[i].cells[0].dataset.moment);
+    if (!picture.figure.hidden) picture.show(sample, strip.rows, strip.stretch);
   }
   for (const chart of strip.charts) if (!chart.figure.classList.contains("hovered")) chart.show(sample);
   const missing = strip.positions.length > 0 && strip.positions[sample] !== current;
