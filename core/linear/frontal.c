@@ -39,8 +39,8 @@ static int64_t size_of_update(const ss_shape *s) {
 
 /* Where a row of a front begins in its panel: its columns come first, then those below. */
 static size_t place_in_panel(const ss_front *front, const ss_shape *s, int32_t block, int32_t row) {
-    uint32_t place = (uint32_t)(row < front->count ? block * row : s->columns + block * (row - front->count));
-    return 4 * (size_t)s->columns * (place / 4) + place % 4;
+    int32_t place = row < front->count ? block * row : s->columns + block * (row - front->count);
+    return ss_tile_start(s, place / 4) + (size_t)(place % 4);
 }
 
 static int64_t most(int64_t a, int64_t b) {
@@ -51,7 +51,7 @@ static int64_t most(int64_t a, int64_t b) {
 static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2]) {
     ss_extent *room = &frontal->extent;
     ss_shape s = ss_shape_of(frontal, &frontal->system->fronts[f]);
-    int64_t size = 4 * (int64_t)s.columns * s.tiles, *own = &end[frontal->odd[f]];
+    int64_t size = (int64_t)ss_tile_start(&s, s.tiles), *own = &end[frontal->odd[f]];
     frontal->panel[f] = room->panels, room->panels += size;
     frontal->update[f] = *own, *own += size_of_update(&s);
     room->panel = most(size, room->panel);
@@ -147,7 +147,7 @@ static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, c
 
 static void assemble_extras(const ss_front *front, const ss_shape *s, const double *slack, const double (*right)[2],
                             double *panel) {
-    double *extras = panel + 4 * (size_t)s->columns * (size_t)(s->tiles - 1);
+    double *extras = panel + ss_tile_start(s, s->tiles - 1);
     for (int32_t k = 0; k < front->count; k++) {
         int32_t unknown = front->first + k;
         extras[4 * k] = slack[unknown], extras[4 * k + 1] = right[unknown][0], extras[4 * k + 2] = right[unknown][1];
@@ -195,7 +195,7 @@ INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, co
         double *to = is_inside ? panel + 4 * (block * front->count + there) : update + place_in_update(s, (int32_t)there);
         add_columns(block, column, next_in_update(&from, block * row), row, own->row_count,
                     is_inside ? frontal->to_panel : frontal->to_update, to, next);
-        double *extras = is_inside ? to + 4 * (size_t)s->columns * (size_t)(s->tiles - 1) : to + s->height - 4;
+        double *extras = is_inside ? to + ss_tile_start(s, s->tiles - 1) : to + s->height - 4;
         for (int k = 0; k < 3 && frontal->dominant; k++)
             extras[k] += column[from.height - 4 + (size_t)k];
     }
@@ -223,7 +223,7 @@ bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double 
         const ss_front *front = &frontal->system->fronts[f];
         ss_shape s = ss_shape_of(frontal, front);
         double *panel = frontal->L + frontal->panel[f];
-        memset(panel, 0, 4 * (size_t)s.columns * (size_t)s.tiles * sizeof *panel);
+        memset(panel, 0, ss_tile_start(&s, s.tiles) * sizeof *panel);
         assemble_numbers(frontal, front, entries, panel);
         assemble_extras(front, &s, slack, right, panel);
         good = eliminate(frontal, f, &s) && good;
@@ -255,7 +255,7 @@ bool ss_factor_blocks(ss_frontal *frontal, const double (*own)[4], const double 
         const ss_front *front = &frontal->system->fronts[f];
         ss_shape s = ss_shape_of(frontal, front);
         double *panel = frontal->L + frontal->panel[f];
-        memset(panel, 0, 4 * (size_t)s.columns * (size_t)s.tiles * sizeof *panel);
+        memset(panel, 0, ss_tile_start(&s, s.tiles) * sizeof *panel);
         assemble_blocks(frontal, front, &s, own, between, panel);
         good = eliminate(frontal, f, &s) && good;
         if (right)

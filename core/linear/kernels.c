@@ -1,8 +1,9 @@
 /* The dense arithmetic of fronts, for processors with AVX2 and for those without: the same bytes.
  *
- * The columns of a front are a panel of tiles of four rows, [tile][column][4]: the rows of the columns themselves, then those
- * below them, both padded, then one tile of extras: slack, two right sides and nothing. Of a column that has been eliminated its
- * own row holds the pivot, inverted. Signs off the diagonal are turned, so that with p the pivots elimination
+ * The columns of a front are a panel of tiles of four rows, [tile][column][4]: the rows of the columns themselves, each tile up to the
+ * columns that it has on the diagonal; those below them; both padded; then one tile of extras: slack, two right sides and nothing.
+ * Of a column that has been eliminated its own row holds the pivot, inverted. Signs off the diagonal are turned, so that with p the
+ * pivots elimination
  *
  *     l_ik = f_ik / p_k,     f_ij += l_ik f_jk
  *
@@ -25,7 +26,7 @@ INLINE double sum_of(const double *x) {
 
 /* Adds what pulls four columns towards fixed vertices. */
 INLINE void add_slack(const shape *s, const double *panel, int32_t tile, double sums[4]) {
-    const double *extras = panel + 4 * (size_t)s->columns * (s->own_tiles + s->below_tiles) + 16 * (size_t)tile;
+    const double *extras = panel + ss_tile_start(s, s->own_tiles + s->below_tiles) + 16 * (size_t)tile;
     for (int j = 0; j < 4; j++)
         sums[j] += extras[4 * j];
 }

@@ -76,13 +76,24 @@ skinslide_status ss_find_fronts(ss_system *system, ss_graph *graph, skinslide_er
 
 /* ---- kernels.c ---- */
 
-/* A front as it is stored: in tiles of four rows. */
+/* A front as it is stored: in tiles of four rows, one after the other. Those of the columns' own rows end with the columns that
+ * they have on the diagonal. */
 typedef struct ss_shape {
     int32_t used, columns;                 /* its columns, and with those that pad them */
     int32_t below;                         /* rows below */
     int32_t own_tiles, below_tiles, tiles; /* of the columns' own rows, of those below; all */
     size_t height;                         /* of the first column of its update */
 } ss_shape;
+
+/* How many numbers a tile has, and how many those before it have. */
+static inline size_t ss_tile_size(const ss_shape *s, int32_t tile) {
+    return 16 * (size_t)(tile < s->own_tiles ? tile + 1 : s->own_tiles);
+}
+
+static inline size_t ss_tile_start(const ss_shape *s, int32_t tile) {
+    size_t own = (size_t)s->own_tiles, t = (size_t)tile;
+    return tile < s->own_tiles ? 8 * t * (t + 1) : 8 * own * (2 * t + 1 - own);
+}
 
 typedef struct ss_kernels {
     /* Factors a panel; force, of its size, keeps what it was before it was divided by its pivots. False where one is not a number

@@ -34,7 +34,7 @@ static void fill(const ss_system *system, double stiffness, const double *own, s
 
 static int64_t size_of(const ss_frontal *frontal, int32_t f) {
     ss_shape s = ss_shape_of(frontal, &frontal->system->fronts[f]);
-    return 4 * (int64_t)s.columns * (s.own_tiles + s.below_tiles);
+    return (int64_t)ss_tile_start(&s, s.own_tiles + s.below_tiles);
 }
 
 static skinslide_status keep(const ss_frontal *frontal, ss_springs *springs, skinslide_error *error) {
@@ -129,7 +129,7 @@ static int32_t rows_left(int32_t count, int32_t tile) {
 static void eliminate(const ss_front *front, const vector *tile, const int32_t *rows, vector *x, vector *right) {
     int32_t columns = (front->count + 3) / 4 * 4;
     vector sum[4];
-    for (int32_t t = 0; 4 * t < front->count; t++, tile += columns) {
+    for (int32_t t = 0; 4 * t < front->count; tile += 4 * ++t) {
         apply(tile, 4 * t, x, sum);
         for (int j = 0; j < rows_left(front->count, t); j++) {
             x[4 * t + j] += sum[j];
@@ -156,17 +156,18 @@ static void finish_columns(const vector *tile, int32_t begin, int32_t count, con
 
 /* The solution for the front's columns; below [rows, and what pads them] has that of the rows. */
 static void substitute(const ss_front *front, const vector *panel, const vector *below, vector *x) {
-    int32_t own = (front->count + 3) / 4, columns = 4 * own;
+    int32_t own = (front->count + 3) / 4;
+    const ss_shape s = {.own_tiles = own};
     for (int32_t ct = own - 1; ct >= 0; ct--) {
         vector sum[4] = {{0}};
         for (int32_t t = ct + 1; t < own; t++)
             for (int c = 0; c < 4; c++)
                 for (int r = 0; r < rows_left(front->count, t); r++)
-                    sum[c] += panel[t * columns + 4 * ct + c][r] * x[4 * t + r];
+                    sum[c] += panel[ss_tile_start(&s, t) / 4 + (size_t)(4 * ct + c)][r] * x[4 * t + r];
         for (int32_t t = 0; 4 * t < front->row_count; t++)
             for (int c = 0; c < 4; c++)
-                add_column(&sum[c], panel[(own + t) * columns + 4 * ct + c], below + 4 * t);
-        finish_columns(panel + ct * columns, 4 * ct, rows_left(front->count, ct), sum, x);
+                add_column(&sum[c], panel[ss_tile_start(&s, own + t) / 4 + (size_t)(4 * ct + c)], below + 4 * t);
+        finish_columns(panel + ss_tile_start(&s, ct) / 4, 4 * ct, rows_left(front->count, ct), sum, x);
     }
 }
 

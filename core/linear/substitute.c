@@ -80,11 +80,11 @@ void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]) {
 INLINE void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int block) {
     for (int32_t k = 0; k < s->columns; k++)
         for (int c = 0; c < 2 / block; c++)
-            frontal->x[c * s->columns + k] *= panel[4 * (size_t)s->columns * (size_t)(k / 4) + 4 * (size_t)k + (size_t)(k % 4)];
+            frontal->x[c * s->columns + k] *= panel[ss_tile_start(s, k / 4) + (size_t)(4 * k + k % 4)];
 }
 
 static void take_extras(const ss_frontal *frontal, const ss_shape *s, const double *panel) {
-    const double *extras = panel + 4 * (size_t)s->columns * (size_t)(s->tiles - 1);
+    const double *extras = panel + ss_tile_start(s, s->tiles - 1);
     for (int32_t k = 0; k < s->columns; k++)
         frontal->x[k] = extras[4 * k + 1], frontal->x[s->columns + k] = extras[4 * k + 2];
 }
