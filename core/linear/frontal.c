@@ -74,24 +74,12 @@ static void place_fronts(ss_frontal *frontal) {
     }
 }
 
-static void place_entries(ss_frontal *frontal) {
-    for (int32_t f = 0; f < frontal->system->front_count; f++) {
-        const ss_front *front = &frontal->system->fronts[f];
-        ss_shape s = ss_shape_of(frontal, front);
-        for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++) {
-            const ss_entry *own = &frontal->system->entries[i];
-            frontal->at[i] = place_in_panel(front, &s, frontal->block, own->row) + (size_t)(4 * frontal->block * own->column);
-        }
-    }
-}
-
 static bool allocate(ss_frontal *frontal) {
     ss_memory *memory = &frontal->memory;
     int32_t count = frontal->system->front_count;
     frontal->panel = SS_NEW(memory, int64_t, count);
     frontal->update = SS_NEW(memory, int64_t, count);
     frontal->odd = SS_NEW(memory, uint8_t, count);
-    frontal->at = SS_NEW(memory, size_t, frontal->system->edge_count);
     return !memory->failed;
 }
 
@@ -117,7 +105,6 @@ skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool 
     frontal->kernels = ss_kernels_of(true);
     if (allocate(frontal)) {
         place_fronts(frontal);
-        place_entries(frontal);
         if (keeps)
             frontal->L = SS_NEW(&frontal->memory, double, frontal->extent.panels);
     }
@@ -140,9 +127,15 @@ void ss_frontal_destroy(ss_frontal *frontal) {
 
 #define INLINE static inline __attribute__((always_inline)) /* so that block is a constant */
 
-static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const double *entries, double *panel) {
-    for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++)
-        panel[frontal->at[i]] = entries[frontal->system->entries[i].edge];
+INLINE size_t place_of_entry(const ss_front *front, const ss_shape *s, int block, const ss_entry *entry) {
+    return place_in_panel(front, s, block, entry->row) + (size_t)(4 * block * entry->column);
+}
+
+static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, const double *entries,
+                             double *panel) {
+    const ss_entry *own = frontal->system->entries + front->entry_start;
+    for (int32_t i = 0; i < front->entry_count; i++)
+        panel[place_of_entry(front, s, 1, &own[i])] = entries[own[i].edge];
 }
 
 static void assemble_extras(const ss_front *front, const ss_shape *s, const double *slack, const double (*right)[2],
@@ -224,7 +217,7 @@ bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double 
         ss_shape s = ss_shape_of(frontal, front);
         double *panel = frontal->L + frontal->panel[f];
         memset(panel, 0, ss_tile_start(&s, s.tiles) * sizeof *panel);
-        assemble_numbers(frontal, front, entries, panel);
+        assemble_numbers(frontal, front, &s, entries, panel);
         assemble_extras(front, &s, slack, right, panel);
         good = eliminate(frontal, f, &s) && good;
     }
@@ -239,9 +232,10 @@ static void assemble_blocks(const ss_frontal *frontal, const ss_front *front, co
         const double *block = own[front->first + k];
         at[0] = -block[0], at[1] = -block[2], at[5] = -block[3];
     }
-    for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++) {
-        double *at = panel + frontal->at[i];
-        const double *block = between[frontal->system->entries[i].edge];
+    const ss_entry *entries = frontal->system->entries + front->entry_start;
+    for (int32_t i = 0; i < front->entry_count; i++) {
+        double *at = panel + place_of_entry(front, s, 2, &entries[i]);
+        const double *block = between[entries[i].edge];
         at[0] = -block[0], at[4] = -block[1], at[1] = -block[2], at[5] = -block[3];
     }
 }

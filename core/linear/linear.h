@@ -10,7 +10,7 @@ extern "C" {
 
 /* ---- order.c ---- */
 
-/* Vertices that edges join. */
+/* Vertices that edges join. The edges must outlive the system. */
 typedef struct ss_net {
     int32_t vertex_count;
     int32_t edge_count;
@@ -38,8 +38,8 @@ typedef struct ss_system {
     char label[160];
     int32_t vertex_count, edge_count, n; /* n unknowns */
     int32_t block;                       /* rows of an entry that the fronts are for: 1 or 2 */
-    int32_t (*edge_vertex)[2];
-    int32_t *unknown; /* [vertex_count] place in the ordered system, -1 where fixed */
+    const int32_t (*edge_vertex)[2];     /* the net's */
+    int32_t *unknown;                    /* [vertex_count] place in the ordered system, -1 where fixed */
     int32_t front_count;
     ss_front *fronts; /* children before parents */
     int32_t *rows;    /* unknowns below each front, ascending ... */
@@ -129,7 +129,6 @@ typedef struct ss_frontal {
     ss_extent extent;
     int64_t *panel, *update; /* [front_count] where the columns of each front are in L, and its update is in a stack */
     uint8_t *odd;            /* [front_count] in which of the two */
-    size_t *at;              /* [edge_count] where the entries of the matrix are in the panels of their fronts */
     bool keeps;              /* L is in memory of its own */
     double *L;               /* [panels] */
     double *stack[2];        /* [stack] */

@@ -100,10 +100,8 @@ static skinslide_status analyse(ss_system *system, skinslide_error *error) {
     return status;
 }
 
-/* Copies the net and numbers its free vertices as they come. */
-static void copy_net(ss_system *system, const ss_net *net) {
-    for (int32_t e = 0; e < net->edge_count; e++)
-        system->edge_vertex[e][0] = net->edge_vertex[e][0], system->edge_vertex[e][1] = net->edge_vertex[e][1];
+/* Numbers the free vertices of the net as they come. */
+static void number_free(ss_system *system, const ss_net *net) {
     for (int32_t v = 0; v < net->vertex_count; v++)
         system->unknown[v] = net->fixed[v] ? -1 : system->n++;
 }
@@ -112,14 +110,14 @@ static skinslide_status create(const ss_net *net, int32_t block, const char *lab
     ss_system *system = calloc(1, sizeof *system);
     if (!system)
         return ss_out_of_memory(error);
-    system->vertex_count = net->vertex_count, system->edge_count = net->edge_count, system->block = block;
+    system->vertex_count = net->vertex_count, system->edge_count = net->edge_count, system->edge_vertex = net->edge_vertex;
+    system->block = block;
     for (size_t i = 0; i + 1 < sizeof system->label && label[i]; i++)
         system->label[i] = label[i];
-    system->edge_vertex = ss_new(&system->memory, net->edge_count, sizeof *system->edge_vertex);
     system->unknown = SS_NEW(&system->memory, int32_t, net->vertex_count);
     skinslide_status status = system->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
-        copy_net(system, net);
+        number_free(system, net);
         status = analyse(system, error);
     }
     if (status)
