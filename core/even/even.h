@@ -30,7 +30,7 @@ typedef struct ss_spring {
 typedef struct ss_sheet {
     ss_memory memory;
     const ss_patch *patch;
-    ss_ground ground;        /* rest */
+    ss_ground ground;        /* rest; its tangents are the sheet's */
     uint8_t *held;           /* [vertex_count] fixed, or without a normal or a way along its loop */
     double *slides;          /* [vertex_count] 1, and 0 of held ones: weights of a whole slide */
     double (*tangent)[2][3]; /* [vertex_count] unit; along a free loop the first alone, and the second is 0 */

@@ -15,9 +15,8 @@ static void set_vertex(ss_sheet *sheet, int32_t v) {
     const double *normal = sheet->ground.normal[v];
     if (on_free_loop(sheet->patch, v)) {
         ss_place own = ss_place_of_vertex(sheet->patch, NULL, v);
+        memset(sheet->tangent[v], 0, sizeof sheet->tangent[v]);
         ss_border_way(&sheet->ground.pose, &own, sheet->tangent[v][0]);
-    } else {
-        memcpy(sheet->tangent[v], sheet->ground.tangent[v], sizeof sheet->tangent[v]);
     }
     bool has_way = ss_dot(normal, normal) > 0.5 && ss_dot(sheet->tangent[v][0], sheet->tangent[v][0]) > 0.5;
     sheet->held[v] = sheet->patch->fixed[v] || !has_way;
@@ -90,14 +89,15 @@ static bool allocate(ss_sheet *sheet) {
     ss_memory *memory = &sheet->memory;
     sheet->held = SS_NEW(memory, uint8_t, patch->vertex_count);
     sheet->slides = SS_NEW(memory, double, patch->vertex_count);
-    sheet->tangent = ss_new(memory, patch->vertex_count, sizeof *sheet->tangent);
     sheet->degree = SS_NEW(memory, int32_t, patch->vertex_count);
     sheet->springs = SS_NEW(memory, ss_spring, patch->faces.edge_count);
     sheet->flat = ss_new(memory, patch->faces.corner_count, sizeof *sheet->flat);
     sheet->normal = ss_new(memory, patch->faces.face_count, sizeof *sheet->normal);
     sheet->area = SS_NEW(memory, double, patch->faces.face_count);
     sheet->turned = SS_NEW(memory, uint8_t, patch->faces.face_count);
-    return ss_ground_allocate(memory, patch, &sheet->ground);
+    bool done = ss_ground_allocate(memory, patch, &sheet->ground);
+    sheet->tangent = sheet->ground.tangent;
+    return done;
 }
 
 static void fill(ss_sheet *sheet, const float *rest_points) {

@@ -32,7 +32,7 @@ void ss_find_gradients(ss_relaxer *relaxer) {
     for (int32_t t = 0; t < triangles->count; t++) {
         const int32_t *v = triangles->vertex[t];
         double first[3], second[3], own[3][3], area;
-        if (!sheet->ground.pose.facet[t].has_area)
+        if (!ss_has_area(&sheet->ground.pose.facet[t]))
             continue;
         ss_subtract(point[v[1]], point[v[0]], first);
         ss_subtract(point[v[2]], point[v[0]], second);

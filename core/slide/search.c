@@ -53,7 +53,7 @@ static double nearest_of(const search *s, int32_t triangle, const double target[
     ss_subtract(target, s->pose.point[s->patch->triangles.vertex[triangle][0]], to);
     ss_rates_along(&s->pose, triangle, to, weight);
     weight[0] += 1;
-    if (facet->has_area && fmin(weight[0], fmin(weight[1], weight[2])) >= 0)
+    if (ss_has_area(facet) && fmin(weight[0], fmin(weight[1], weight[2])) >= 0)
         return distance_square(s, triangle, weight, target);
     for (int side = 0; side < 3; side++) {
         double own[3] = {0, 0, 0};

@@ -19,10 +19,10 @@ static void measure_facet(const ss_posed *pose, int32_t triangle, ss_facet *face
     ss_sides(pose, triangle, first, second);
     ss_cross(first, second, facet->normal);
     double square = ss_dot(facet->normal, facet->normal);
-    facet->has_area = square > 0 && isfinite(1 / square);
-    facet->gram[0] = facet->has_area ? ss_dot(second, second) / square : 0;
-    facet->gram[1] = facet->has_area ? -ss_dot(first, second) / square : 0;
-    facet->gram[2] = facet->has_area ? ss_dot(first, first) / square : 0;
+    bool has_area = square > 0 && isfinite(1 / square);
+    facet->gram[0] = has_area ? ss_dot(second, second) / square : 0;
+    facet->gram[1] = has_area ? -ss_dot(first, second) / square : 0;
+    facet->gram[2] = has_area ? ss_dot(first, first) / square : 0;
     ss_normalise(facet->normal);
 }
 

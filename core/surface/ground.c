@@ -53,7 +53,7 @@ static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_
         first[k] *= share, second[k] *= share;
     set_wedge(p, q, first, second, (const double(*)[3])ground->tangent[v[corner]], out);
     out->corner = 4 * (uint32_t)triangle + (uint32_t)corner;
-    return pose->facet[triangle].has_area && share > 0 && isfinite(out->first[0] + out->first[1]) &&
+    return ss_has_area(&pose->facet[triangle]) && share > 0 && isfinite(out->first[0] + out->first[1]) &&
            isfinite(out->second[0] + out->second[1]);
 }
 
@@ -77,7 +77,7 @@ void ss_ground_set(ss_ground *ground, const float *points) {
     ss_posed_set(pose, points);
     memset(ground->normal, 0, (size_t)pose->patch->vertex_count * sizeof *ground->normal);
     for (int32_t t = 0; t < triangles->count; t++)
-        for (int k = 0; k < 3 && pose->facet[t].has_area; k++)
+        for (int k = 0; k < 3 && ss_has_area(&pose->facet[t]); k++)
             ss_add(ss_half_angle(pose, t, k), pose->facet[t].normal, ground->normal[triangles->vertex[t][k]]);
     for (int32_t v = 0; v < pose->patch->vertex_count; v++) {
         ss_normalise(ground->normal[v]);

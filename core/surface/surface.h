@@ -56,8 +56,12 @@ ss_place ss_flat_middle(const ss_patch *patch, const ss_flat *flat, int32_t face
 typedef struct ss_facet {
     double gram[3];   /* the inverse of the products of its sides: 11, 12, 22 */
     double normal[3]; /* of unit length */
-    bool has_area;
 } ss_facet;
+
+/* Of one without, the gram is 0. */
+static inline bool ss_has_area(const ss_facet *facet) {
+    return facet->gram[0] > 0;
+}
 
 typedef struct ss_posed {
     const ss_patch *patch;

@@ -99,7 +99,7 @@ static inline bool go_over(walker *w, ss_place *place, int corner) {
     const ss_posed *pose = &w->ground->pose;
     int32_t there = pose->patch->triangles.neighbour[place->triangle][(corner + 1) % 3];
     double blended[3];
-    if (there < 0 || !pose->facet[there].has_area)
+    if (there < 0 || !ss_has_area(&pose->facet[there]))
         return false;
     w->came = ss_cross_side(pose->patch, place, corner);
     ss_ground_blend(w->ground, place, blended);

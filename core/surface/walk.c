@@ -75,7 +75,7 @@ static void walk(const ss_posed *plane, ss_place *place, const double step[3], s
         if (corner < 0 || part < whole)
             return;
         int32_t there = plane->patch->triangles.neighbour[place->triangle][(corner + 1) % 3];
-        if (there < 0 || !plane->facet[there].has_area)
+        if (there < 0 || !ss_has_area(&plane->facet[there]))
             return;
         go_over(plane, place, corner, rates);
     }
