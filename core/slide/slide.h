@@ -58,8 +58,8 @@ typedef struct ss_edge_paint {
 typedef struct ss_patch_work {
     ss_slide *slide;
     ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
-    double *lengths, *slid_lengths;   /* [edge_count] */
-    double *own_paint;                /* [edge_count] */
+    double *lengths;                  /* [edge_count] */
+    double *own_paint;                /* [edge_count] it and what follows are there once a frame has had controls */
     double *own_weights, *own_limits; /* [free_count] */
     double *own_holds;                /* [vertex_count] */
     double (*displacement)[3];        /* [free_count] in the room, once the rule has finished */
@@ -81,6 +81,8 @@ struct skinslide_workspace {
     int stop;              /* a flag that other threads set, see base.h */
     ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
     skinslide_lookup_info lookup;
+    ss_memory controlling;             /* the patches' own paint and the like */
+    bool has_controls;                 /* that is there */
     ss_memory turning;                 /* of nothing before turns are first asked for: */
     double (*normal)[3], (*target)[3]; /* [vertex_count] the cache's, and where each vertex slid to; normals of unit length */
 };
@@ -153,6 +155,9 @@ skinslide_status ss_check_frame(const skinslide_workspace *workspace, skinslide_
 skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error);
 
 /* ---- workspace.c ---- */
+
+/* Makes room for controls of frames, where there is none yet. */
+skinslide_status ss_need_controls(skinslide_workspace *workspace, skinslide_error *error);
 
 void ss_lay_out_displacement(ss_patch_work *work, const ss_patch *patch, ss_room *room);
 

@@ -208,6 +208,8 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     skinslide_status status = ss_check_reads(slider, points, "points", error);
     if (!status && controls)
         status = ss_take_frame_controls(slider, controls, workspace->controls, error);
+    if (!status && controls)
+        status = ss_need_controls(workspace, error);
     if (!status && results && slider->part_count > 0)
         status = ss_check_size(results, "skinslide_patch_result", error);
     const float *before = points, *after = slid;
@@ -232,10 +234,11 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     ss_bring(slider, &after, workspace->after);
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_patch *patch = slider->parts[p].patch;
-        ss_patch_work *work = &workspace->patches[p];
         measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
-        ss_edge_lengths(patch, after, work->slid_lengths);
-        measure_stretch(patch, work->lengths, work->slid_lengths, &workspace->results[p]);
+        ss_begin_turn(&workspace->room);
+        double *lengths = SS_TAKE(&workspace->room, double, patch->faces.edge_count);
+        ss_edge_lengths(patch, after, lengths);
+        measure_stretch(patch, workspace->patches[p].lengths, lengths, &workspace->results[p]);
     }
     if (results)
         ss_give_all(workspace->results, slider->part_count, sizeof *workspace->results, results);

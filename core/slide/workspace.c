@@ -13,13 +13,8 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     const ss_part *part = &workspace->slider->parts[p];
     ss_memory *memory = &workspace->memory;
     ss_patch_work *work = &workspace->patches[p];
-    int32_t edges = part->patch->faces.edge_count, free_count = part->patch->free_count;
+    int32_t edges = part->patch->faces.edge_count;
     work->lengths = SS_NEW(memory, double, edges);
-    work->slid_lengths = SS_NEW(memory, double, edges);
-    work->own_paint = SS_NEW(memory, double, edges);
-    work->own_weights = SS_NEW(memory, double, free_count);
-    work->own_limits = SS_NEW(memory, double, free_count);
-    work->own_holds = SS_NEW(memory, double, part->patch->vertex_count);
     if (memory->failed)
         return ss_out_of_memory(error);
     ss_room counted = {0};
@@ -30,6 +25,22 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     if (!status && part->cage)
         status = ss_cage_work_create(part->cage, &work->cage, error);
     return status;
+}
+
+skinslide_status ss_need_controls(skinslide_workspace *workspace, skinslide_error *error) {
+    ss_memory *memory = &workspace->controlling;
+    for (int32_t p = 0; p < workspace->slider->part_count && !workspace->has_controls; p++) {
+        const ss_patch *patch = workspace->slider->parts[p].patch;
+        ss_patch_work *work = &workspace->patches[p];
+        work->own_paint = SS_NEW(memory, double, patch->faces.edge_count);
+        work->own_weights = SS_NEW(memory, double, patch->free_count);
+        work->own_limits = SS_NEW(memory, double, patch->free_count);
+        work->own_holds = SS_NEW(memory, double, patch->vertex_count);
+    }
+    workspace->has_controls = !memory->failed;
+    if (memory->failed)
+        ss_free(memory), memory->failed = false;
+    return workspace->has_controls ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
 skinslide_status ss_workspace_create(const skinslide_slider *slider, const skinslide_workspace_options *options,
@@ -83,6 +94,7 @@ void skinslide_workspace_destroy(skinslide_workspace *workspace) {
     }
     ss_idbuffer_destroy(workspace->idbuffer);
     ss_free(&workspace->room.memory);
+    ss_free(&workspace->controlling);
     ss_free(&workspace->turning);
     ss_free(&workspace->memory);
     free(workspace);
