@@ -1,17 +1,20 @@
-"""Numbers of many frames in little memory: sequences and mappings of named tuples, each kept as its bytes."""
+"""Numbers of many frames in little memory: sequences and mappings of named tuples, each kept as its bytes.
+
+Whole numbers take four bytes, until there is one that needs eight.
+"""
 
 from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from struct import Struct
+from struct import Struct, error
 from typing import Any, TypeVar, get_type_hints, overload
 
 import numpy as np
 
 Row = TypeVar("Row", bound="tuple[Any, ...]")  # a named tuple of int and float
 
-_FORMATS = {int: "q", float: "d"}
+_WHOLE, _LARGE, _REAL = "i", "q", "d"
 
 
 class Rows(Sequence[Row]):
@@ -19,18 +22,19 @@ class Rows(Sequence[Row]):
 
     def __init__(self, kind: type[Row], rows: Iterable[Row] = ()):
         self._kind: Any = kind
-        formats = {name: _FORMATS[each] for name, each in get_type_hints(kind).items()}
-        self._struct, self._bytes = Struct("=" + "".join(formats.values())), bytearray()
-        self._dtype = np.dtype([(name, f"={each}") for name, each in formats.items()])
-        for row in rows:
-            self.append(row)
+        self._lay_out(_WHOLE, rows)
 
     def append(self, row: Row) -> None:
-        self._bytes += self._struct.pack(*row)
+        try:
+            self._bytes += self._struct.pack(*row)
+        except error:
+            self._lay_out(_LARGE, list(self))
+            self._bytes += self._struct.pack(*row)
 
     def column(self, name: str) -> np.ndarray:
-        """A field of all of them (n,)."""
-        return np.frombuffer(self._bytes, self._dtype)[name].copy()
+        """A field of all of them (n,), int64 or float64."""
+        column = np.frombuffer(self._bytes, self._dtype)[name]
+        return column.astype(np.int64 if column.dtype.kind == _WHOLE else np.float64)
 
     def __len__(self) -> int:
         return len(self._bytes) // self._struct.size
@@ -48,6 +52,14 @@ class Rows(Sequence[Row]):
 
     def __eq__(self, other: object) -> bool:
         return list(self) == list(other) if isinstance(other, Sequence) else NotImplemented
+
+    def _lay_out(self, whole: str, rows: Iterable[Row]) -> None:
+        formats = {int: whole, float: _REAL}
+        fields = {name: formats[each] for name, each in get_type_hints(self._kind).items()}
+        self._struct, self._bytes = Struct("=" + "".join(fields.values())), bytearray()
+        self._dtype = np.dtype([(name, f"={each}") for name, each in fields.items()])
+        for row in rows:
+            self.append(row)
 
     def _at(self, place: int) -> Row:
         row: Row = self._kind._make(self._struct.unpack_from(self._bytes, place * self._struct.size))
