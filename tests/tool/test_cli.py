@@ -12,9 +12,10 @@ from pxr import Sdf
 
 import skinslide
 import stages
-from skinslide import parse_frames
+from skinslide import StageError, parse_frames
 from skinslide.command import cli, outcome
 from skinslide.shot.options import LayerOptions, MapOptions, PictureOptions, SlideOptions
+from skinslide.shot.report import PatchReport
 from stages import FRAMES, MESH, PATCH
 
 
@@ -66,6 +67,25 @@ def test_json_is_json_whatever_the_numbers(capsys):
 
     read = json.loads(capsys.readouterr().out, parse_constant=refuse)
     assert read == {"stretch": None, "frames": [1.5, None, [None, 2]], "name": "nan"}
+
+
+@pytest.mark.parametrize("error", [MemoryError(), KeyboardInterrupt(), StageError("lost")])
+def test_a_document_that_breaks_off_is_the_only_one(error, shot, tmp_path, capfd, monkeypatch):
+    """It is printed as it is made: what is out of it cannot be called back."""
+
+    def fail(_report: PatchReport) -> None:
+        raise error
+
+    monkeypatch.setattr(PatchReport, "document", fail)
+    output = tmp_path / "out.usda"
+    assert cli.main(["bake", str(shot), "-o", str(output), "--json"]) == (
+        outcome.INTERRUPTED if isinstance(error, KeyboardInterrupt) else outcome.FAILED
+    )
+    said = capfd.readouterr()
+    assert said.out.startswith("{") and '"patches": ' in said.out and "problems" not in said.out
+    with pytest.raises(json.JSONDecodeError):
+        json.JSONDecoder().raw_decode(said.out)
+    assert said.err.splitlines()[-1].startswith("error: ") and Sdf.Layer.FindOrOpen(str(output))
 
 
 @pytest.mark.parametrize("word", ["--json", "--jso", "--js", "--json=1"])

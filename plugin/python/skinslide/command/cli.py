@@ -35,13 +35,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as done:  # after --help and --version
         return done.code if isinstance(done.code, int) else DONE
     run, home, name = _COMMANDS[given.pop("command")]
-    before = _state(given)
+    before, json = _state(given), given.get("json", False)
     try:
         function = _loaded(home, name)  # uninterrupted, as USD must be while it loads
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # blocked by start.py
-        return say(*run(function, **given))
+        result = run(function, **given)
+        json = False  # a document that breaks off is not followed by another
+        return say(*result)
     except expected() as error:
-        return failed(error, given.get("json", False), _outcome(given, before))
+        return failed(error, json, _outcome(given, before))
 
 
 def _loaded(home: str, name: str) -> Callable[..., Any]:
