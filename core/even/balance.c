@@ -83,8 +83,10 @@ void ss_measure_stretch(ss_evener *evener) {
 
 double ss_sum_stretch(const ss_evener *evener) {
     double sum = 0;
-    for (int32_t i = 0; i < evener->sheet->spring_count; i++)
-        sum += evener->stretch[i] * evener->stretch[i];
+    for (int32_t i = 0; i < evener->sheet->spring_count; i++) {
+        double own = evener->stretch[i] - evener->scale;
+        sum += own * own;
+    }
     return sum;
 }
 

@@ -130,7 +130,7 @@ void ss_keep_part(ss_evener *evener, const double (*from)[2], double part);
 void ss_scale_slide(ss_evener *evener);
 /* Measures the stretch where vertices are. */
 void ss_measure_stretch(ss_evener *evener);
-/* The sum of the squares of what was measured. */
+/* The sum of the squares of what was measured, over the scale. */
 double ss_sum_stretch(const ss_evener *evener);
 /* s(z), z over the scale, by what answers stretch and compression, and how fast that changes with z. What drives skin apart comes to
  * half at most. Without a branch or a call, so that several are found at once. */

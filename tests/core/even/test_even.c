@@ -187,6 +187,25 @@ static void rigid_motions_and_scale_commute(void **state) {
     free_mesh(&mesh);
 }
 
+/* A pose that is scaled gives the slide scaled, though its edges are then longer than at rest, or shorter, one and all. */
+static void scaled_poses_slide_alike(void **state) {
+    (void)state;
+    static const double scales[4] = {0.6, 0.8, 1.3, 1.7};
+    test_mesh mesh = torus(8, 7);
+    rig r = rig_of(&mesh, even());
+    double edge = mean_edge(&mesh);
+    for (int32_t i = 0; i < 24; i++) {
+        double scale = scales[i % 4];
+        float *points = i < 12 ? random_pose(&mesh, 15 + (uint64_t)i / 4) : bumped(&mesh, 3 + 0.1 * i, 3, 2, 0.1 * i);
+        float *scaled = moved(&mesh, points, scale, 0), *slid_scaled = slide_with(&r, &mesh, scaled, NULL, NULL);
+        float *slid = slide_with(&r, &mesh, points, NULL, NULL), *expected = moved(&mesh, slid, scale, 0);
+        assert_near(largest_difference(slid_scaled, expected, 3 * (int64_t)mesh.vertex_count), 0, 1.5e-4 * scale * edge);
+        free(points), free(scaled), free(slid_scaled), free(slid), free(expected);
+    }
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
 static void only_ratios_of_densities_count(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(12, 12);
@@ -829,6 +848,7 @@ int main(void) {
         cmocka_unit_test(closed_bodies_even_out),
         cmocka_unit_test(there_is_no_plane),
         cmocka_unit_test(rigid_motions_and_scale_commute),
+        cmocka_unit_test(scaled_poses_slide_alike),
         cmocka_unit_test(only_ratios_of_densities_count),
         cmocka_unit_test(pieces_slide_as_each_alone),
         cmocka_unit_test(frames_come_in_any_order),
