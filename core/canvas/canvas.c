@@ -20,6 +20,10 @@ void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], floa
 
 /* ---- Creation ---- */
 
+static size_t row_size(const skinslide_canvas *canvas) {
+    return (size_t)canvas->width * 4 * (canvas->pixels == SKINSLIDE_PIXELS_FLOATS ? sizeof(float) : 1);
+}
+
 static skinslide_status check_options(const skinslide_canvas_options *options, skinslide_error *error) {
     int32_t width = options->width, height = options->height;
     if (width < 1 || height < 1 || width > MOST_SIDE || height > MOST_SIDE || (int64_t)width * height > MOST_PIXELS)
@@ -106,7 +110,8 @@ skinslide_status ss_canvas_create(const skinslide_canvas_options *options, ss_eg
         return ss_out_of_memory(error);
     canvas->width = own.width, canvas->height = own.height, canvas->pixels = own.pixels;
     const ss_device_request request = {load, own.device, false};
-    status = ss_egl_open(&request, &canvas->egl, error);
+    canvas->rows = ss_new(&canvas->memory, canvas->height, row_size(canvas));
+    status = canvas->rows ? ss_egl_open(&request, &canvas->egl, error) : ss_out_of_memory(error);
     if (!status)
         status = make_objects(canvas, error);
     if (status)
@@ -125,6 +130,7 @@ void skinslide_canvas_destroy(skinslide_canvas *canvas) {
     if (!canvas)
         return;
     ss_egl_close(canvas->egl); /* and with the context all of its objects */
+    ss_free(&canvas->memory);
     free(canvas);
 }
 
@@ -150,12 +156,12 @@ skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float co
     if (status)
         return status;
     const ss_egl_api *gl = &canvas->egl->api;
-    const float farthest = 1;
     float all[4] = {0, 0, 0, 1};
     ss_canvas_colour(canvas, colour, all);
     gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
     gl->glClearBufferfv(GL_COLOR, 0, all);
-    gl->glClearBufferfv(GL_DEPTH, 0, &farthest);
+    gl->glClearBufferfi(GL_DEPTH_STENCIL, 0, 1, 0); /* at once: each alone is slow */
+    canvas->marks = 0;
     return ss_gl_leave(canvas->egl, &before, "clearing a canvas", error);
 }
 
@@ -167,25 +173,21 @@ static void turn_over(const uint8_t *rows, int32_t height, size_t row_size, uint
 
 skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error) {
     ss_egl_before before;
-    ss_memory scratch = {0};
     if (!canvas || !pixels)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no place for its pixels");
-    bool floats = canvas->pixels == SKINSLIDE_PIXELS_FLOATS;
     int32_t width = canvas->width, height = canvas->height;
-    size_t row_size = (size_t)width * 4 * (floats ? sizeof(float) : 1);
-    uint8_t *rows = ss_new(&scratch, height, row_size);
-    skinslide_status status = rows ? ss_gl_enter(canvas->egl, &before, error) : ss_out_of_memory(error);
-    if (!status) {
-        const ss_egl_api *gl = &canvas->egl->api;
-        gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->drawn);
-        gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->resolved);
-        gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-        gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->resolved);
-        gl->glReadPixels(0, 0, width, height, GL_RGBA, floats ? GL_FLOAT : GL_UNSIGNED_BYTE, rows);
-        status = ss_gl_leave(canvas->egl, &before, "reading a canvas", error);
-    }
+    skinslide_status status = ss_gl_enter(canvas->egl, &before, error);
+    if (status)
+        return status;
+    const ss_egl_api *gl = &canvas->egl->api;
+    GLenum type = canvas->pixels == SKINSLIDE_PIXELS_FLOATS ? GL_FLOAT : GL_UNSIGNED_BYTE;
+    gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->drawn);
+    gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->resolved);
+    gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->resolved);
+    gl->glReadPixels(0, 0, width, height, GL_RGBA, type, canvas->rows);
+    status = ss_gl_leave(canvas->egl, &before, "reading a canvas", error);
     if (!status)
-        turn_over(rows, height, row_size, pixels);
-    ss_free(&scratch);
+        turn_over(canvas->rows, height, row_size(canvas), pixels);
     return status;
 }

@@ -1,5 +1,5 @@
 /* A canvas from inside: canvas.c makes, clears and reads it; figure.c draws figures on it, surface.c their surfaces, of which
- * hiding.c finds what is in the way, and strokes.c what is drawn on these, with what shading.c makes. */
+ * sight.c finds what is seen, and strokes.c what is drawn on these, with what shading.c makes. */
 #ifndef SKINSLIDE_CANVAS_H
 #define SKINSLIDE_CANVAS_H
 
@@ -18,16 +18,25 @@ typedef struct ss_figure_objects {
     GLuint stroke_program;
     GLint stroke_to_clip, pen, line_colour; /* its uniforms */
     GLuint surface_array, stroke_array;
-    GLuint fixed_buffer, posed_buffer, triangle_buffer, segment_buffer;
+    GLuint vertex_buffer, triangle_buffer, segment_buffer;
 } ss_figure_objects;
 
 struct skinslide_canvas {
+    ss_memory memory;
     ss_egl *egl;
     int32_t width, height, largest_texture;
     skinslide_pixels pixels;
+    uint8_t *rows;          /* scratch for all pixels: memory of its own would be new to the machine at each read */
+    GLint marks;            /* that figures have left in the stencil, each its own */
     GLuint drawn, resolved; /* framebuffers: of several samples a pixel, and of one */
     ss_figure_objects objects;
 };
+
+/* A vertex as programs have it. */
+typedef struct ss_shown_vertex {
+    float coordinates[3], place[3], normal[3];
+    float value, inside;
+} ss_shown_vertex;
 
 /* Lines of one colour. */
 typedef struct ss_stroke {
@@ -43,6 +52,7 @@ enum { SS_WIRE, SS_OUTLINE, SS_WAYS, SS_ENDS_OF_WAYS, SS_PINS, SS_STROKES };
 /* One call of skinslide_canvas_draw. */
 typedef struct ss_drawing {
     const skinslide_canvas *canvas;
+    GLint mark; /* in the stencil, where its patch is */
     const skinslide_viewport *viewport;
     const skinslide_figure *figure;
     const skinslide_tessellation *mesh;
@@ -52,17 +62,16 @@ typedef struct ss_drawing {
     ss_view view;
     ss_tessellation_work work;
     double origin[3];
-    uint8_t *in_sight;        /* [mesh->grid_count] */
-    uint8_t *hides;           /* [mesh->grid_count] it may hide some of the patch; with ghosts */
-    uint32_t (*triangles)[3]; /* [triangle_count] of grids in sight, of room for all; with ghosts those of the patch come
-                                 first, then what hides nothing */
-    int32_t triangle_count, inside_count, hiding_first;
+    uint8_t *in_sight;         /* [mesh->grid_count] */
+    ss_shown_vertex *vertices; /* [vertex_count] of the triangles */
+    uint32_t (*triangles)[3];  /* [triangle_count] that are seen: the patch's come first, then what hides none of it */
+    int32_t vertex_count, triangle_count, inside_count, hiding_first;
     ss_stroke strokes[SS_STROKES]; /* drawn in order */
     float line;                    /* pixels that the outline is wide */
 } ss_drawing;
 
-/* Marks what hides, once vertices are posed. */
-void ss_find_hiding(ss_drawing *drawn);
+/* Once vertices are posed. False where memory is short. */
+bool ss_list_seen(ss_drawing *drawn);
 /* In the work's memory, from its vertices. False where memory is short. */
 bool ss_list_strokes(ss_drawing *drawn);
 void ss_draw_strokes(const ss_drawing *drawn);

@@ -11,7 +11,7 @@
 enum { LEEWAY = 20 }; /* percent: surfaces that OpenSubdiv fits may leave the hull of the vertices that make them */
 
 /* A bit for each side of the view that a vertex is beyond. */
-static unsigned beyond(const ss_drawing *drawn, int32_t vertex) {
+static uint8_t beyond(const ss_drawing *drawn, int32_t vertex) {
     const float *to_clip = drawn->view.to_clip, *point = drawn->figure->points + 3 * (int64_t)vertex;
     double clip[4];
     unsigned sides = 0;
@@ -23,17 +23,17 @@ static unsigned beyond(const ss_drawing *drawn, int32_t vertex) {
     double reach = clip[3] * (1 + LEEWAY / 100.0);
     for (int i = 0; i < 3; i++)
         sides |= (unsigned)(clip[i] < -reach) << (2 * i) | (unsigned)(clip[i] > reach) << (2 * i + 1);
-    return sides;
+    return (uint8_t)sides;
 }
 
 /* False where all vertices that make it are beyond the same side of the view. What has the outline always is. */
-static bool in_sight(const ss_drawing *drawn, const ss_grid *grid) {
+static bool in_sight(const ss_drawing *drawn, const ss_grid *grid, const uint8_t *sides) {
     const skinslide_tessellation *mesh = drawn->mesh;
     const int32_t *vertices = mesh->corner_vertex + mesh->face_start[grid->face];
     int32_t count = grid->side ? ss_limit_vertices(mesh->surfaces, grid->surface, &vertices) : ss_face_size(mesh, grid->face);
     unsigned all = ~0u;
     for (int32_t i = 0; i < count && all; i++)
-        all &= beyond(drawn, vertices[i]);
+        all &= sides[vertices[i]];
     return !all || drawn->outline->inside[grid->face];
 }
 
@@ -46,11 +46,14 @@ static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
     return low;
 }
 
-/* Close to a patch, most of a mesh is out of sight. It is not posed, but where what is in sight has places of it. */
-static void skip_out_of_sight(ss_drawing *drawn) {
+/* Close to a patch, most of a mesh is out of sight. It is not posed, but where what is in sight has places of it. sides is
+ * scratch [mesh_vertex_count]. */
+static void skip_out_of_sight(ss_drawing *drawn, uint8_t *sides) {
     const skinslide_tessellation *mesh = drawn->mesh;
+    for (int32_t v = 0; v < mesh->mesh_vertex_count; v++)
+        sides[v] = beyond(drawn, v);
     for (int32_t p = 0; p < mesh->grid_count; p++) {
-        drawn->in_sight[p] = in_sight(drawn, &mesh->grids[p]);
+        drawn->in_sight[p] = in_sight(drawn, &mesh->grids[p], sides);
         drawn->work.skipped[p] = !drawn->in_sight[p];
     }
     for (int32_t p = 0; p < mesh->grid_count; p++) {
@@ -58,47 +61,6 @@ static void skip_out_of_sight(ss_drawing *drawn) {
         for (int32_t v = first; v < end && drawn->in_sight[p] && mesh->grids[p].side; v++)
             if ((int32_t)mesh->same_as[v] < first)
                 drawn->work.skipped[piece_of(mesh, (int32_t)mesh->same_as[v])] = 0;
-    }
-}
-
-/* Parts of what is in sight, in the order in which figures with ghosts draw them. */
-typedef enum part { INSIDE, OUTSIDE, HIDING, PARTS } part;
-
-static part part_of(const ss_drawing *drawn, int32_t grid) {
-    return drawn->outline->inside[drawn->mesh->grids[grid].face] ? INSIDE : drawn->hides[grid] ? HIDING : OUTSIDE;
-}
-
-/* Of a part, or of all. */
-static void list_triangles(ss_drawing *drawn, part wanted) {
-    for (int32_t p = 0, first = 0; p < drawn->mesh->grid_count; p++) {
-        int32_t own = ss_grid_triangles(drawn->mesh, &drawn->mesh->grids[p]);
-        if (drawn->in_sight[p] && (wanted == PARTS || part_of(drawn, p) == wanted)) {
-            memcpy(drawn->triangles + drawn->triangle_count, drawn->mesh->triangles + first,
-                   (size_t)own * sizeof *drawn->triangles);
-            drawn->triangle_count += own;
-        }
-        first += own;
-    }
-}
-
-static void order_triangles(ss_drawing *drawn) {
-    if (!drawn->figure->ghosts) {
-        list_triangles(drawn, PARTS);
-        return;
-    }
-    ss_find_hiding(drawn);
-    list_triangles(drawn, INSIDE);
-    drawn->inside_count = drawn->triangle_count;
-    list_triangles(drawn, OUTSIDE);
-    drawn->hiding_first = drawn->triangle_count;
-    list_triangles(drawn, HIDING);
-}
-
-static void mark_inside(ss_drawing *drawn) {
-    for (int32_t p = 0; p < drawn->mesh->grid_count; p++) {
-        const ss_grid *grid = &drawn->mesh->grids[p];
-        for (int32_t v = 0; v < ss_grid_size(drawn->mesh, grid) && drawn->in_sight[p]; v++)
-            drawn->work.vertices[grid->first_vertex + v].inside = drawn->outline->inside[grid->face];
     }
 }
 
@@ -177,17 +139,24 @@ static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camer
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
     drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
-    drawn->hides = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
-    drawn->triangles = ss_new(&work->memory, mesh->triangle_count, sizeof *drawn->triangles);
     drawn->textures = SS_NEW(&work->memory, GLuint, figure->tile_count);
+    uint8_t *sides = SS_NEW(&work->memory, uint8_t, mesh->mesh_vertex_count);
     if (!ss_tessellation_work_allocate(mesh, work))
         return ss_out_of_memory(error);
-    skip_out_of_sight(drawn);
+    skip_out_of_sight(drawn, sides);
     ss_tessellate(mesh, figure->points, figure->values, drawn->origin, work);
-    order_triangles(drawn);
-    mark_inside(drawn);
     drawn->line = fmaxf(1.5f, (float)drawn->viewport->height / 450) * (figure->line > 0 ? figure->line : 1);
-    return ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
+    return ss_list_seen(drawn) && ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
+}
+
+/* A mark that no figure has left. */
+static GLint new_mark(skinslide_canvas *canvas) {
+    const GLint none = 0;
+    if (canvas->marks == UINT8_MAX) {
+        canvas->egl->api.glClearBufferiv(GL_STENCIL, 0, &none);
+        canvas->marks = 0;
+    }
+    return ++canvas->marks;
 }
 
 skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
@@ -209,6 +178,7 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
     if (!status) {
         canvas->egl->api.glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
         canvas->egl->api.glViewport(viewport->x, viewport->y, viewport->width, viewport->height);
+        drawn.mark = new_mark(canvas);
         ss_draw_surface(&drawn);
         status = ss_gl_leave(canvas->egl, &before, "drawing a figure", error);
     }

@@ -139,19 +139,17 @@ static void point_to(const ss_egl_api *gl, GLuint place, int32_t width, size_t s
 }
 
 static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
-    gl->glGenBuffers(1, &objects->fixed_buffer);
-    gl->glGenBuffers(1, &objects->posed_buffer);
+    gl->glGenBuffers(1, &objects->vertex_buffer);
     gl->glGenBuffers(1, &objects->triangle_buffer);
     gl->glGenBuffers(1, &objects->segment_buffer);
     gl->glGenVertexArrays(1, &objects->surface_array);
     gl->glBindVertexArray(objects->surface_array);
-    gl->glBindBuffer(GL_ARRAY_BUFFER, objects->fixed_buffer);
-    point_to(gl, 0, 3, sizeof(ss_fixed_vertex), offsetof(ss_fixed_vertex, coordinates));
-    gl->glBindBuffer(GL_ARRAY_BUFFER, objects->posed_buffer);
-    point_to(gl, 2, 3, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, place));
-    point_to(gl, 3, 3, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, normal));
-    point_to(gl, 4, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, value));
-    point_to(gl, 1, 1, sizeof(ss_posed_vertex), offsetof(ss_posed_vertex, inside));
+    gl->glBindBuffer(GL_ARRAY_BUFFER, objects->vertex_buffer);
+    point_to(gl, 0, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, coordinates));
+    point_to(gl, 1, 1, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, inside));
+    point_to(gl, 2, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, place));
+    point_to(gl, 3, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, normal));
+    point_to(gl, 4, 1, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, value));
     gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
     gl->glGenVertexArrays(1, &objects->stroke_array);
     gl->glBindVertexArray(objects->stroke_array);

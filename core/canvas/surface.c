@@ -1,10 +1,10 @@
 /* Draws a figure's surface: chequered, in false colours, or with the tiles of its texture over the chequer. What hides the patch
  * may be left out there, but for a shadow: the patch is drawn first, and the stencil remembers where.
  *
- *     the patch                 marks
- *     what is outside           where there is no mark
+ *     the patch          marks
+ *     all else           where there is no mark
  *     strokes
- *     what is outside, nearer   where there is one: its depth, then its colour, thinly, of the nearest alone */
+ *     what may hide it   where there is one: its depth, then its colour, thinly, of the nearest alone */
 #include "canvas.h"
 
 #include "paint.h"
@@ -80,20 +80,10 @@ static void load_textures(const ss_drawing *drawn) {
 
 /* ---- Ghosts ---- */
 
-static void clear_marks(const ss_drawing *drawn) {
-    const ss_egl_api *gl = &drawn->canvas->egl->api;
-    const skinslide_viewport *place = drawn->viewport;
-    const GLint none = 0;
-    gl->glEnable(GL_SCISSOR_TEST);
-    gl->glScissor(place->x, place->y, place->width, place->height);
-    gl->glClearBufferiv(GL_STENCIL, 0, &none);
-    gl->glDisable(GL_SCISSOR_TEST);
-}
-
 static void draw_shadows(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
     int32_t first = drawn->hiding_first, count = drawn->triangle_count - drawn->hiding_first;
-    gl->glStencilFunc(GL_EQUAL, 1, 1);
+    gl->glStencilFunc(GL_EQUAL, drawn->mark, ~0u);
     gl->glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     use(drawn, &drawn->canvas->objects.false_colours);
     draw_range(drawn, first, count);
@@ -126,13 +116,12 @@ static void end(const ss_drawing *drawn) {
 
 static void draw_with_ghosts(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
-    clear_marks(drawn);
     gl->glEnable(GL_STENCIL_TEST);
     gl->glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-    gl->glStencilFunc(GL_ALWAYS, 1, 1);
+    gl->glStencilFunc(GL_ALWAYS, drawn->mark, ~0u);
     draw_painted(drawn, 0, drawn->inside_count);
     gl->glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-    gl->glStencilFunc(GL_EQUAL, 0, 1);
+    gl->glStencilFunc(GL_NOTEQUAL, drawn->mark, ~0u);
     draw_painted(drawn, drawn->inside_count, drawn->triangle_count - drawn->inside_count);
     end(drawn);
     gl->glDisable(GL_STENCIL_TEST);
@@ -148,11 +137,9 @@ static void draw_with_ghosts(const ss_drawing *drawn) {
 void ss_draw_surface(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
     const ss_figure_objects *objects = &drawn->canvas->objects;
-    const skinslide_tessellation *mesh = drawn->mesh;
     load_textures(drawn);
     begin(drawn);
-    fill(gl, GL_ARRAY_BUFFER, objects->fixed_buffer, mesh->fixed, mesh->vertex_count, sizeof *mesh->fixed);
-    fill(gl, GL_ARRAY_BUFFER, objects->posed_buffer, drawn->work.vertices, mesh->vertex_count, sizeof *drawn->work.vertices);
+    fill(gl, GL_ARRAY_BUFFER, objects->vertex_buffer, drawn->vertices, drawn->vertex_count, sizeof *drawn->vertices);
     fill(gl, GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer, drawn->triangles, drawn->triangle_count,
          sizeof *drawn->triangles);
     if (drawn->figure->ghosts)

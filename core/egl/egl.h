@@ -52,6 +52,7 @@ extern "C" {
     X(PFNGLBLITFRAMEBUFFERPROC, glBlitFramebuffer)                                                                             \
     X(PFNGLBUFFERDATAPROC, glBufferData)                                                                                       \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, glCheckFramebufferStatus)                                                               \
+    X(PFNGLCLEARBUFFERFIPROC, glClearBufferfi)                                                                                 \
     X(PFNGLCLEARBUFFERFVPROC, glClearBufferfv)                                                                                 \
     X(PFNGLCLEARBUFFERIVPROC, glClearBufferiv)                                                                                 \
     X(PFNGLCLEARBUFFERUIVPROC, glClearBufferuiv)                                                                               \

@@ -31,7 +31,6 @@ typedef struct ss_posed_vertex {
     float place[3]; /* less the origin */
     float normal[3];
     float value;
-    float inside; /* 1 in the patch, else 0 */
 } ss_posed_vertex;
 
 struct skinslide_outline {
