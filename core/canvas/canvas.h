@@ -8,13 +8,14 @@
 
 /* A program and its uniforms. */
 typedef struct ss_surface_program {
-    GLuint program;
-    GLint to_clip, turn_normal, scale, encoded, colours; /* -1: it has none */
+    GLuint program; /* 0: not made yet */
+    GLint to_clip, turn_normal, scale, encoded;
 } ss_surface_program;
 
 /* Objects that draw figures. */
 typedef struct ss_figure_objects {
-    ss_surface_program chequer, false_colours, tile;
+    ss_surface_program painted[2 << SKINSLIDE_MOST_LAYERS]; /* see ss_painted_program */
+    ss_surface_program tile;
     GLuint stroke_program;
     GLint stroke_to_clip, pen, line_colour; /* its uniforms */
     GLuint surface_array, stroke_array;
@@ -24,7 +25,7 @@ typedef struct ss_figure_objects {
 struct skinslide_canvas {
     ss_memory memory;
     ss_egl *egl;
-    int32_t width, height, largest_texture;
+    int32_t width, height, layers, largest_texture;
     skinslide_pixels pixels;
     uint8_t *rows;          /* scratch for all pixels: memory of its own would be new to the machine at each read */
     GLint marks;            /* that figures have left in the stencil, each its own */
@@ -35,8 +36,16 @@ struct skinslide_canvas {
 /* A vertex as programs have it. */
 typedef struct ss_shown_vertex {
     float coordinates[3], place[3], normal[3];
-    float value, inside;
+    float inside; /* 1 in the patch, else 0 */
+    float values[SKINSLIDE_MOST_LAYERS];
 } ss_shown_vertex;
+
+/* What is on one layer. */
+typedef struct ss_layer_paint {
+    skinslide_paint own;
+    skinslide_colour_tile *tiles; /* [own.tile_count] */
+    GLuint *textures;             /* [own.tile_count] */
+} ss_layer_paint;
 
 /* Lines of one colour. */
 typedef struct ss_stroke {
@@ -57,8 +66,9 @@ typedef struct ss_drawing {
     const skinslide_figure *figure;
     const skinslide_tessellation *mesh;
     const skinslide_outline *outline;
-    skinslide_colour_tile *tiles; /* [figure->tile_count] */
-    GLuint *textures;             /* [figure->tile_count] */
+    ss_layer_paint paints[SKINSLIDE_MOST_LAYERS]; /* [paint_count] */
+    int32_t paint_count;
+    const ss_surface_program *painted, *plain; /* with all paints; with what is outside the patch in false colours */
     ss_view view;
     ss_tessellation_work work;
     double origin[3];
@@ -70,6 +80,8 @@ typedef struct ss_drawing {
     float line;                    /* pixels that the outline is wide */
 } ss_drawing;
 
+/* Checks them; with what memory they need. */
+skinslide_status ss_take_paints(ss_drawing *drawn, skinslide_error *error);
 /* Once vertices are posed. False where memory is short. */
 bool ss_list_seen(ss_drawing *drawn);
 /* In the work's memory, from its vertices. False where memory is short. */
@@ -78,8 +90,14 @@ void ss_draw_strokes(const ss_drawing *drawn);
 /* With ghosts, the strokes too, which are under these. */
 void ss_draw_surface(const ss_drawing *drawn);
 
+/* Only layers [first, end) are drawn on. */
+void ss_draw_on_layers(const skinslide_canvas *canvas, int32_t first, int32_t end);
 /* The context is current. */
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);
+/* The program that draws on so many layers, false colours on those whose bit is set and chequers on the others. Made when it is
+ * first asked for; the context is current. */
+skinslide_status ss_painted_program(skinslide_canvas *canvas, int32_t layers, unsigned false_colours,
+                                    const ss_surface_program **out, skinslide_error *error);
 
 /* What a colour of linear light is in the canvas's pixels. */
 void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]);

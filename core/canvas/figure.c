@@ -1,8 +1,6 @@
 /* Draws figures: what of one is in sight is posed and listed, then drawn. */
 #include "canvas.h"
 
-#include "paint.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -66,25 +64,7 @@ static void skip_out_of_sight(ss_drawing *drawn, uint8_t *sides) {
 
 /* ---- What can be drawn ---- */
 
-enum { MOST_TILES = 1000, WIDEST = 1000 };
-
-static skinslide_status check_paint(const skinslide_figure *figure, skinslide_error *error) {
-    float range = figure->highest - figure->lowest;
-    if (!figure->values && !(figure->squares > 0 && isfinite(figure->squares)))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a chequer of %g squares", (double)figure->squares);
-    if (figure->values && !(range > 0 && isnormal(range) && isnormal(1 / range)))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a scale from %g to %g", (double)figure->lowest, (double)figure->highest);
-    skinslide_status status = SKINSLIDE_OK;
-    if (!(figure->line >= 0 && figure->line <= WIDEST))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "lines %g times as wide as usual; they may be 0 to %d",
-                       (double)figure->line, WIDEST);
-    if (figure->tile_count < 0 || figure->tile_count > MOST_TILES || (figure->tile_count > 0 && !figure->tiles))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "%d tiles of a texture; there may be 0 to %d", figure->tile_count,
-                       MOST_TILES);
-    for (int32_t v = 0; figure->values && v < figure->tessellation->mesh_vertex_count && !status; v++)
-        status = ss_check_value(v, figure->values[v], error);
-    return status;
-}
+enum { WIDEST = 1000 };
 
 static skinslide_status check(const skinslide_canvas *canvas, const skinslide_viewport *viewport,
                               const skinslide_camera *camera, const skinslide_figure *figure, skinslide_error *error) {
@@ -96,35 +76,13 @@ static skinslide_status check(const skinslide_canvas *canvas, const skinslide_vi
         viewport->x > canvas->width - viewport->width || viewport->y > canvas->height - viewport->height)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "the viewport is not on the canvas of %d by %d pixels", canvas->width,
                        canvas->height);
-    skinslide_status status = check_paint(figure, error);
-    if (!status && figure->ways)
+    if (!(figure->line >= 0 && figure->line <= WIDEST))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "lines %g times as wide as usual; they may be 0 to %d",
+                       (double)figure->line, WIDEST);
+    skinslide_status status = SKINSLIDE_OK;
+    if (figure->ways)
         status = ss_check_points(figure->ways, figure->tessellation->mesh_vertex_count, "ways", error);
     return status ? status : ss_check_points(figure->points, figure->tessellation->mesh_vertex_count, "points", error);
-}
-
-static skinslide_status check_tile(const ss_drawing *drawn, const skinslide_colour_tile *tile, int32_t most,
-                                   skinslide_error *error) {
-    if (drawn->mesh->in_space)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no st for the tiles of a texture");
-    if (!tile->pixels || tile->number < SS_FIRST_TILE || tile->number >= SS_FIRST_TILE + SS_TILE_COLUMNS * SS_TILE_ROWS)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has no pixels, or no place in a UDIM", tile->number);
-    if (tile->width < 1 || tile->height < 1 || tile->width > most || tile->height > most)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tile %d has %d by %d pixels; each side may have 1 to %d", tile->number,
-                       tile->width, tile->height, most);
-    return SKINSLIDE_OK;
-}
-
-static skinslide_status take_tiles(ss_drawing *drawn, skinslide_error *error) {
-    const skinslide_colour_tile standard = SKINSLIDE_COLOUR_TILE_DEFAULT;
-    int32_t count = drawn->figure->tile_count;
-    drawn->tiles = SS_NEW(&drawn->work.memory, skinslide_colour_tile, count);
-    if (!drawn->tiles && count > 0)
-        return ss_out_of_memory(error);
-    skinslide_status status =
-        ss_take_all(drawn->figure->tiles, count, "skinslide_colour_tile", drawn->tiles, sizeof *drawn->tiles, &standard, error);
-    for (int32_t i = 0; i < count && !status; i++)
-        status = check_tile(drawn, &drawn->tiles[i], drawn->canvas->largest_texture, error);
-    return status;
 }
 
 /* ---- A figure ---- */
@@ -139,12 +97,14 @@ static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camer
         return ss_fail(error, SKINSLIDE_BAD_POINTS,
                        "the camera, or the mesh's way to the world, is not finite or has no inverse");
     drawn->in_sight = SS_NEW(&work->memory, uint8_t, mesh->grid_count);
-    drawn->textures = SS_NEW(&work->memory, GLuint, figure->tile_count);
     uint8_t *sides = SS_NEW(&work->memory, uint8_t, mesh->mesh_vertex_count);
     if (!ss_tessellation_work_allocate(mesh, work))
         return ss_out_of_memory(error);
     skip_out_of_sight(drawn, sides);
-    ss_tessellate(mesh, figure->points, figure->values, drawn->origin, work);
+    ss_tessellate(mesh, figure->points, drawn->origin, work);
+    for (int32_t i = 0; i < drawn->paint_count; i++)
+        if (drawn->paints[i].own.values)
+            ss_tessellate_values(mesh, drawn->paints[i].own.values, i, work);
     drawn->line = fmaxf(1.5f, (float)drawn->viewport->height / 450) * (figure->line > 0 ? figure->line : 1);
     return ss_list_seen(drawn) && ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
@@ -159,6 +119,25 @@ static GLint new_mark(skinslide_canvas *canvas) {
     return ++canvas->marks;
 }
 
+/* The context is current. */
+static skinslide_status draw(skinslide_canvas *canvas, ss_drawing *drawn, skinslide_error *error) {
+    const skinslide_viewport *place = drawn->viewport;
+    unsigned all = (1u << drawn->paint_count) - 1, with_values = 0;
+    for (int32_t i = 0; i < drawn->paint_count; i++)
+        with_values |= (unsigned)(drawn->paints[i].own.values != NULL) << i;
+    skinslide_status status = ss_painted_program(canvas, drawn->paint_count, with_values, &drawn->painted, error);
+    if (!status)
+        status = ss_painted_program(canvas, drawn->paint_count, all, &drawn->plain, error);
+    if (status)
+        return status;
+    canvas->egl->api.glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
+    canvas->egl->api.glViewport(place->x, place->y, place->width, place->height);
+    drawn->mark = new_mark(canvas);
+    ss_draw_on_layers(canvas, 0, drawn->paint_count);
+    ss_draw_surface(drawn);
+    return SKINSLIDE_OK;
+}
+
 skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                        const skinslide_camera *camera, const skinslide_figure *figure, skinslide_error *error) {
     ss_egl_before before;
@@ -170,17 +149,15 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
         return status;
     ss_drawing drawn = {.canvas = canvas, .figure = &own, .mesh = own.tessellation, .viewport = viewport};
     drawn.outline = own.outline ? own.outline : drawn.mesh->outline;
-    status = take_tiles(&drawn, error);
+    status = ss_take_paints(&drawn, error);
     if (!status)
         status = prepare(&drawn, camera, error);
     if (!status)
         status = ss_gl_enter(canvas->egl, &before, error);
     if (!status) {
-        canvas->egl->api.glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
-        canvas->egl->api.glViewport(viewport->x, viewport->y, viewport->width, viewport->height);
-        drawn.mark = new_mark(canvas);
-        ss_draw_surface(&drawn);
-        status = ss_gl_leave(canvas->egl, &before, "drawing a figure", error);
+        status = draw(canvas, &drawn, error);
+        skinslide_status left = ss_gl_leave(canvas->egl, &before, "drawing a figure", status ? NULL : error);
+        status = status ? status : left;
     }
     ss_free(&drawn.work.memory);
     return status;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { COLOURS = 5 };
 
@@ -29,71 +30,70 @@ static const char surface_vertex[] = "#version 300 es\n"
                                      "layout(location = 1) in float posed_inside;\n"
                                      "layout(location = 2) in vec3 place;\n"
                                      "layout(location = 3) in vec3 surface_normal;\n"
-                                     "layout(location = 4) in float posed_value;\n"
+                                     "layout(location = 4) in vec4 posed_values;\n"
                                      "out highp vec3 coordinates, normal;\n"
-                                     "out highp float inside, value;\n"
+                                     "out highp float inside;\n"
+                                     "out highp vec4 values;\n"
                                      "void main() {\n"
                                      "    coordinates = fixed_coordinates;\n"
                                      "    inside = posed_inside;\n"
                                      "    normal = turn_normal * surface_normal;\n"
-                                     "    value = posed_value;\n"
+                                     "    values = posed_values;\n"
                                      "    gl_Position = to_clip * vec4(place, 1.0);\n"
                                      "}\n";
 
-/* Light from beside the camera, in which what faces the camera, and what has no normal, has its own colour: base(). Programs of
- * their own for each, since software rasterisers take both ways of a branch. */
-#define SURFACE_FRAGMENT(base)                                                                                                 \
-    "#version 300 es\n"                                                                                                        \
-    "precision highp float;\n"                                                                                                 \
-    "uniform int encoded;\n"                                                                                                   \
-    "in vec3 coordinates, normal;\n"                                                                                           \
-    "in float inside, value;\n"                                                                                                \
-    "layout(location = 0) out vec4 colour;\n"                                                                                  \
-    "const vec3 plain = vec3(0.33, 0.31, 0.30);\n" base "float shade(vec3 n) {\n"                                              \
-    "    return 0.23 + 0.07 * n.y + 0.78 * max(dot(n, normalize(vec3(-0.35, 0.55, 0.8))), 0.0);\n"                             \
-    "}\n"                                                                                                                      \
-    "vec3 encode(vec3 light) {\n"                                                                                              \
-    "    return mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));\n"                    \
-    "}\n"                                                                                                                      \
-    "void main() {\n"                                                                                                          \
-    "    vec3 n = normalize((gl_FrontFacing ? normal : -normal) + vec3(0.0, 0.0, 1e-6));\n"                                    \
-    "    vec3 light = base() * (shade(n) / shade(vec3(0.0, 0.0, 1.0)));\n"                                                     \
-    "    colour = vec4(encoded == 1 ? encode(light) : light, 1.0);\n"                                                          \
+/* Light from beside the camera, in which what faces the camera, and what has no normal, has its own colour: base. */
+static const char surface_fragment[] =
+    "#version 300 es\n"
+    "precision highp float;\n"
+    "uniform int encoded;\n"
+    "uniform vec3 scale[4];\n"
+    "uniform vec3 colours[5];\n"
+    "uniform sampler2D texels;\n"
+    "in vec3 coordinates, normal;\n"
+    "in float inside;\n"
+    "in vec4 values;\n"
+    "const vec3 plain = vec3(0.33, 0.31, 0.30);\n"
+    "float shade(vec3 n) {\n"
+    "    return 0.23 + 0.07 * n.y + 0.78 * max(dot(n, normalize(vec3(-0.35, 0.55, 0.8))), 0.0);\n"
     "}\n"
-
-/* The chequer's mean over the pixel, so that squares too small to be seen are grey. scale is squares, and whether they are in
- * space. */
-static const char chequer_fragment[] = SURFACE_FRAGMENT(
-    "uniform vec2 scale;\n"
-    "vec3 base() {\n"
-    "    vec3 p = clamp(coordinates * scale.x + 0.317 * scale.y, -1e30, 1e30), w = max(fwidth(p), 1e-4);\n"
+    "vec4 lit(vec3 base) {\n"
+    "    vec3 n = normalize((gl_FrontFacing ? normal : -normal) + vec3(0.0, 0.0, 1e-6));\n"
+    "    vec3 light = base * (shade(n) / shade(vec3(0.0, 0.0, 1.0)));\n"
+    "    vec3 srgb = mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));\n"
+    "    return vec4(encoded == 1 ? srgb : light, 1.0);\n"
+    "}\n"
+    /* The chequer's mean over the pixel, so that squares too small to be seen are grey. size is squares, and whether they are
+     * in space; no value is read. */
+    "vec3 chequer(float value, vec3 size) {\n"
+    "    vec3 p = clamp(coordinates * size.x + 0.317 * size.y, -1e30, 1e30), w = max(fwidth(p), 1e-4);\n"
     "    vec3 mean = 2.0 * (abs(fract(0.5 * (p - 0.5 * w)) - 0.5) - abs(fract(0.5 * (p + 0.5 * w)) - 0.5)) / w;\n"
-    "    float share = 0.5 - 0.5 * mean.x * mean.y * mix(1.0, mean.z, scale.y);\n"
+    "    float share = 0.5 - 0.5 * mean.x * mean.y * mix(1.0, mean.z, size.y);\n"
     "    return mix(mix(vec3(0.045, 0.055, 0.09), vec3(0.78, 0.74, 0.68), share), plain, 0.7 * (1.0 - inside));\n"
-    "}\n");
+    "}\n"
+    /* range is lowest, and the inverse of all of it. */
+    "vec3 false_colour(float value, vec3 range) {\n"
+    "    float place = clamp((value - range.x) * range.y, 0.0, 1.0) * 4.0;\n"
+    "    vec3 found = colours[0];\n"
+    "    for (int i = 0; i < 4; i++)\n"
+    "        found += clamp(place - float(i), 0.0, 1.0) * (colours[i + 1] - colours[i]);\n"
+    "    return inside > 0.5 ? found : plain;\n"
+    "}\n"
+    /* A tile of a texture, whose lower left corner is given. */
+    "vec3 tile(vec3 corner) {\n"
+    "    vec2 p = coordinates.xy - corner.xy;\n"
+    "    vec3 found = texture(texels, vec2(p.x, 1.0 - p.y)).rgb;\n"
+    "    if (any(lessThan(p, vec2(0.0))) || any(greaterThan(p, vec2(1.0))))\n"
+    "        discard;\n"
+    "    return found;\n"
+    "}\n";
 
-/* scale is lowest, and the inverse of the range. */
-static const char false_colour_fragment[] =
-    SURFACE_FRAGMENT("uniform vec2 scale;\n"
-                     "uniform vec3 colours[5];\n"
-                     "vec3 base() {\n"
-                     "    float place = clamp((value - scale.x) * scale.y, 0.0, 1.0) * 4.0;\n"
-                     "    vec3 found = colours[0];\n"
-                     "    for (int i = 0; i < 4; i++)\n"
-                     "        found += clamp(place - float(i), 0.0, 1.0) * (colours[i + 1] - colours[i]);\n"
-                     "    return inside > 0.5 ? found : plain;\n"
-                     "}\n");
-
-/* A tile of a texture, whose lower left corner is at scale. */
-static const char tile_fragment[] = SURFACE_FRAGMENT("uniform vec2 scale;\n"
-                                                     "uniform sampler2D texels;\n"
-                                                     "vec3 base() {\n"
-                                                     "    vec2 p = coordinates.xy - scale;\n"
-                                                     "    vec3 found = texture(texels, vec2(p.x, 1.0 - p.y)).rgb;\n"
-                                                     "    if (any(lessThan(p, vec2(0.0))) || any(greaterThan(p, vec2(1.0))))\n"
-                                                     "        discard;\n"
-                                                     "    return found;\n"
-                                                     "}\n");
+/* As many outputs as there may be layers; those of layers that are not drawn on go nowhere. */
+static const char tile_main[] = "layout(location = 0) out vec4 colour[4];\n"
+                                "void main() {\n"
+                                "    vec4 found = lit(tile(scale[0]));\n"
+                                "    colour[0] = found, colour[1] = found, colour[2] = found, colour[3] = found;\n"
+                                "}\n";
 
 /* Each segment is a strip as wide as the line, square at its ends. What of it is behind the near plane is cut off first: places
  * on the picture, on which its width is, have no meaning there. */
@@ -126,9 +126,10 @@ static const char stroke_vertex[] = "#version 300 es\n"
 static const char stroke_fragment[] = "#version 300 es\n"
                                       "precision highp float;\n"
                                       "uniform vec3 line_colour;\n"
-                                      "layout(location = 0) out vec4 colour;\n"
+                                      "layout(location = 0) out vec4 colour[4];\n"
                                       "void main() {\n"
-                                      "    colour = vec4(line_colour, 1.0);\n"
+                                      "    vec4 line = vec4(line_colour, 1.0);\n"
+                                      "    colour[0] = line, colour[1] = line, colour[2] = line, colour[3] = line;\n"
                                       "}\n";
 
 /* ---- Objects ---- */
@@ -149,7 +150,7 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     point_to(gl, 1, 1, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, inside));
     point_to(gl, 2, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, place));
     point_to(gl, 3, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, normal));
-    point_to(gl, 4, 1, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, value));
+    point_to(gl, 4, SKINSLIDE_MOST_LAYERS, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, values));
     gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
     gl->glGenVertexArrays(1, &objects->stroke_array);
     gl->glBindVertexArray(objects->stroke_array);
@@ -160,34 +161,55 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     }
 }
 
-static void find_uniforms(const ss_egl_api *gl, ss_figure_objects *objects) {
-    ss_surface_program *const programs[] = {&objects->chequer, &objects->false_colours, &objects->tile};
-    for (int i = 0; i < 3; i++) {
-        ss_surface_program *own = programs[i];
-        own->to_clip = gl->glGetUniformLocation(own->program, "to_clip");
-        own->turn_normal = gl->glGetUniformLocation(own->program, "turn_normal");
-        own->scale = gl->glGetUniformLocation(own->program, "scale");
-        own->encoded = gl->glGetUniformLocation(own->program, "encoded");
-        own->colours = gl->glGetUniformLocation(own->program, "colours");
-    }
-    objects->stroke_to_clip = gl->glGetUniformLocation(objects->stroke_program, "to_clip");
-    objects->pen = gl->glGetUniformLocation(objects->stroke_program, "pen");
-    objects->line_colour = gl->glGetUniformLocation(objects->stroke_program, "line_colour");
+enum { MOST_TEXT = 6000 };
+
+static skinslide_status make_surface_program(const ss_egl_api *gl, const char *rest, ss_surface_program *out,
+                                             skinslide_error *error) {
+    char text[MOST_TEXT];
+    GLuint program;
+    snprintf(text, sizeof text, "%s%s", surface_fragment, rest);
+    skinslide_status status = ss_gl_program(gl, surface_vertex, text, NULL, 0, &program, error);
+    if (status)
+        return status;
+    out->to_clip = gl->glGetUniformLocation(program, "to_clip");
+    out->turn_normal = gl->glGetUniformLocation(program, "turn_normal");
+    out->scale = gl->glGetUniformLocation(program, "scale");
+    out->encoded = gl->glGetUniformLocation(program, "encoded");
+    gl->glUseProgram(program);
+    gl->glUniform3fv(gl->glGetUniformLocation(program, "colours"), COLOURS, scale_colours[0]);
+    out->program = program;
+    return SKINSLIDE_OK;
+}
+
+/* What draws on so many layers, each as the bits say. */
+static void write_painted_main(int32_t layers, unsigned false_colours, char text[MOST_TEXT]) {
+    int length = snprintf(text, MOST_TEXT, "layout(location = 0) out vec4 colour[%d];\nvoid main() {\n", layers);
+    for (int32_t k = 0; k < layers; k++)
+        length += snprintf(text + length, (size_t)(MOST_TEXT - length), "    colour[%d] = lit(%s(values[%d], scale[%d]));\n", k,
+                           false_colours >> k & 1 ? "false_colour" : "chequer", k, k);
+    snprintf(text + length, (size_t)(MOST_TEXT - length), "}\n");
+}
+
+skinslide_status ss_painted_program(skinslide_canvas *canvas, int32_t layers, unsigned false_colours,
+                                    const ss_surface_program **out, skinslide_error *error) {
+    ss_surface_program *own = &canvas->objects.painted[1u << layers | false_colours];
+    char text[MOST_TEXT];
+    *out = own;
+    if (own->program)
+        return SKINSLIDE_OK;
+    write_painted_main(layers, false_colours, text);
+    return make_surface_program(&canvas->egl->api, text, own, error);
 }
 
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error) {
-    skinslide_status status = ss_gl_program(gl, surface_vertex, chequer_fragment, NULL, 0, &objects->chequer.program, error);
-    if (!status)
-        status = ss_gl_program(gl, surface_vertex, false_colour_fragment, NULL, 0, &objects->false_colours.program, error);
-    if (!status)
-        status = ss_gl_program(gl, surface_vertex, tile_fragment, NULL, 0, &objects->tile.program, error);
+    skinslide_status status = make_surface_program(gl, tile_main, &objects->tile, error);
     if (!status)
         status = ss_gl_program(gl, stroke_vertex, stroke_fragment, NULL, 0, &objects->stroke_program, error);
     if (status)
         return status;
     make_arrays(gl, objects);
-    find_uniforms(gl, objects);
-    gl->glUseProgram(objects->false_colours.program);
-    gl->glUniform3fv(objects->false_colours.colours, COLOURS, scale_colours[0]);
+    objects->stroke_to_clip = gl->glGetUniformLocation(objects->stroke_program, "to_clip");
+    objects->pen = gl->glGetUniformLocation(objects->stroke_program, "pen");
+    objects->line_colour = gl->glGetUniformLocation(objects->stroke_program, "line_colour");
     return SKINSLIDE_OK;
 }

@@ -169,7 +169,8 @@ static void list_vertices(const sight *own) {
             memcpy(shown->coordinates, mesh->fixed[k].coordinates, sizeof shown->coordinates);
             memcpy(shown->place, posed->place, sizeof shown->place);
             memcpy(shown->normal, posed->normal, sizeof shown->normal);
-            shown->value = posed->value, shown->inside = own->drawn->outline->inside[mesh->grids[p].face];
+            memcpy(shown->values, posed->values, sizeof shown->values);
+            shown->inside = own->drawn->outline->inside[mesh->grids[p].face];
         }
 }
 

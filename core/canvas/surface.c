@@ -34,23 +34,37 @@ static void draw_range(const ss_drawing *drawn, int32_t first, int32_t count) {
     drawn->canvas->egl->api.glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, offset);
 }
 
+static void draw_tiles(const ss_drawing *drawn, const ss_layer_paint *paint, int32_t first, int32_t count) {
+    const ss_egl_api *gl = &drawn->canvas->egl->api;
+    const ss_surface_program *own = &drawn->canvas->objects.tile;
+    for (int32_t i = 0; i < paint->own.tile_count; i++) {
+        int32_t tile = paint->tiles[i].number - SS_FIRST_TILE;
+        const float corner[3] = {(float)(tile % SS_TILE_COLUMNS), (float)(tile / SS_TILE_COLUMNS), 0};
+        use(drawn, own);
+        gl->glUniform3fv(own->scale, 1, corner);
+        gl->glBindTexture(GL_TEXTURE_2D, paint->textures[i]);
+        draw_range(drawn, first, count);
+    }
+}
+
 /* Triangles [first, first + count), as the figure has them painted. */
 static void draw_painted(const ss_drawing *drawn, int32_t first, int32_t count) {
-    const ss_egl_api *gl = &drawn->canvas->egl->api;
-    const ss_figure_objects *objects = &drawn->canvas->objects;
-    const skinslide_figure *figure = drawn->figure;
-    use(drawn, figure->values ? &objects->false_colours : &objects->chequer);
-    if (figure->values)
-        gl->glUniform2f(objects->false_colours.scale, figure->lowest, 1 / (figure->highest - figure->lowest));
-    else
-        gl->glUniform2f(objects->chequer.scale, figure->squares, drawn->mesh->in_space);
+    float scales[SKINSLIDE_MOST_LAYERS][3] = {{0}};
+    for (int32_t i = 0; i < drawn->paint_count; i++) {
+        const skinslide_paint *paint = &drawn->paints[i].own;
+        scales[i][0] = paint->values ? paint->lowest : drawn->figure->squares;
+        scales[i][1] = paint->values ? 1 / (paint->highest - paint->lowest) : drawn->mesh->in_space;
+    }
+    use(drawn, drawn->painted);
+    drawn->canvas->egl->api.glUniform3fv(drawn->painted->scale, drawn->paint_count, scales[0]);
     draw_range(drawn, first, count);
-    for (int32_t i = 0; i < figure->tile_count && !figure->values; i++) {
-        int32_t tile = drawn->tiles[i].number - SS_FIRST_TILE;
-        use(drawn, &objects->tile);
-        gl->glUniform2f(objects->tile.scale, (float)(tile % SS_TILE_COLUMNS), (float)(tile / SS_TILE_COLUMNS));
-        gl->glBindTexture(GL_TEXTURE_2D, drawn->textures[i]);
-        draw_range(drawn, first, count);
+    for (int32_t i = 0; i < drawn->paint_count; i++) {
+        const ss_layer_paint *paint = &drawn->paints[i];
+        if (paint->own.values || paint->own.tile_count == 0)
+            continue;
+        ss_draw_on_layers(drawn->canvas, i, i + 1);
+        draw_tiles(drawn, paint, first, count);
+        ss_draw_on_layers(drawn->canvas, 0, drawn->paint_count);
     }
 }
 
@@ -63,12 +77,12 @@ static GLsizei levels_of(const skinslide_colour_tile *tile) {
     return levels;
 }
 
-static void load_textures(const ss_drawing *drawn) {
+static void load_textures(const ss_drawing *drawn, const ss_layer_paint *paint) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
-    gl->glGenTextures(drawn->figure->tile_count, drawn->textures);
-    for (int32_t i = 0; i < drawn->figure->tile_count; i++) {
-        const skinslide_colour_tile *tile = &drawn->tiles[i];
-        gl->glBindTexture(GL_TEXTURE_2D, drawn->textures[i]);
+    gl->glGenTextures(paint->own.tile_count, paint->textures);
+    for (int32_t i = 0; i < paint->own.tile_count; i++) {
+        const skinslide_colour_tile *tile = &paint->tiles[i];
+        gl->glBindTexture(GL_TEXTURE_2D, paint->textures[i]);
         gl->glTexStorage2D(GL_TEXTURE_2D, levels_of(tile), GL_SRGB8_ALPHA8, tile->width, tile->height);
         gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, tile->width, tile->height, GL_RGBA, GL_UNSIGNED_BYTE, tile->pixels);
         gl->glGenerateMipmap(GL_TEXTURE_2D);
@@ -85,7 +99,7 @@ static void draw_shadows(const ss_drawing *drawn) {
     int32_t first = drawn->hiding_first, count = drawn->triangle_count - drawn->hiding_first;
     gl->glStencilFunc(GL_EQUAL, drawn->mark, ~0u);
     gl->glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    use(drawn, &drawn->canvas->objects.false_colours);
+    use(drawn, drawn->plain);
     draw_range(drawn, first, count);
     gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
     gl->glEnable(GL_BLEND);
@@ -137,7 +151,8 @@ static void draw_with_ghosts(const ss_drawing *drawn) {
 void ss_draw_surface(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
     const ss_figure_objects *objects = &drawn->canvas->objects;
-    load_textures(drawn);
+    for (int32_t i = 0; i < drawn->paint_count; i++)
+        load_textures(drawn, &drawn->paints[i]);
     begin(drawn);
     fill(gl, GL_ARRAY_BUFFER, objects->vertex_buffer, drawn->vertices, drawn->vertex_count, sizeof *drawn->vertices);
     fill(gl, GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer, drawn->triangles, drawn->triangle_count,
@@ -149,5 +164,6 @@ void ss_draw_surface(const ss_drawing *drawn) {
     end(drawn);
     if (!drawn->figure->ghosts)
         ss_draw_strokes(drawn);
-    gl->glDeleteTextures(drawn->figure->tile_count, drawn->textures);
+    for (int32_t i = 0; i < drawn->paint_count; i++)
+        gl->glDeleteTextures(drawn->paints[i].own.tile_count, drawn->paints[i].textures);
 }

@@ -66,6 +66,7 @@ extern "C" {
     X(PFNGLDISABLEPROC, glDisable)                                                                                             \
     X(PFNGLDRAWARRAYSPROC, glDrawArrays)                                                                                       \
     X(PFNGLDRAWARRAYSINSTANCEDPROC, glDrawArraysInstanced)                                                                     \
+    X(PFNGLDRAWBUFFERSPROC, glDrawBuffers)                                                                                     \
     X(PFNGLDRAWELEMENTSPROC, glDrawElements)                                                                                   \
     X(PFNGLENABLEPROC, glEnable)                                                                                               \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                                                             \
@@ -88,6 +89,7 @@ extern "C" {
     X(PFNGLLINKPROGRAMPROC, glLinkProgram)                                                                                     \
     X(PFNGLMAPBUFFERRANGEPROC, glMapBufferRange)                                                                               \
     X(PFNGLPOLYGONOFFSETPROC, glPolygonOffset)                                                                                 \
+    X(PFNGLREADBUFFERPROC, glReadBuffer)                                                                                       \
     X(PFNGLREADPIXELSPROC, glReadPixels)                                                                                       \
     X(PFNGLRENDERBUFFERSTORAGEPROC, glRenderbufferStorage)                                                                     \
     X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, glRenderbufferStorageMultisample)                                               \
@@ -100,7 +102,6 @@ extern "C" {
     X(PFNGLTEXSUBIMAGE2DPROC, glTexSubImage2D)                                                                                 \
     X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, glTransformFeedbackVaryings)                                                         \
     X(PFNGLUNIFORM1IPROC, glUniform1i)                                                                                         \
-    X(PFNGLUNIFORM2FPROC, glUniform2f)                                                                                         \
     X(PFNGLUNIFORM3FVPROC, glUniform3fv)                                                                                       \
     X(PFNGLUNIFORMMATRIX3FVPROC, glUniformMatrix3fv)                                                                           \
     X(PFNGLUNIFORMMATRIX4FVPROC, glUniformMatrix4fv)                                                                           \

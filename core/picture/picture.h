@@ -30,7 +30,7 @@ typedef struct ss_fixed_vertex {
 typedef struct ss_posed_vertex {
     float place[3]; /* less the origin */
     float normal[3];
-    float value;
+    float values[SKINSLIDE_MOST_LAYERS];
 } ss_posed_vertex;
 
 struct skinslide_outline {
@@ -102,9 +102,12 @@ void ss_find_middle(const skinslide_tessellation *tessellation, const float *poi
 /* What a vertex has to show must be finite. */
 skinslide_status ss_check_value(int32_t mesh_vertex, float value, skinslide_error *error);
 bool ss_tessellation_work_allocate(const skinslide_tessellation *tessellation, ss_tessellation_work *work);
-/* The mesh in a pose, less the origin: work->vertices, whose values are 0 where values is NULL. */
-void ss_tessellate(const skinslide_tessellation *tessellation, const float *points, const float *values, const double origin[3],
+/* The mesh in a pose, less the origin: work->vertices, whose values are 0. */
+void ss_tessellate(const skinslide_tessellation *tessellation, const float *points, const double origin[3],
                    ss_tessellation_work *work);
+/* Sets one of the values of each of them. */
+void ss_tessellate_values(const skinslide_tessellation *tessellation, const float *values, int32_t place,
+                          ss_tessellation_work *work);
 
 /* ---- view.cpp: the only file that knows cameras ---- */
 

@@ -118,11 +118,11 @@ static void pose_grid(const skinslide_tessellation *own, const ss_grid *grid, co
 
 /* ---- All ---- */
 
-static void set_values(const skinslide_tessellation *own, const float *values, ss_tessellation_work *work) {
+void ss_tessellate_values(const skinslide_tessellation *own, const float *values, int32_t place, ss_tessellation_work *work) {
     for (int32_t p = 0; p < own->grid_count; p++) {
         const ss_grid *grid = &own->grids[p];
         for (int32_t v = grid->first_vertex; v < grid->first_vertex + ss_grid_size(own, grid) && !work->skipped[p]; v++)
-            ss_blend(own, grid, v, values, 1, false, work->weights, &work->vertices[v].value);
+            ss_blend(own, grid, v, values, 1, false, work->weights, &work->vertices[v].values[place]);
     }
 }
 
@@ -152,13 +152,10 @@ bool ss_tessellation_work_allocate(const skinslide_tessellation *own, ss_tessell
     return !memory->failed;
 }
 
-void ss_tessellate(const skinslide_tessellation *own, const float *points, const float *values, const double origin[3],
-                   ss_tessellation_work *work) {
+void ss_tessellate(const skinslide_tessellation *own, const float *points, const double origin[3], ss_tessellation_work *work) {
     if (!own->surfaces || own->flat_faces)
         find_normals(own, points, work->normals);
     for (int32_t p = 0; p < own->grid_count; p++)
         if (!work->skipped[p])
             (own->grids[p].side ? pose_grid : pose_fan)(own, &own->grids[p], points, origin, work);
-    if (values)
-        set_values(own, values, work);
 }

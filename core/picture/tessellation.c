@@ -223,7 +223,7 @@ static skinslide_status fix_vertices(skinslide_tessellation *own, const skinslid
         fix_st(own, st, work.weights);
     } else if (allocated) {
         ss_find_middle(own, mesh->rest_points, middle);
-        ss_tessellate(own, mesh->rest_points, NULL, middle, &work);
+        ss_tessellate(own, mesh->rest_points, middle, &work);
         for (int32_t v = 0; v < own->vertex_count; v++)
             for (int i = 0; i < 3; i++)
                 own->fixed[v].coordinates[i] = work.vertices[v].place[i];

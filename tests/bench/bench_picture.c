@@ -85,7 +85,7 @@ static double tessellate(const scene *s) {
     if (!ss_tessellation_work_allocate(s->tessellation, &work))
         exit(1);
     double start = spent();
-    ss_tessellate(s->tessellation, s->before, NULL, nowhere, &work);
+    ss_tessellate(s->tessellation, s->before, nowhere, &work);
     double taken = spent() - start;
     ss_free(&work.memory);
     return taken;

@@ -30,7 +30,7 @@ static skinslide_status slide(const skinslide_slider *slider, const float *point
 }
 
 static skinslide_status draw(const test_mesh *mesh, const float *points, uint8_t *pixels) {
-    const skinslide_canvas_options options = {sizeof options, SIDE, SIDE, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE};
+    const skinslide_canvas_options options = {sizeof options, SIDE, SIDE, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 1};
     const skinslide_viewport all = {0, 0, SIDE, SIDE};
     const double up[3] = {0, 1, 0};
     const float grey[3] = {0.5f, 0.5f, 0.5f}, *poses[1] = {points};

@@ -272,8 +272,8 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     const scene *s = own;
     enum { SIDE = 32 };
     static uint8_t pixels[SIDE * SIDE * 4];
-    const skinslide_canvas_options options = {sizeof(skinslide_canvas_options), SIDE, SIDE, SKINSLIDE_PIXELS_BYTES,
-                                              SKINSLIDE_ANY_DEVICE};
+    const skinslide_canvas_options options = {
+        sizeof(skinslide_canvas_options), SIDE, SIDE, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 2};
     const skinslide_viewport all = {0, 0, SIDE, SIDE};
     const double up[3] = {0, 1, 0};
     skinslide_mesh view = view_of_scene(s);
@@ -294,6 +294,8 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     skinslide_figure figure = SKINSLIDE_FIGURE_DEFAULT;
     figure.tessellation = tessellation, figure.outline = outline, figure.points = figure.ways = s->points;
     figure.wire = figure.ghosts = 1;
+    const skinslide_paint other = SKINSLIDE_PAINT_DEFAULT;
+    figure.others = &other, figure.other_count = 1;
     if (!status)
         status = skinslide_frame_faces(&subject, up, 1, &camera, error);
     if (!status)

@@ -58,12 +58,12 @@ def test_what_is_displayed_has_no_coverage(dtype):
 
 @pytest.fixture
 def two_views(shot, tmp_path):
-    """Draws the shot twice a frame, one frame after another."""
+    """Draws the shot twice a frame, both at once, one frame after another."""
     return lambda: draw(shot, tmp_path / "out", views=["chequer", "stretch"], jobs=1)
 
 
 def test_a_picture_is_encoded_while_the_next_is_drawn(two_views, monkeypatch):
-    drawn, own, encode = threading.Semaphore(0), Series.draw, encoding.png
+    drawn, own, encode = threading.Semaphore(0), Series.draw_all, encoding.png
 
     def counted(*arguments):
         drawn.release()
@@ -73,11 +73,11 @@ def test_a_picture_is_encoded_while_the_next_is_drawn(two_views, monkeypatch):
         nonlocal first
         if first:
             first = not (drawn.acquire(timeout=LONG) and drawn.acquire(timeout=LONG))
-            assert not first, "the second picture was not begun before the first was encoded"
+            assert not first, "the second frame was not begun before a picture of the first was encoded"
         return encode(pixels)
 
     first = True
-    monkeypatch.setattr(Series, "draw", counted)
+    monkeypatch.setattr(Series, "draw_all", counted)
     monkeypatch.setattr(encoding, "png", after_the_next)
     monkeypatch.setattr(encoding, "thumbnail", lambda _: b"")
     monkeypatch.setattr("skinslide.picture.preview.contact_sheets", lambda _: [])
@@ -130,8 +130,8 @@ def test_encoding_that_fails_is_one_line_and_leaves_what_is_there(shot, tmp_path
     """Of the first frame that fails, though the next one fails sooner."""
     later = threading.Event()
 
-    def numbered(_series, _canvas, _view, at, *_):
-        return np.full((1, 1, 4), int(at.title.removeprefix("frame 100")), np.uint8)
+    def numbered(_series, _canvas, _views, at, *_):
+        yield np.full((1, 1, 4), int(at.title.removeprefix("frame 100")), np.uint8)
 
     def refuse(pixels):
         if pixels[0, 0, 0] == 1:
@@ -141,7 +141,7 @@ def test_encoding_that_fails_is_one_line_and_leaves_what_is_there(shot, tmp_path
         later.set()
         raise skinslide.SliderError("OUT_OF_MEMORY", f"no room for picture {pixels[0, 0, 0]}")
 
-    monkeypatch.setattr(Series, "draw", numbered)
+    monkeypatch.setattr(Series, "draw_all", numbered)
     monkeypatch.setattr(encoding, "png", refuse)
     monkeypatch.setattr(encoding, "thumbnail", lambda _: b"")
     words = ["--size", "64x32", "--view", "chequer", "--jobs", "2", "--quiet"]

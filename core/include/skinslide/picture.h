@@ -75,6 +75,18 @@ typedef struct skinslide_colour_tile {
 #define SKINSLIDE_COLOUR_TILE_DEFAULT                                                                                          \
     { sizeof(skinslide_colour_tile), 0, 0, 0, 1001 }
 
+/* What a figure is painted with: members are as in it. Start from SKINSLIDE_PAINT_DEFAULT. */
+typedef struct skinslide_paint {
+    size_t size; /* sizeof(skinslide_paint) */
+    const float *values;
+    float lowest, highest;
+    const skinslide_colour_tile *tiles;
+    int32_t tile_count;
+} skinslide_paint;
+
+#define SKINSLIDE_PAINT_DEFAULT                                                                                                \
+    { sizeof(skinslide_paint), 0, 0, 1.0f, 0, 0 }
+
 /* A mesh in one pose, and what it is painted with. Start from SKINSLIDE_FIGURE_DEFAULT. */
 typedef struct skinslide_figure {
     size_t size; /* sizeof(skinslide_figure) */
@@ -88,16 +100,18 @@ typedef struct skinslide_figure {
     skinslide_bool double_sided; /* no: faces turned away from the camera are left out, as USD has it */
     skinslide_bool left_handed;  /* the mesh's orientation is leftHanded */
     const skinslide_colour_tile *tiles; /* [tile_count] drawn where st is in them, a chequer elsewhere; values are stronger */
-    const float *ways;     /* [mesh vertex_count][3] lines are drawn by which vertices of the patch came; NULL: none */
-    const uint8_t *pins;   /* [mesh vertex_count] not 0: a dot is drawn, where it is of the patch; NULL: none */
-    int32_t tile_count;    /* 0 to 1000 */
-    skinslide_bool wire;   /* the sides of the patch's faces are drawn */
-    skinslide_bool ghosts; /* of what is nearer than the patch, and is not of it, only a shadow is seen */
-    float line;            /* how many times as wide as usual lines and dots are; 0: 1 */
+    const float *ways;             /* [mesh vertex_count][3] lines are drawn by which vertices of the patch came; NULL: none */
+    const uint8_t *pins;           /* [mesh vertex_count] not 0: a dot is drawn, where it is of the patch; NULL: none */
+    int32_t tile_count;            /* 0 to 1000 */
+    skinslide_bool wire;           /* the sides of the patch's faces are drawn */
+    skinslide_bool ghosts;         /* of what is nearer than the patch, and is not of it, only a shadow is seen */
+    float line;                    /* how many times as wide as usual lines and dots are; 0: 1 */
+    const skinslide_paint *others; /* [other_count] what it is painted with on further layers of the canvas */
+    int32_t other_count;           /* fewer than the canvas has layers */
 } skinslide_figure;
 
 #define SKINSLIDE_FIGURE_DEFAULT                                                                                               \
-    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
 SKINSLIDE_API void skinslide_false_colour(float share, float colour[3]);
@@ -144,22 +158,25 @@ typedef enum skinslide_pixels {
     SKINSLIDE_PIXELS_FLOATS /* linear light, half floats: read as float */
 } skinslide_pixels;
 
+enum { SKINSLIDE_MOST_LAYERS = 4 };
+
 /* Start from SKINSLIDE_CANVAS_OPTIONS_DEFAULT. */
 typedef struct skinslide_canvas_options {
     size_t size;           /* sizeof(skinslide_canvas_options) */
     int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit; 67,108,864 in all */
     skinslide_pixels pixels;
     int32_t device; /* as in skinslide_workspace_options */
+    int32_t layers; /* pictures that figures are drawn on at once, each in its own paint; 1 to SKINSLIDE_MOST_LAYERS */
 } skinslide_canvas_options;
 
 #define SKINSLIDE_CANVAS_OPTIONS_DEFAULT                                                                                       \
-    { sizeof(skinslide_canvas_options), 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE }
+    { sizeof(skinslide_canvas_options), 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 1 }
 
 typedef struct skinslide_canvas skinslide_canvas;
 
 /* Makes a canvas. Its context is current only within calls, as a workspace's is (see skinslide_workspace_create).
  *   options  in, or NULL: the default
- * Fails with BAD_ARGUMENT (sizes, no such pixels, above the device's limit), NO_DEVICE (names all that was tried),
+ * Fails with BAD_ARGUMENT (sizes, layers, no such pixels, above the device's limit), NO_DEVICE (names all that was tried),
  * DEVICE_FAILED, UNSUPPORTED (the device draws no floats), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_create(const skinslide_canvas_options *options, skinslide_canvas **out,
                                                        skinslide_error *error);
@@ -171,7 +188,8 @@ SKINSLIDE_API void skinslide_canvas_destroy(skinslide_canvas *canvas);
 SKINSLIDE_API skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_device_info *info,
                                                        skinslide_error *error);
 
-/* Fills a canvas with a colour, linear light, and with nothing in front of it. Fails with BAD_ARGUMENT, DEVICE_FAILED. */
+/* Fills all layers of a canvas with a colour, linear light, and with nothing in front of it.
+ * Fails with BAD_ARGUMENT, DEVICE_FAILED. */
 SKINSLIDE_API skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float colour[3], skinslide_error *error);
 
 /* Part of a canvas, pixels from its lower left corner. */
@@ -180,17 +198,22 @@ typedef struct skinslide_viewport {
 } skinslide_viewport;
 
 /* Draws a figure, four samples a pixel, behind what is nearer of what was drawn before. It is shaded by a light beside the
- * camera, in which a surface that faces the camera has its own colour.
+ * camera, in which a surface that faces the camera has its own colour. On the first layer it has its own paint, on the layers
+ * that follow its others', with the same lines and dots: layers cost much less than as many drawings.
  * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer, of the scale or of a tile; tiles on a mesh without st),
  * BAD_POINTS (points, values, ways or matrices not finite), DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                                      const skinslide_camera *camera, const skinslide_figure *figure,
                                                      skinslide_error *error);
 
-/* Reads what was drawn.
+/* Reads what was drawn on the first layer.
  *   pixels  out [height][width][4] red, green, blue, and 1, from the top row on; uint8_t or float, as the canvas has them
  * Fails with BAD_ARGUMENT, DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error);
+
+/* The same of layer, from 0 on. */
+SKINSLIDE_API skinslide_status skinslide_canvas_read_layer(skinslide_canvas *canvas, int32_t layer, void *pixels,
+                                                           skinslide_error *error);
 
 /* ---- Maps: values drawn in a mesh's texture coordinates ----------------------------------------------------------------- */
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 static skinslide_canvas_options sized(int32_t width, int32_t height, skinslide_pixels pixels) {
-    return (skinslide_canvas_options){sizeof(skinslide_canvas_options), width, height, pixels, SKINSLIDE_ANY_DEVICE};
+    return (skinslide_canvas_options){sizeof(skinslide_canvas_options), width, height, pixels, SKINSLIDE_ANY_DEVICE, 1};
 }
 
 static skinslide_canvas *canvas_of(skinslide_canvas_options options) {

@@ -21,7 +21,7 @@ static skinslide_canvas *canvases[MOST_CANVASES];
 
 /* Cleared to blue. A test draws on several only where they differ in size or pixels. */
 static skinslide_canvas *canvas_of(int32_t width, int32_t height, skinslide_pixels pixels) {
-    const skinslide_canvas_options options = {sizeof(skinslide_canvas_options), width, height, pixels, SKINSLIDE_ANY_DEVICE};
+    const skinslide_canvas_options options = {sizeof(skinslide_canvas_options), width, height, pixels, SKINSLIDE_ANY_DEVICE, 1};
     skinslide_error error;
     int i = 0;
     while (i < MOST_CANVASES && canvases[i] &&
@@ -679,6 +679,107 @@ static void tiles_that_cannot_be(void **state) {
     end_sheet(&s), end_sheet(&space);
 }
 
+/* ---- Layers ---- */
+
+/* The left half is the patch; a sheet of the same mesh, two faces farther on, lies before its upper quarter. */
+static sheet folded_sheet(void) {
+    sheet s = sheet_of(2, 3, everywhere, 1, true);
+    for (int32_t v = 0; v < 12; v++) {
+        int row = v / 3, column = v % 3;
+        float *p = s.mesh.points + 3 * v;
+        p[0] = (float)(row < 2 ? column : 2 - column) * WIDTH / 2.0f, p[2] = row < 2 ? 0 : 50;
+        p[1] = row == 0 ? 0 : row == 3 ? 0.75f * HEIGHT : HEIGHT;
+        s.values[v] = (float)v / 12;
+    }
+    s.figure.ghosts = s.figure.wire = s.figure.double_sided = 1, s.figure.squares = 7;
+    return s;
+}
+
+/* Four layers at once are the four pictures, byte for byte: values, a texture over a chequer, other values, a chequer. */
+static void layers_are_pictures(void **state) {
+    (void)state;
+    static uint8_t alone[HEIGHT][WIDTH][4], layer[HEIGHT][WIDTH][4];
+    static const uint8_t texels[2][4] = {{255, 40, 0, 0}, {0, 255, 90, 0}};
+    const skinslide_canvas_options options = {sizeof options, WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 4};
+    skinslide_colour_tile tile = SKINSLIDE_COLOUR_TILE_DEFAULT;
+    skinslide_paint paints[4] = {SKINSLIDE_PAINT_DEFAULT, SKINSLIDE_PAINT_DEFAULT, SKINSLIDE_PAINT_DEFAULT,
+                                 SKINSLIDE_PAINT_DEFAULT};
+    skinslide_canvas *canvas = NULL;
+    skinslide_error error;
+    sheet s = folded_sheet();
+    float others[12];
+    for (int32_t v = 0; v < 12; v++)
+        others[v] = 1 - s.values[v];
+    tile.pixels = texels[0], tile.width = 1, tile.height = 2;
+    paints[0].values = s.values, paints[1].tiles = &tile, paints[1].tile_count = 1;
+    paints[2].values = others, paints[2].lowest = -1;
+    assert_ok(skinslide_canvas_create(&options, &canvas, &error), &error);
+    for (int32_t count = 1; count <= 4; count++) {
+        skinslide_figure all = s.figure;
+        all.values = paints[0].values, all.lowest = 0, all.highest = 1, all.others = paints + 1, all.other_count = count - 1;
+        assert_ok(skinslide_canvas_clear(canvas, blue, &error), &error);
+        draw(canvas, &all);
+        for (int32_t i = 0; i < 4; i++) {
+            skinslide_canvas *single = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
+            s.figure.values = paints[i].values, s.figure.lowest = paints[i].lowest, s.figure.highest = paints[i].highest;
+            s.figure.tiles = paints[i].tiles, s.figure.tile_count = paints[i].tile_count;
+            if (i < count)
+                draw(single, &s.figure);
+            read_all(single, alone);
+            assert_ok(skinslide_canvas_read_layer(canvas, i, layer, &error), &error);
+            assert_same_bytes(layer, alone, sizeof alone);
+        }
+    }
+    skinslide_canvas_destroy(canvas);
+    end_sheet(&s);
+}
+
+static void layers_that_cannot_be(void **state) {
+    (void)state;
+    static uint8_t pixels[HEIGHT][WIDTH][4];
+    skinslide_canvas_options options = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
+    skinslide_canvas *made = NULL, *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
+    const skinslide_camera camera = in_pixels(WIDTH, HEIGHT);
+    skinslide_paint paint = SKINSLIDE_PAINT_DEFAULT;
+    skinslide_error error;
+    sheet s = sheet_of(1, 1, everywhere, 1, true);
+    for (int32_t i = 0; i < 3; i++) {
+        options.layers = (const int32_t[]){0, 5, -1}[i];
+        assert_fails(skinslide_canvas_create(&options, &made, &error), &error, SKINSLIDE_BAD_ARGUMENT, "a canvas of ...");
+    }
+    s.figure.others = &paint, s.figure.other_count = 1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "1 other paints; the canvas has layers for 0");
+    s.figure.other_count = -1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "-1 other paints; the canvas has layers for 0");
+    assert_fails(skinslide_canvas_read_layer(canvas, 1, pixels, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "there is no layer 1; the canvas has 1");
+    assert_fails(skinslide_canvas_read_layer(canvas, -1, pixels, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "there is no layer -1; the canvas has 1");
+    end_sheet(&s);
+}
+
+/* The stencil has a number for each of 255 figures. Where the patches of those before were, what hides this one's is drawn. */
+static void many_figures_leave_marks(void **state) {
+    (void)state;
+    static pixel first[HEIGHT][WIDTH], last[HEIGHT][WIDTH];
+    sheet s = folded_sheet();
+    skinslide_camera far_away = in_pixels(WIDTH, HEIGHT), mirrored = far_away;
+    skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    far_away.to_camera[14] = -500;
+    mirrored.to_screen[0] = -mirrored.to_screen[0], mirrored.to_screen[12] = 1;
+    draw_in(canvas, whole, &s.figure, mirrored);
+    read_all(canvas, first);
+    canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+    for (int i = 0; i < 255; i++)
+        draw_in(canvas, i < 254 ? (skinslide_viewport){0, 0, 4, 4} : whole, &s.figure, far_away);
+    draw_in(canvas, whole, &s.figure, mirrored);
+    read_all(canvas, last);
+    assert_same_bytes(&first[0][8], &last[0][8], sizeof(first) - sizeof(pixel[8]) - 4 * sizeof first[0]);
+    end_sheet(&s);
+}
+
 /* From inside a cube, turned any way: every pixel of the outline is at an edge of the patch, and those of edges that reach behind
  * the camera are nowhere else. */
 static void from_inside_nothing_smears(void **state) {
@@ -868,6 +969,9 @@ int main(void) {
         cmocka_unit_test(sides_of_the_patch_are_drawn),
         cmocka_unit_test(pins_and_ways_are_drawn),
         cmocka_unit_test(what_hides_the_patch_is_a_shadow),
+        cmocka_unit_test(layers_are_pictures),
+        cmocka_unit_test(layers_that_cannot_be),
+        cmocka_unit_test(many_figures_leave_marks),
         cmocka_unit_test(tiles_are_drawn_where_st_is),
         cmocka_unit_test(tiles_that_cannot_be),
         cmocka_unit_test(from_inside_nothing_smears),

@@ -103,7 +103,8 @@ static bool make(made *m, int32_t mesh, int32_t way, int32_t patch) {
     const double origin[3] = {0, 0, 0};
     assert_ok(skinslide_tessellation_create(&m->view, m->st, m->patch, m->patch_count, &m->own, &m->error), &m->error);
     assert_true(ss_tessellation_work_allocate(m->own, &m->work));
-    ss_tessellate(m->own, m->pose, m->values, origin, &m->work);
+    ss_tessellate(m->own, m->pose, origin, &m->work);
+    ss_tessellate_values(m->own, m->values, 0, &m->work);
     return true;
 }
 
@@ -371,7 +372,7 @@ static void normals_point_out(void **state) {
         made m;
         const double origin[3] = {0, 0, 0};
         assert_true(make(&m, FIXTURE_COUNT + 2, way, 0));
-        ss_tessellate(m.own, m.mesh.points, NULL, origin, &m.work);
+        ss_tessellate(m.own, m.mesh.points, origin, &m.work);
         for (int32_t v = 0; v < m.own->vertex_count; v++) {
             const float *p = m.work.vertices[v].place, *n = m.work.vertices[v].normal;
             double round = hypot(p[0], p[1]), out[3] = {p[0] - 3 * p[0] / round, p[1] - 3 * p[1] / round, p[2]};
@@ -398,7 +399,7 @@ static void check_blend_at(const made *m, const ss_grid *grid, int32_t i) {
     skinslide_limit_place at = {start + (grid->side ? 0 : i), 0, 0};
     float corners[3][512];
     const ss_fixed_vertex *fixed = &m->own->fixed[grid->first_vertex + i];
-    double found[3] = {fixed->coordinates[0], fixed->coordinates[1], m->work.vertices[grid->first_vertex + i].value};
+    double found[3] = {fixed->coordinates[0], fixed->coordinates[1], m->work.vertices[grid->first_vertex + i].values[0]};
     if (grid->side)
         at = place_in_grid(m, grid, i % row, i / row);
     for (int32_t k = 0; k < n; k++) {
@@ -433,7 +434,7 @@ static void without_st_places_at_rest(void **state) {
         view.subdivision = &own;
         assert_ok(skinslide_tessellation_create(&view, NULL, &first, 1, &made_of, &error), &error);
         assert_true(ss_tessellation_work_allocate(made_of, &work));
-        ss_tessellate(made_of, mesh.points, NULL, origin, &work);
+        ss_tessellate(made_of, mesh.points, origin, &work);
         for (int32_t v = 0; v < made_of->vertex_count; v++)
             for (int k = 0; k < 3; k++)
                 assert_near(made_of->fixed[v].coordinates[k], work.vertices[v].place[k], 1e-5);
@@ -609,7 +610,7 @@ static void refused_faces_are_flat(void **state) {
     assert_ok(skinslide_tessellation_create(&mesh, NULL, faces, 2, &flat, &error), &error);
     assert_int_equal(flat->flat_faces, flat->grids[0].side ? 0 : 2);
     assert_true(ss_tessellation_work_allocate(flat, &work));
-    ss_tessellate(flat, &points[0][0], NULL, origin, &work);
+    ss_tessellate(flat, &points[0][0], origin, &work);
     for (int32_t v = 0; v < flat->vertex_count && flat->flat_faces; v++) {
         assert_same_bytes(work.vertices[v].place, points[indices[v]], sizeof(float[3]));
         assert_true(work.vertices[v].normal[2] == 1);

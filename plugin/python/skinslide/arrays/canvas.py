@@ -111,17 +111,30 @@ class Marks(NamedTuple):
 NO_MARKS = Marks()
 
 
-class Canvas:
-    """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light)."""
+class Paint(NamedTuple):
+    """What a mesh is painted with: a chequer, false colours, or a texture in the place of the chequer."""
 
-    def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None):
+    scale: Scale | None = None
+    texture: Mapping[int, np.ndarray] | None = None  # uint8 (height, width, 4) by the number of its tile
+
+
+MOST_LAYERS: int = lib.SKINSLIDE_MOST_LAYERS
+
+
+class Canvas:
+    """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light).
+
+    On as many `layers`, at most MOST_LAYERS, a mesh is drawn at once, each in a paint of its own.
+    """
+
+    def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None, layers: int = 1):
         out = ffi.new("skinslide_canvas **")
         options = new("canvas_options")
         options.pixels, options.device = enum_value("pixels", pixels, ""), device_number(device)
-        _set(options, "canvas options", width=width, height=height)
+        _set(options, "canvas options", width=width, height=height, layers=layers)
         call(lib.skinslide_canvas_create, options, out)
         self._handle = Handle(out[0], lib.skinslide_canvas_destroy)
-        self.width, self.height = width, height
+        self.width, self.height, self.layers = width, height, layers
         self._dtype: Any = np.uint8 if pixels == "bytes" else np.float32
 
     @property
@@ -153,11 +166,13 @@ class Canvas:
         marks: Marks = NO_MARKS,
         texture: Mapping[int, np.ndarray] | None = None,
         line: float = 1.0,
+        others: Sequence[Paint] = (),
     ) -> None:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale.
 
         A texture is uint8 (height, width, 4) by the number of its tile, in the place of the chequer. With ghosts, what
-        hides the patch is but a shadow. Lines are `line` times as wide as usual.
+        hides the patch is but a shadow. Lines are `line` times as wide as usual. On the layers after the first it is
+        drawn in the paint of others.
         """
         native, figure = Arguments(), new("figure")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
@@ -176,12 +191,17 @@ class Canvas:
             figure.ways = native.points(marks.ways, tessellation.vertex_count, "ways")
         tiles = _tiles(native, texture or {})
         figure.tiles, figure.tile_count = tiles, len(texture or {})
+        paints = new_array("paint", len(others))
+        kept = [
+            _paint(native, paint, *own, tessellation.vertex_count) for paint, own in zip(paints, others, strict=True)
+        ]
+        figure.others, figure.other_count = paints, len(kept)
         call(lib.skinslide_canvas_draw, self._handle.pointer, _viewport(viewport), _camera(camera), figure)
 
-    def read(self) -> np.ndarray:
+    def read(self, layer: int = 0) -> np.ndarray:
         """(height, width, 4), from the top row on."""
         pixels = np.empty((self.height, self.width, 4), self._dtype)
-        call(lib.skinslide_canvas_read, self._handle.pointer, writable("char[]", pixels))
+        call(lib.skinslide_canvas_read_layer, self._handle.pointer, layer, writable("char[]", pixels))
         return pixels
 
 
@@ -225,6 +245,18 @@ def _camera(camera: Camera) -> Any:
     for name, values in camera._asdict().items():
         ffi.memmove(getattr(made, name), _doubles(values, (4, 4), name), 16 * 8)
     return made
+
+
+def _paint(
+    native: Arguments, out: Any, scale: Scale | None, texture: Mapping[int, np.ndarray] | None, vertex_count: int
+) -> Any:
+    """Fills a paint; gives what it points to."""
+    if scale:
+        out.values = native.pointer(scale.values, np.float32, (vertex_count,), "values")
+        out.lowest, out.highest = scale.lowest, scale.highest
+    tiles = _tiles(native, texture or {})
+    out.tiles, out.tile_count = tiles, len(texture or {})
+    return tiles
 
 
 def _tiles(native: Arguments, texture: Mapping[int, np.ndarray]) -> Any:

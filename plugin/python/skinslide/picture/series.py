@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -11,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.canvas import Camera, Canvas, Marks, Outline, Scale, Shape, Tessellation
+from skinslide.arrays.canvas import MOST_LAYERS, Camera, Canvas, Marks, Outline, Paint, Scale, Shape, Tessellation
 from skinslide.arrays.slider import Slider
 from skinslide.picture import lettering
 from skinslide.picture.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
@@ -134,11 +135,27 @@ class Series:
 
     def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
         """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
+        return next(self.draw_all(canvas, [view], at, columns, most_stretch))
+
+    def draw_all(
+        self, canvas: Canvas, views: Sequence[str], at: Moment, columns: Sequence[Column], most_stretch: float
+    ) -> Iterator[np.ndarray]:
+        """A picture of each view: as many at once as the canvas has layers, of those with the same marks."""
+        drawn: dict[str, np.ndarray] = {}
+        for view in views:
+            if view not in drawn:
+                alike = [other for other in views if other not in drawn and _marked(other) == _marked(view)]
+                drawn.update(self._draw_layers(canvas, alike[: canvas.layers], at, columns, most_stretch))
+            yield drawn[view]
+
+    def _draw_layers(
+        self, canvas: Canvas, views: Sequence[str], at: Moment, columns: Sequence[Column], most_stretch: float
+    ) -> Iterator[tuple[str, np.ndarray]]:
         canvas.clear(lettering.BACKGROUND)
         places = lettering.columns(canvas.width, canvas.height, len(columns))
+        pinned, sliding = _marked(views[0])
         for column, place in zip(columns, places, strict=True):
-            slides = view == "slide"
-            marks = Marks(self.wire, at.pins if view in ("density", "slide") else None, column.ways if slides else None)
+            first, *others = (self._paint(view, column, most_stretch) for view in views)
             canvas.draw(
                 self.skin.tessellation,
                 column.points,
@@ -146,15 +163,22 @@ class Series:
                 place,
                 to_world=at.to_world,
                 squares=self.squares,
-                scale=self._scale(view, column, most_stretch),
+                scale=first.scale,
                 double_sided=self.skin.double_sided,
                 outline=self.outline,
                 left_handed=self.skin.left_handed,
                 ghosts=True,
-                marks=marks,
-                texture=self.skin.texture if view == "texture" else None,
+                marks=Marks(self.wire, at.pins if pinned else None, column.ways if sliding else None),
+                texture=first.texture,
+                others=others,
             )
-        pixels = canvas.read()
+        for layer, view in enumerate(views):
+            yield view, self._lettered(canvas.read(layer), view, at, columns, most_stretch)
+
+    def _lettered(
+        self, pixels: np.ndarray, view: str, at: Moment, columns: Sequence[Column], most_stretch: float
+    ) -> np.ndarray:
+        places = lettering.columns(pixels.shape[1], pixels.shape[0], len(columns))
         for column, place in zip(columns, places, strict=True):
             lettering.write_text(pixels, [column.title, f"stretch {column.measure:.3f}"], place)
         lettering.write_text(pixels, [f"{self.label}   {at.title}".rstrip()], places[-1], at_foot=True)
@@ -162,6 +186,9 @@ class Series:
         if ticks:
             lettering.write_scale(pixels, *ticks, places[0])
         return pixels
+
+    def _paint(self, view: str, column: Column, most_stretch: float) -> Paint:
+        return Paint(self._scale(view, column, most_stretch), self.skin.texture if view == "texture" else None)
 
     def _scale(self, view: str, column: Column, most_stretch: float) -> Scale | None:
         if view == "stretch":
@@ -180,6 +207,16 @@ class Series:
             return "force density", (f"1/{_MOST_DENSITY:g}", "1", f"{_MOST_DENSITY:g}")
         most = {"stretch": most_stretch, "slide": self.most_slide}.get(view)
         return None if most is None else (view, ("0", f"{most / 2:.3g}", f"{most:.3g}"))
+
+
+def _marked(view: str) -> tuple[bool, bool]:
+    """Whether pins are drawn in a view, and ways."""
+    return view in ("density", "slide"), view == "slide"
+
+
+def layers_of(views: Sequence[str]) -> int:
+    """How many layers a canvas needs for all views that can be drawn at once to be."""
+    return min(MOST_LAYERS, max(Counter(_marked(view) for view in dict.fromkeys(views)).values(), default=1))
 
 
 def _st_of(mesh: PatchedMesh, asked: str | None) -> np.ndarray | None:
