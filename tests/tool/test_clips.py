@@ -173,3 +173,17 @@ def test_command(shot, tmp_path, capfd):
     assert json.loads(capfd.readouterr().out)["frames"] == FRAMES
     (manifest,) = tmp_path.glob("out.manifest.*")
     assert sorted(tmp_path.glob("out.*")) == [manifest, out] and manifest.name in out.read_text()
+
+
+def test_an_earlier_manifest_stays(shot, tmp_path):
+    """A copy of the earlier layer names it, and whoever has that open reads it when it first needs it."""
+    out, copy = tmp_path / "out.usda", tmp_path / "copy.usda"
+    older, newer = (parts(shot, make(tmp_path / name), diagnostics=name == "older") for name in ("older", "newer"))
+    stitch(older, out, clips=True)
+    copy.write_bytes(out.read_bytes())
+    read = values(above(copy, shot))
+    stitch(newer, out, clips=True)
+    assert values(above(copy, shot)) == read != values(above(out, shot))
+    manifests = sorted(tmp_path.glob("out.manifest.*"))
+    stitch(newer, out, clips=True)
+    assert sorted(tmp_path.glob("out.manifest.*")) == manifests and len(manifests) == 2

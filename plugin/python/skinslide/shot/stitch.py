@@ -76,8 +76,8 @@ def stitch(
         frames: Those that the chunks must have, no more and no less; None: those of which they say that they are
             parts, or else all of the shot from the first to the last that they have.
         clips: Writes value clips over the chunks, which stay where they are, instead of copying what they hold; and a
-            manifest beside the layer, of its name and .manifest.DIGEST.usda, which stays until somebody removes it.
-            USD reads the same samples.
+            manifest beside the layer, of its name and .manifest.DIGEST.usda. USD reads the same samples. A manifest of
+            other content stays, since layers elsewhere may name it, as copies of the earlier layer do.
 
     Returns:
         What the layer holds.
