@@ -96,13 +96,14 @@ def write_scale(pixels: np.ndarray, title: str, ticks: tuple[str, str, str], pla
     """Puts the scale of colours, with what its ends and its middle are, into the lower left corner of a part."""
     font = font_of(place.height)
     pad, wide, tall = round(font.size * _GAP), max(2, round(place.height * 0.34)), round(font.size * 0.7)
-    card = Image.new("RGBA", (wide + 4 * pad, round(font.size * 3.2) + tall), _SHADE)
+    top = pad // 4 + sum(font.getmetrics())  # of the colours: below the title's descenders
+    card = Image.new("RGBA", (wide + 4 * pad, top + tall + round(font.size * 2)), _SHADE)
     draw = ImageDraw.Draw(card)
     for x in range(wide):
         colour = tuple(srgb(np.array(false_colour(x / (wide - 1)))).tolist())
-        draw.line([(2 * pad + x, 2 * pad), (2 * pad + x, 2 * pad + tall)], (*colour, 255))
+        draw.line([(2 * pad + x, top), (2 * pad + x, top + tall)], (*colour, 255))
     for share, anchor, tick in zip((0.0, 0.5, 1.0), ("la", "ma", "ra"), ticks, strict=True):
-        draw.text((2 * pad + share * wide, 2.3 * pad + tall), tick, _TEXT, font, anchor=anchor)
+        draw.text((2 * pad + share * wide, top + 0.3 * pad + tall), tick, _TEXT, font, anchor=anchor)
     draw.text((2 * pad, pad // 4), title, _TEXT, font)
     _lay(pixels, np.array(card), place, place.height - card.height)
 
