@@ -17,7 +17,7 @@ typedef struct ss_figure_objects {
     ss_surface_program painted[2 << SKINSLIDE_MOST_LAYERS]; /* see ss_painted_program */
     ss_surface_program tile;
     GLuint stroke_program;
-    GLint stroke_to_clip, pen, line_colour; /* its uniforms */
+    GLint stroke_to_clip, pen; /* its uniforms */
     GLuint surface_array, stroke_array;
     GLuint vertex_buffer, triangle_buffer, segment_buffer;
 } ss_figure_objects;
@@ -47,16 +47,22 @@ typedef struct ss_layer_paint {
     GLuint *textures;             /* [own.tile_count] */
 } ss_layer_paint;
 
-/* Lines of one colour. */
+/* A line as programs have it. */
+typedef struct ss_segment {
+    float ends[2][3]; /* less the origin; where both are one, a dot */
+    float colour[3];  /* in the canvas's pixels */
+} ss_segment;
+
+/* Lines of one kind. */
 typedef struct ss_stroke {
     int32_t count;
-    float (*ends)[2][3]; /* [count] less the origin; where both are one, a dot */
-    float width;         /* in lines of the outline */
-    float nearer;        /* brought towards the camera, in its depth */
+    ss_segment *segments; /* [count] */
+    float width;          /* in lines of the outline */
+    float nearer;         /* brought towards the camera, in its depth */
     float light[3];
 } ss_stroke;
 
-enum { SS_WIRE, SS_OUTLINE, SS_WAYS, SS_ENDS_OF_WAYS, SS_PINS, SS_STROKES };
+enum { SS_WIRE, SS_OUTLINE, SS_EDGE_BORDERS, SS_EDGES, SS_WAYS, SS_ENDS_OF_WAYS, SS_PINS, SS_STROKES };
 
 /* One call of skinslide_canvas_draw. */
 typedef struct ss_drawing {
@@ -76,12 +82,17 @@ typedef struct ss_drawing {
     ss_shown_vertex *vertices; /* [vertex_count] of the triangles */
     uint32_t (*triangles)[3];  /* [triangle_count] that are seen: the patch's come first, then what hides none of it */
     int32_t vertex_count, triangle_count, inside_count, hiding_first;
+    float *edge_value;             /* [edge_count] of the mesh's skin: NaN where no edge is painted; NULL: none is */
     ss_stroke strokes[SS_STROKES]; /* drawn in order */
     float line;                    /* pixels that the outline is wide */
 } ss_drawing;
 
 /* Checks them; with what memory they need. */
 skinslide_status ss_take_paints(ss_drawing *drawn, skinslide_error *error);
+/* Whether there are colours from lowest to highest. */
+skinslide_status ss_check_scale(float lowest, float highest, skinslide_error *error);
+/* Checks them; fills edge_value. */
+skinslide_status ss_take_edges(ss_drawing *drawn, skinslide_error *error);
 /* Once vertices are posed. False where memory is short. */
 bool ss_list_seen(ss_drawing *drawn);
 /* In the work's memory, from its vertices. False where memory is short. */

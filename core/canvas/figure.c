@@ -151,6 +151,8 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
     drawn.outline = own.outline ? own.outline : drawn.mesh->outline;
     status = ss_take_paints(&drawn, error);
     if (!status)
+        status = ss_take_edges(&drawn, error);
+    if (!status)
         status = prepare(&drawn, camera, error);
     if (!status)
         status = ss_gl_enter(canvas->egl, &before, error);

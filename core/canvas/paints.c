@@ -7,13 +7,17 @@
 
 enum { MOST_TILES = 1000 };
 
+skinslide_status ss_check_scale(float lowest, float highest, skinslide_error *error) {
+    float range = highest - lowest;
+    if (range > 0 && isnormal(range) && isnormal(1 / range))
+        return SKINSLIDE_OK;
+    return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a scale from %g to %g", (double)lowest, (double)highest);
+}
+
 static skinslide_status check_values(const ss_drawing *drawn, const skinslide_paint *paint, skinslide_error *error) {
-    float range = paint->highest - paint->lowest;
     if (!paint->values && !(drawn->figure->squares > 0 && isfinite(drawn->figure->squares)))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a chequer of %g squares", (double)drawn->figure->squares);
-    if (paint->values && !(range > 0 && isnormal(range) && isnormal(1 / range)))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a scale from %g to %g", (double)paint->lowest, (double)paint->highest);
-    skinslide_status status = SKINSLIDE_OK;
+    skinslide_status status = paint->values ? ss_check_scale(paint->lowest, paint->highest, error) : SKINSLIDE_OK;
     for (int32_t v = 0; paint->values && v < drawn->mesh->mesh_vertex_count && !status; v++)
         status = ss_check_value(v, paint->values[v], error);
     return status;

@@ -102,8 +102,11 @@ static const char stroke_vertex[] = "#version 300 es\n"
                                     "uniform vec3 pen;\n"
                                     "layout(location = 0) in vec3 begin;\n"
                                     "layout(location = 1) in vec3 end;\n"
+                                    "layout(location = 2) in vec3 colour;\n"
+                                    "flat out highp vec3 line_colour;\n"
                                     "void main() {\n"
                                     "    vec2 half_width = pen.xy;\n"
+                                    "    line_colour = colour;\n"
                                     "    vec4 a = to_clip * vec4(begin, 1.0), b = to_clip * vec4(end, 1.0);\n"
                                     "    float a_ahead = a.z + a.w, b_ahead = b.z + b.w;\n"
                                     "    if (max(a_ahead, b_ahead) <= 0.0) {\n"
@@ -125,7 +128,7 @@ static const char stroke_vertex[] = "#version 300 es\n"
 
 static const char stroke_fragment[] = "#version 300 es\n"
                                       "precision highp float;\n"
-                                      "uniform vec3 line_colour;\n"
+                                      "flat in vec3 line_colour;\n"
                                       "layout(location = 0) out vec4 colour[4];\n"
                                       "void main() {\n"
                                       "    vec4 line = vec4(line_colour, 1.0);\n"
@@ -155,9 +158,9 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     gl->glGenVertexArrays(1, &objects->stroke_array);
     gl->glBindVertexArray(objects->stroke_array);
     gl->glBindBuffer(GL_ARRAY_BUFFER, objects->segment_buffer);
-    for (GLuint end = 0; end < 2; end++) {
-        point_to(gl, end, 3, sizeof(float[2][3]), end * sizeof(float[3]));
-        gl->glVertexAttribDivisor(end, 1);
+    for (GLuint part = 0; part < 3; part++) { /* its ends and its colour */
+        point_to(gl, part, 3, sizeof(ss_segment), part * sizeof(float[3]));
+        gl->glVertexAttribDivisor(part, 1);
     }
 }
 
@@ -210,6 +213,5 @@ skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_object
     make_arrays(gl, objects);
     objects->stroke_to_clip = gl->glGetUniformLocation(objects->stroke_program, "to_clip");
     objects->pen = gl->glGetUniformLocation(objects->stroke_program, "pen");
-    objects->line_colour = gl->glGetUniformLocation(objects->stroke_program, "line_colour");
     return SKINSLIDE_OK;
 }

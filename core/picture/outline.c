@@ -6,21 +6,25 @@
 
 typedef struct segments {
     uint32_t (*ends)[2];
+    int32_t *edge; /* of each */
     int32_t count;
+    int32_t of; /* the edge of those that are added */
 } segments;
 
+static void add_segment(segments *to, uint32_t begin, uint32_t end) {
+    to->ends[to->count][0] = begin, to->ends[to->count][1] = end;
+    to->edge[to->count++] = to->of;
+}
+
 static void add_side(segments *to, const ss_grid *grid, int side) {
-    for (int32_t step = 0; step < grid->side; step++, to->count++) {
-        to->ends[to->count][0] = ss_on_side(grid, side, step);
-        to->ends[to->count][1] = ss_on_side(grid, side, step + 1);
-    }
+    for (int32_t step = 0; step < grid->side; step++)
+        add_segment(to, ss_on_side(grid, side, step), ss_on_side(grid, side, step + 1));
 }
 
 /* The part of side k of its face, of n sides, that the grid has. */
 static void add_part(segments *to, const ss_grid *grid, int32_t k, int32_t n) {
     if (!grid->side) {
-        to->ends[to->count][0] = (uint32_t)(grid->first_vertex + k);
-        to->ends[to->count++][1] = (uint32_t)(grid->first_vertex + (k + 1) % n);
+        add_segment(to, (uint32_t)(grid->first_vertex + k), (uint32_t)(grid->first_vertex + (k + 1) % n));
     } else if (grid->corner < 0) {
         add_side(to, grid, k);
     } else if (grid->corner == k) {
@@ -30,16 +34,19 @@ static void add_part(segments *to, const ss_grid *grid, int32_t k, int32_t n) {
     }
 }
 
-/* The sides of faces inside whose corners are chosen [corner_count]. */
-static int32_t list_sides(const skinslide_outline *own, const uint8_t *chosen, uint32_t (*ends)[2]) {
+/* The sides of faces inside whose corners are chosen [corner_count], and the edge that each is of. */
+static int32_t list_sides(const skinslide_outline *own, const uint8_t *chosen, uint32_t (*ends)[2], int32_t *edge) {
     const skinslide_tessellation *mesh = own->tessellation;
-    segments to = {ends, 0};
+    segments to = {.ends = ends, .edge = edge};
     for (int32_t p = 0; p < mesh->grid_count; p++) {
         const ss_grid *grid = &mesh->grids[p];
         int32_t n = ss_face_size(mesh, grid->face);
-        for (int32_t k = 0; own->inside[grid->face] && k < n; k++)
-            if (chosen[mesh->face_start[grid->face] + k])
+        for (int32_t k = 0; own->inside[grid->face] && k < n; k++) {
+            int32_t corner = mesh->face_start[grid->face] + k;
+            to.of = mesh->skin.corner_edge[corner];
+            if (chosen[corner])
                 add_part(&to, grid, k, n);
+        }
     }
     return to.count;
 }
@@ -113,13 +120,15 @@ static bool fill(skinslide_outline *own, const int32_t *chosen, int32_t count) {
     int64_t most = own->inside ? most_segments(own) : 0;
     own->segments = ss_new(&own->memory, most, sizeof *own->segments);
     own->sides = ss_new(&own->memory, most, sizeof *own->sides);
+    own->side_edge = SS_NEW(&own->memory, int32_t, most);
+    int32_t *border_edge = SS_NEW(&scratch, int32_t, most);
     own->corners = ss_new(&own->memory, mesh->mesh_vertex_count, sizeof *own->corners);
     bool allocated = !scratch.failed && !own->memory.failed;
     if (allocated) {
         find_border(own, uses, border);
         choose_each_once(own, used, once);
-        own->segment_count = list_sides(own, border, own->segments);
-        own->side_count = list_sides(own, once, own->sides);
+        own->segment_count = list_sides(own, border, own->segments, border_edge);
+        own->side_count = list_sides(own, once, own->sides, own->side_edge);
         list_corners(own, listed);
     }
     ss_free(&scratch);

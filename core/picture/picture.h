@@ -41,6 +41,7 @@ struct skinslide_outline {
     uint32_t (*segments)[2]; /* vertices of the tessellation */
     int32_t side_count;
     uint32_t (*sides)[2]; /* the same of every side of the faces, each once */
+    int32_t *side_edge;   /* [side_count] of the tessellation's skin */
     int32_t corner_count;
     uint32_t (*corners)[2]; /* a vertex of the mesh, each once, and the one of the tessellation that is there */
 };

@@ -254,6 +254,29 @@ def test_density_is_shown_by_colour(tmp_path):
     assert found[0.1][2] > 30 and found[10.0][0] > 30 and found[None][1] > 30
 
 
+def test_edges_that_are_painted_are_lines_of_their_colour(tmp_path):
+    """Along them and no others, in both poses, by the scale of the faces; no other view has them."""
+    stage, mesh = sheet()
+    points = np.array(mesh.GetPointsAttr().Get())
+    middle = np.argmin(np.linalg.norm(points, axis=1))
+    right = np.argmin(np.linalg.norm(points - points[middle] - [1 / 24, 0, 0], axis=1))
+    views = ("density", "stretch")
+    draw(stage, tmp_path / "none", views=views, frames="1001")
+    patch = skinslide.SkinSlideAPI(mesh, PATCH)
+    patch.CreateEdgesAttr([middle, right])
+    for density in (16, 1 / 16):
+        patch.CreateEdgeForceDensitiesAttr([density])
+        draw(stage, tmp_path / str(density), views=views, frames="1001")
+        plain, painted = (picture(tmp_path / folder, "density", "1001") for folder in ("none", str(density)))
+        for before, after in zip(halves(plain), halves(painted), strict=True):
+            red, _, blue = np.moveaxis(after, 2, 0).astype(int)
+            line = (red - blue > 100) if density > 1 else (blue - red > 40)
+            line &= np.abs(after.astype(int) - before).sum(axis=2) > 60
+            rows, columns = np.nonzero(line)
+            assert len(rows) > 5 and np.ptp(columns) > np.ptp(rows)
+        assert np.array_equal(*(picture(tmp_path / folder, "stretch", "1001") for folder in ("none", str(density))))
+
+
 def test_slides_are_shown_by_colour_and_by_ways(tmp_path):
     """Before there are none; after there are, and lines on them, which at rest are none either."""
     stage, _mesh = sheet()

@@ -108,10 +108,13 @@ typedef struct skinslide_figure {
     float line;                    /* how many times as wide as usual lines and dots are; 0: 1 */
     const skinslide_paint *others; /* [other_count] what it is painted with on further layers of the canvas */
     int32_t other_count;           /* fewer than the canvas has layers */
+    int32_t edge_count;
+    const int32_t *edges;     /* [edge_count][2] mesh vertices: lines are drawn along those that are edges of the patch */
+    const float *edge_values; /* [edge_count] their false colours, from lowest to highest */
 } skinslide_figure;
 
 #define SKINSLIDE_FIGURE_DEFAULT                                                                                               \
-    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+    { sizeof(skinslide_figure), 0, 0, 0, 0, 0, 0, 1.0f, 1.0f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* A colour of the scale of false colours, linear light: share 0 is lowest, 1 highest (clamped). */
 SKINSLIDE_API void skinslide_false_colour(float share, float colour[3]);
@@ -200,8 +203,8 @@ typedef struct skinslide_viewport {
 /* Draws a figure, four samples a pixel, behind what is nearer of what was drawn before. It is shaded by a light beside the
  * camera, in which a surface that faces the camera has its own colour. On the first layer it has its own paint, on the layers
  * that follow its others', with the same lines and dots: layers cost much less than as many drawings.
- * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer, of the scale or of a tile; tiles on a mesh without st),
- * BAD_POINTS (points, values, ways or matrices not finite), DEVICE_FAILED, OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer, of the scale or of a tile; tiles on a mesh without st; edges
+ * without values), BAD_POINTS (points, values, ways or matrices not finite), DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                                      const skinslide_camera *camera, const skinslide_figure *figure,
                                                      skinslide_error *error);

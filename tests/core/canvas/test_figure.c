@@ -545,6 +545,54 @@ static void sides_of_the_patch_are_drawn(void **state) {
     end_sheet(&s);
 }
 
+/* Faces of 24 by 32 pixels, of which the first row is the patch. An edge has the colour of its value, on a dark border; the same
+ * the other way round; none of those outside the patch, of no face, or of vertices that are none is drawn. */
+static void edges_have_the_colour_of_their_value(void **state) {
+    (void)state;
+    static pixel pixels[HEIGHT][WIDTH], without[HEIGHT][WIDTH];
+    const int32_t edges[][2] = {{1, 6}, {8, 3}, {6, 11}, {1, 7}, {0, 99}, {-1, 0}}; /* at x = 24, 72; above; across; none */
+    const float values[] = {0.9f, 0.1f, 0.9f, 0.9f, 0.9f, 0.9f};
+    sheet s = sheet_of(4, 2, everywhere, 4, true);
+    paint(&s, 0.5f);
+    for (int some = 0; some < 2; some++) {
+        skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+        s.figure.edges = edges[0], s.figure.edge_values = values, s.figure.edge_count = some ? 6 : 0, s.figure.line = 2;
+        draw(canvas, &s.figure);
+        read_all(canvas, some ? pixels : without);
+    }
+    for (int32_t y = 0; y < HEIGHT; y++)
+        for (int32_t x = 0; x < WIDTH; x++) {
+            bool near = y >= HEIGHT / 2 - 6 && ((x >= 19 && x <= 28) || (x >= 67 && x <= 76));
+            assert_true(near || memcmp(pixels[y][x], without[y][x], sizeof(pixel)) == 0);
+        }
+    for (int32_t y = HEIGHT - 2; y > HEIGHT / 2 + 4; y--) {
+        assert_true(is_share(pixels[y][24], 0.9f) && is_share(pixels[y][72], 0.1f));
+        assert_true(pixels[y][20][1] < 0.1f && pixels[y][68][1] < 0.1f);
+    }
+    end_sheet(&s);
+}
+
+/* What is nearer hides an edge that is painted. */
+static void hidden_edges_are_not_drawn(void **state) {
+    (void)state;
+    static pixel pixels[2][HEIGHT][WIDTH];
+    const int32_t edge[2] = {1, 4};
+    const float value = 0.9f;
+    sheet s = sheet_of(2, 1, everywhere, 2, true), front = sheet_of(2, 1, everywhere, 2, true);
+    paint(&s, 0.5f), paint(&front, 0.5f);
+    for (int32_t v = 0; v < 6; v++)
+        front.mesh.points[3 * v + 2] = 50;
+    for (int some = 0; some < 2; some++) {
+        skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+        s.figure.edges = edge, s.figure.edge_values = &value, s.figure.edge_count = some;
+        draw(canvas, &s.figure);
+        draw(canvas, &front.figure);
+        read_all(canvas, pixels[some]);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    end_sheet(&s), end_sheet(&front);
+}
+
 /* A dot at a pin of the patch, none at one outside; a line to a vertex from where it came. */
 static void pins_and_ways_are_drawn(void **state) {
     (void)state;
@@ -676,6 +724,16 @@ static void tiles_that_cannot_be(void **state) {
     s.figure.tile_count = 0, s.figure.ways = ways;
     assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_POINTS,
                  "ways: vertex 1 is not finite: (0, nan, 0)");
+    s.figure.ways = NULL, s.figure.edge_count = 1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "1 edges to be drawn, without their values");
+    const int32_t edge[2] = {0, 1};
+    s.figure.edges = edge, s.figure.edge_values = &ways[4], s.figure.highest = 1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_POINTS,
+                 "the value of edge 0-1 is nan");
+    s.figure.lowest = 1;
+    assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "a scale from 1 to 1");
     end_sheet(&s), end_sheet(&space);
 }
 
@@ -967,6 +1025,8 @@ int main(void) {
         cmocka_unit_test(the_outline_is_on_top),
         cmocka_unit_test(an_outline_of_its_own),
         cmocka_unit_test(sides_of_the_patch_are_drawn),
+        cmocka_unit_test(edges_have_the_colour_of_their_value),
+        cmocka_unit_test(hidden_edges_are_not_drawn),
         cmocka_unit_test(pins_and_ways_are_drawn),
         cmocka_unit_test(what_hides_the_patch_is_a_shadow),
         cmocka_unit_test(layers_are_pictures),

@@ -106,6 +106,8 @@ class Marks(NamedTuple):
     wire: bool = False  # the sides of its faces
     pins: np.ndarray | None = None  # (V,) bool: a dot at each
     ways: np.ndarray | None = None  # (V, 3) by which vertices came to where they are
+    edges: np.ndarray | None = None  # (k, 2): lines of the colours of the scale, along those of the patch
+    edge_values: np.ndarray | None = None  # (k,)
 
 
 NO_MARKS = Marks()
@@ -189,6 +191,10 @@ class Canvas:
             figure.pins = native.pointer(marks.pins, np.bool_, (tessellation.vertex_count,), "pins")
         if marks.ways is not None:
             figure.ways = native.points(marks.ways, tessellation.vertex_count, "ways")
+        if marks.edges is not None:
+            figure.edges = native.pointer(marks.edges, np.int32, (-1, 2), "edges")
+            figure.edge_values = native.pointer(marks.edge_values, np.float32, (len(marks.edges),), "edge_values")
+            figure.edge_count = len(marks.edges)
         tiles = _tiles(native, texture or {})
         figure.tiles, figure.tile_count = tiles, len(texture or {})
         paints = new_array("paint", len(others))

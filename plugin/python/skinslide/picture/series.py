@@ -49,6 +49,8 @@ class Moment(NamedTuple):
     camera: Camera
     to_world: np.ndarray  # (4, 4)
     pins: np.ndarray | None = None  # (V,) bool, points of the patch that its paint lets not slide
+    edges: np.ndarray | None = None  # (k, 2) of those that are painted
+    edge_density: np.ndarray | None = None  # (k,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,15 +125,22 @@ class Series:
         title = "" if frame is None else f"frame {frame_text(frame)}"
         to_the_world = to_world(self.skin.mesh, time)
         try:
-            return Moment(title, self.eye.camera(time), to_the_world, self._pins(time))
+            controls = self.skin.mesh.patch_controls_at(self.setup, time)
+            pins = self._pins(controls.weight)
+            return Moment(title, self.eye.camera(time), to_the_world, pins, controls.edges, controls.edge_density)
         except (Fault, SliderError) as fault:
             raise FrameProblem(self.skin.mesh.problem(str(fault), time, self.label)) from fault
 
-    def _pins(self, time: Usd.TimeCode) -> np.ndarray | None:
-        controls = self.skin.mesh.patch_controls_at(self.setup, time)
-        if controls.weight is None:
-            return None
-        return (controls.weight <= 0) & self.skin.mesh.topology.vertices_of(self.faces)
+    def _pins(self, weight: np.ndarray | None) -> np.ndarray | None:
+        return None if weight is None else (weight <= 0) & self.skin.mesh.topology.vertices_of(self.faces)
+
+    def _marks(self, view: str, at: Moment, column: Column) -> Marks:
+        """What is drawn in a view, and in those with the same marks."""
+        pinned, painted, sliding = _marked(view)
+        marks = Marks(self.wire, at.pins if pinned else None, column.ways if sliding else None)
+        if not painted or at.edges is None or at.edge_density is None:
+            return marks
+        return marks._replace(edges=at.edges, edge_values=np.log(at.edge_density))
 
     def draw(self, canvas: Canvas, view: str, at: Moment, columns: Sequence[Column], most_stretch: float) -> np.ndarray:
         """A picture of some poses side by side, (height, width, 4) as the canvas has it."""
@@ -153,7 +162,6 @@ class Series:
     ) -> Iterator[tuple[str, np.ndarray]]:
         canvas.clear(lettering.BACKGROUND)
         places = lettering.columns(canvas.width, canvas.height, len(columns))
-        pinned, sliding = _marked(views[0])
         for column, place in zip(columns, places, strict=True):
             first, *others = (self._paint(view, column, most_stretch) for view in views)
             canvas.draw(
@@ -168,7 +176,7 @@ class Series:
                 outline=self.outline,
                 left_handed=self.skin.left_handed,
                 ghosts=True,
-                marks=Marks(self.wire, at.pins if pinned else None, column.ways if sliding else None),
+                marks=self._marks(views[0], at, column),
                 texture=first.texture,
                 others=others,
             )
@@ -209,9 +217,9 @@ class Series:
         return None if most is None else (view, ("0", f"{most / 2:.3g}", f"{most:.3g}"))
 
 
-def _marked(view: str) -> tuple[bool, bool]:
-    """Whether pins are drawn in a view, and ways."""
-    return view in ("density", "slide"), view == "slide"
+def _marked(view: str) -> tuple[bool, bool, bool]:
+    """Whether pins are drawn in a view, edges that are painted, and ways."""
+    return view in ("density", "slide"), view == "density", view == "slide"
 
 
 def layers_of(views: Sequence[str]) -> int:
