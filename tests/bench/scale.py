@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from pxr import Usd, UsdGeom, Vt
+from pxr import Sdf, Usd, UsdGeom, Vt
 
 import skinslide
 
@@ -26,7 +26,7 @@ _BETWEEN = 0.01  # seconds between looks at the memory
 
 
 class Shot(NamedTuple):
-    """A square sheet with square patches side by side."""
+    """A square sheet with square patches, of a square number, side by side."""
 
     points: int
     patches: int
@@ -35,7 +35,7 @@ class Shot(NamedTuple):
 
 SHOTS = [
     *(Shot(points, 1, 8) for points in (1_000, 10_000, 100_000)),
-    *(Shot(100_000, patches, 8) for patches in (10, 100, 400)),
+    *(Shot(100_000, patches, 8) for patches in (9, 100, 225, 400, 900)),
     *(Shot(10_000, 1, frames) for frames in (32, 128, 512)),
 ]
 LARGE = [Shot(250_000, 100, frames) for frames in (10, 40, 160)]
@@ -59,8 +59,11 @@ def make(shot: Shot, rule: str, path: Path) -> None:
     across = round(shot.patches**0.5)
     row, column = np.divmod(np.arange(len(faces)), side - 1)
     of = row * across // (side - 1) * across + column * across // (side - 1)
-    for number in range(across * across):
-        patch = skinslide.SkinSlideAPI.Apply(mesh, f"p{number}")
+    names = [f"p{number}" for number in range(across * across)]
+    schemas = Sdf.TokenListOp.Create(prependedItems=[f"SkinSlideAPI:{name}" for name in names])
+    mesh.GetPrim().SetMetadata("apiSchemas", schemas)  # at once: by one, USD composes all there are each time
+    for number, name in enumerate(names):
+        patch = skinslide.SkinSlideAPI(mesh, name)
         patch.SetFaces(of == number)
         patch.CreateForceDensityRuleAttr(rule)
     for frame in range(1, shot.frames + 1):
