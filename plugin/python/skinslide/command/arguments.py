@@ -8,7 +8,7 @@ import re
 from dataclasses import Field, fields
 from typing import Any, NoReturn
 
-from skinslide.command.outcome import EXIT_CODES, tell
+from skinslide.command.outcome import DONE, EXIT_CODES, say, tell
 from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, number_or_name, positive_text
 from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
@@ -55,6 +55,9 @@ class _Parser(argparse.ArgumentParser):
     def __init__(self, **words: Any):
         super().__init__(**words, epilog=EXIT_CODES, argument_default=argparse.SUPPRESS)
 
+    def print_help(self, _file: Any = None) -> NoReturn:
+        raise SystemExit(say(self.format_help().rstrip("\n"), DONE))
+
     def error(self, message: str) -> NoReturn:
         for line in self.format_usage().splitlines():
             tell(line)
@@ -67,8 +70,7 @@ class _Version(argparse.Action):
     def __call__(self, *_arguments: object) -> NoReturn:
         import skinslide
 
-        print(f"skinslide {skinslide.__version__}")
-        raise SystemExit(0)
+        raise SystemExit(say(f"skinslide {skinslide.__version__}", DONE))
 
 
 def _parser() -> argparse.ArgumentParser:
