@@ -77,7 +77,7 @@ def page(
         time_codes_per_second: Of the stage: how fast it plays.
 
     Raises:
-        ValueError: A strip has no frames, or pictures that are not one PNG or JPEG a frame.
+        ValueError: A strip has no frames, or pictures that are not one PNG, JPEG or WebP a frame.
     """
     for strip in strips:
         _check(strip)

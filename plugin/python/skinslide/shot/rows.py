@@ -34,7 +34,7 @@ class Rows(Sequence[Row]):
     def column(self, name: str) -> np.ndarray:
         """A field of all of them (n,), int64 or float64."""
         column = np.frombuffer(self._bytes, self._dtype)[name]
-        return column.astype(np.int64 if column.dtype.kind == _WHOLE else np.float64)
+        return column.astype(np.int64 if np.issubdtype(column.dtype, np.integer) else np.float64)
 
     def __len__(self) -> int:
         return len(self._bytes) // self._struct.size
