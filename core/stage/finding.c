@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char schema_prefix[] = SS_SCHEMA ":";
-static const char *const spaces[] = {SS_NAMESPACE, "primvars:" SS_NAMESPACE};
+static const char *const spaces[] = {SS_NAMESPACE, SS_PRIMVARS SS_NAMESPACE};
 enum { SPACES = 2 };
 
 /* A patch, by its place in the order in which they are applied. */
@@ -268,7 +268,7 @@ static bool says_case(const skinslide_stage_prim *prim) {
 
 /* Whether a name that is like those of paint has a patch in it, and an input: what a bake tells of the skin has one part. */
 static bool has_parts(const char *name) {
-    const char *patch = name + sizeof "primvars:" SS_NAMESPACE - 1;
+    const char *patch = name + sizeof SS_PRIMVARS SS_NAMESPACE - 1;
     size_t length = strcspn(patch, ":_");
     return patch[length] && !ss_is_reserved(patch, length);
 }

@@ -21,7 +21,7 @@
 #define MESH_SETTING(declared)               .shown = {declared, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
 #define REST_PRIMVAR(name)                                                                                                     \
     .kind = SS_KIND_REST,                                                                                                      \
-    .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, "primvars:", SKINSLIDE_STAGE_STILL, 1, 0}
+    .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, SS_PRIMVARS, SKINSLIDE_STAGE_STILL, 1, 0}
 
 static const char positive[] = "finite and above 0", not_negative[] = "0 or more";
 
@@ -67,7 +67,7 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
 /* What is painted the schema cannot declare: a declared attribute has one type and a name that begins with the schema's
  * namespace, and paint is of several types, and under primvars:. */
 #define PRIMVAR(name, type, group, when, inherited)                                                                            \
-    .shown = {name, type, NULL, NULL, group, "primvars:" SS_NAMESPACE, when, 1, inherited}
+    .shown = {name, type, NULL, NULL, group, SS_PRIMVARS SS_NAMESPACE, when, 1, inherited}
 #define SETTING(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0}
 #define STEADY(declared)  .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
 #define CONTROL(declared) .shown = {declared, SKINSLIDE_STAGE_CONTROLS, SS_NAMESPACE, SKINSLIDE_STAGE_ANIMATED, 0, 0}
@@ -130,7 +130,7 @@ static const ss_input control_inputs[SS_CONTROL_ROWS] = {
     .shown = {name, type, NULL, NULL, SKINSLIDE_STAGE_DERIVED, prefix, SKINSLIDE_STAGE_ANIMATED, primvar, 0}
 
 static const ss_input derived_inputs[SS_DERIVED_ROWS] = {
-    [SS_ROW_NORMALS_PRIMVAR] = {OF_DERIVED("normals", "normal3f[]", "primvars:", 1), .kind = SS_KIND_CARRIED, .pose_count = 1},
+    [SS_ROW_NORMALS_PRIMVAR] = {OF_DERIVED("normals", "normal3f[]", SS_PRIMVARS, 1), .kind = SS_KIND_CARRIED, .pose_count = 1},
     [SS_ROW_NORMALS] = {OF_DERIVED("normals", "normal3f[]", "", 0), .kind = SS_KIND_CARRIED, .pose_count = 1},
     [SS_ROW_VELOCITIES] = {OF_DERIVED("velocities", "vector3f[]", "", 0), .kind = SS_KIND_RATE, .pose_count = 2},
     [SS_ROW_ACCELERATIONS] = {OF_DERIVED("accelerations", "vector3f[]", "", 0), .kind = SS_KIND_RATE, .pose_count = 3},

@@ -162,15 +162,13 @@ static skinslide_status take_live(const skinslide_stage_live *given, skinslide_s
     return ss_take(given, "skinslide_stage_live", live, sizeof *live, error);
 }
 
-static const char primvars[] = "primvars:";
-
 /* st is a primvar's full name. */
 static void set_coordinates(skinslide_stage_patch *patch, const char *st) {
     patch->st = st;
-    patch->coordinates = (skinslide_stage_input){.name = st + strlen(primvars),
+    patch->coordinates = (skinslide_stage_input){.name = st + strlen(SS_PRIMVARS),
                                                  .type_name = "texCoord2f[]",
                                                  .group = SKINSLIDE_STAGE_COORDINATES,
-                                                 .prefix = primvars,
+                                                 .prefix = SS_PRIMVARS,
                                                  .when = SKINSLIDE_STAGE_ANIMATED,
                                                  .is_primvar = 1};
 }
@@ -183,7 +181,7 @@ static skinslide_status fill_patch(skinslide_stage_patch *patch, const char *nam
     patch->name = ss_copy_text(&patch->memory, name);
     if (patch->memory.failed)
         return ss_out_of_memory(error);
-    set_coordinates(patch, "primvars:st");
+    set_coordinates(patch, SS_PRIMVARS "st");
     return ss_take_fallbacks(patch_inputs(), SS_PATCH_ROWS, &patch->memory, patch->taken, error);
 }
 
@@ -288,12 +286,12 @@ static skinslide_status take_setting(skinslide_stage_patch *patch, int32_t row, 
 /* "primvars:st" of "st", and of itself. */
 static skinslide_status name_coordinates(skinslide_stage_patch *patch, skinslide_error *error) {
     const char *word = patch->taken[SS_ROW_ST].word;
-    bool named = strncmp(word, primvars, strlen(primvars)) == 0;
-    char *name = SS_NEW(&patch->memory, char, (int64_t)(strlen(word) + sizeof primvars));
+    bool named = strncmp(word, SS_PRIMVARS, strlen(SS_PRIMVARS)) == 0;
+    char *name = SS_NEW(&patch->memory, char, (int64_t)(strlen(word) + sizeof SS_PRIMVARS));
     if (!name)
         return ss_out_of_memory(error);
-    strcpy(name, primvars);
-    strcpy(name + (named ? 0 : strlen(primvars)), word);
+    strcpy(name, SS_PRIMVARS);
+    strcpy(name + (named ? 0 : strlen(SS_PRIMVARS)), word);
     set_coordinates(patch, name);
     return SKINSLIDE_OK;
 }
