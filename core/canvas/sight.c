@@ -9,7 +9,7 @@
 enum { CELLS = 128 }; /* across the picture, and up it */
 
 /* In the order in which figures with ghosts draw them. */
-typedef enum part { INSIDE, OUTSIDE, HIDING, PARTS, UNSEEN = PARTS } part;
+typedef enum part { INSIDE, OUTSIDE, HIDING, UNSEEN } part;
 
 /* A vertex on the screen: x, y and depth from -1 to 1 in the picture. */
 typedef struct place {
@@ -149,10 +149,13 @@ static void find_parts(const sight *own, bool inside) {
 static bool number_vertices(const sight *own) {
     ss_drawing *drawn = own->drawn;
     int32_t triangles = 0;
-    for (int32_t t = 0; t < drawn->mesh->triangle_count; t++)
-        for (int k = 0; k < 3 && own->parts[t] != UNSEEN; triangles += k == 2, k++)
+    for (int32_t t = 0; t < drawn->mesh->triangle_count; t++) {
+        bool seen = own->parts[t] != UNSEEN;
+        triangles += seen;
+        for (int k = 0; seen && k < 3; k++)
             if (own->number[drawn->mesh->triangles[t][k]] < 0)
                 own->number[drawn->mesh->triangles[t][k]] = drawn->vertex_count++;
+    }
     drawn->vertices = SS_NEW(&drawn->work.memory, ss_shown_vertex, drawn->vertex_count);
     drawn->triangles = ss_new(&drawn->work.memory, triangles, sizeof *drawn->triangles);
     return !drawn->work.memory.failed;
