@@ -30,8 +30,8 @@ static skinslide_status check_options(const skinslide_canvas_options *options, s
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT,
                        "a picture of %d by %d pixels; each side is 1 to %d, and all are at most %d", width, height, MOST_SIDE,
                        MOST_PIXELS);
-    if (options->layers < 1 || options->layers > SKINSLIDE_MOST_LAYERS)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a canvas of %d layers; there may be 1 to %d", options->layers,
+    if (options->layers < 0 || options->layers > SKINSLIDE_MOST_LAYERS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a canvas of %d layers; there may be 0 to %d", options->layers,
                        SKINSLIDE_MOST_LAYERS);
     if ((unsigned)options->pixels > SKINSLIDE_PIXELS_FLOATS)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such pixels: %d", (int)options->pixels);
@@ -112,7 +112,8 @@ skinslide_status ss_canvas_create(const skinslide_canvas_options *options, ss_eg
     skinslide_canvas *canvas = calloc(1, sizeof *canvas);
     if (!canvas)
         return ss_out_of_memory(error);
-    canvas->width = own.width, canvas->height = own.height, canvas->pixels = own.pixels, canvas->layers = own.layers;
+    canvas->width = own.width, canvas->height = own.height, canvas->pixels = own.pixels;
+    canvas->layers = own.layers > 0 ? own.layers : 1;
     const ss_device_request request = {load, own.device, false};
     canvas->rows = ss_new(&canvas->memory, canvas->height, row_size(canvas));
     status = canvas->rows ? ss_egl_open(&request, &canvas->egl, error) : ss_out_of_memory(error);

@@ -169,11 +169,11 @@ typedef struct skinslide_canvas_options {
     int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit; 67,108,864 in all */
     skinslide_pixels pixels;
     int32_t device; /* as in skinslide_workspace_options */
-    int32_t layers; /* pictures that figures are drawn on at once, each in its own paint; 1 to SKINSLIDE_MOST_LAYERS */
+    int32_t layers; /* pictures that figures are drawn on at once, each in its own paint; 0: 1; SKINSLIDE_MOST_LAYERS at most */
 } skinslide_canvas_options;
 
 #define SKINSLIDE_CANVAS_OPTIONS_DEFAULT                                                                                       \
-    { sizeof(skinslide_canvas_options), 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 1 }
+    { sizeof(skinslide_canvas_options), 1920, 1080, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 0 }
 
 typedef struct skinslide_canvas skinslide_canvas;
 
@@ -211,7 +211,7 @@ SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, c
 
 /* Reads what was drawn on the first layer.
  *   pixels  out [height][width][4] red, green, blue, and 1, from the top row on; uint8_t or float, as the canvas has them
- * Fails with BAD_ARGUMENT, DEVICE_FAILED, OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT, DEVICE_FAILED. */
 SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error);
 
 /* The same of layer, from 0 on. */

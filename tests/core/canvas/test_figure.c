@@ -801,8 +801,8 @@ static void layers_that_cannot_be(void **state) {
     skinslide_paint paint = SKINSLIDE_PAINT_DEFAULT;
     skinslide_error error;
     sheet s = sheet_of(1, 1, everywhere, 1, true);
-    for (int32_t i = 0; i < 3; i++) {
-        options.layers = (const int32_t[]){0, 5, -1}[i];
+    for (int32_t i = 0; i < 2; i++) {
+        options.layers = (const int32_t[]){5, -1}[i];
         assert_fails(skinslide_canvas_create(&options, &made, &error), &error, SKINSLIDE_BAD_ARGUMENT, "a canvas of ...");
     }
     s.figure.others = &paint, s.figure.other_count = 1;
