@@ -57,7 +57,8 @@ static void blend(const ss_relaxer *relaxer, const ss_place *place, double out[3
     }
 }
 
-/* Two tangents turned as ss_turn turns one, to a normal of any length. */
+/* Two tangents at a unit normal, turned by the least rotation that takes this to another, of any length; false where they are nearly
+ * opposite. */
 static bool turn_both(const double from[3], const double to[3], const double tangent[2][3], ss_pair out[3]) {
     double length = ss_length(to), inverse = length > 0 ? 1 / length : 0, whole = 1 + inverse * ss_dot(from, to);
     ss_pair share = {ss_dot(to, tangent[0]), ss_dot(to, tangent[1])};

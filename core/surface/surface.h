@@ -198,15 +198,6 @@ static inline void ss_ground_normal(const ss_ground *ground, const ss_place *pla
 
 #define SS_LEAST_TURN 1e-3 /* 1 + cosine of a turn; none is least about half a circle */
 
-/* A vector tangent at a unit normal, turned by the least rotation that takes this to another; false where they are nearly
- * opposite. */
-static inline bool ss_turn(const double from[3], const double to[3], const double vector[3], double out[3]) {
-    double whole = 1 + ss_dot(from, to), share = ss_dot(to, vector) / whole;
-    for (int k = 0; k < 3; k++)
-        out[k] = vector[k] - share * (from[k] + to[k]);
-    return whole > SS_LEAST_TURN;
-}
-
 /* ---- turned.c ---- */
 
 /* Walks from a vertex for the length of a way along the tangents there, in the direction that this has at each place that the walk
