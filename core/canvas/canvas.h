@@ -1,5 +1,6 @@
 /* A canvas from inside: canvas.c makes, clears and reads it; figure.c draws figures on it, surface.c their surfaces, of which
- * sight.c finds what is seen, and strokes.c what is drawn on these, with what shading.c makes. */
+ * sight.c finds what is seen, in what paints.c takes, and strokes.c what is drawn on these, edges that edges.c finds among it, all
+ * with what shading.c makes. */
 #ifndef SKINSLIDE_CANVAS_H
 #define SKINSLIDE_CANVAS_H
 
