@@ -24,19 +24,6 @@ static void set_tangents(const double normal[3], double tangent[2][3]) {
     ss_cross(normal, tangent[0], tangent[1]);
 }
 
-/* Where the sides p and q of a wedge are seen, in shares of which ways are: first and second are what is dual to them. */
-static void set_wedge(const double p[3], const double q[3], const double first[3], const double second[3],
-                      const double tangent[2][3], ss_wedge *out) {
-    double along[2][3] = {{0}};
-    for (int j = 0; j < 2; j++) {
-        out->first[j] = ss_dot(first, tangent[j]), out->second[j] = ss_dot(second, tangent[j]);
-        ss_add(out->first[j], p, along[j]);
-        ss_add(out->second[j], q, along[j]);
-    }
-    out->square[0] = ss_dot(along[0], along[0]), out->square[1] = ss_dot(along[0], along[1]);
-    out->square[2] = ss_dot(along[1], along[1]);
-}
-
 /* False where the wedge is not seen, or has no area. */
 static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_wedge *out) {
     const ss_posed *pose = &ground->pose;
@@ -51,7 +38,10 @@ static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_
     ss_cross(up, p, second);
     for (int k = 0; k < 3; k++)
         first[k] *= share, second[k] *= share;
-    set_wedge(p, q, first, second, (const double(*)[3])ground->tangent[v[corner]], out);
+    for (int j = 0; j < 2; j++) {
+        out->first[j] = ss_dot(first, ground->tangent[v[corner]][j]);
+        out->second[j] = ss_dot(second, ground->tangent[v[corner]][j]);
+    }
     out->corner = 4 * (uint32_t)triangle + (uint32_t)corner;
     return ss_has_area(&pose->facet[triangle]) && share > 0 && isfinite(out->first[0] + out->first[1]) &&
            isfinite(out->second[0] + out->second[1]);

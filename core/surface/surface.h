@@ -165,10 +165,9 @@ double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *
 /* ---- ground.c: a pose with normals, blended from vertex to vertex ---- */
 
 /* A corner of a triangle as it is seen along the normal of the vertex there. A way along the tangents there is first.way of the side
- * to the next corner and second.way of that to the last: inside, where neither is less than 0. What has those shares in the triangle
- * is sqrt(square[0] x^2 + 2 square[1] x y + square[2] y^2) long, x and y the way. */
+ * to the next corner and second.way of that to the last: inside, where neither is less than 0. */
 typedef struct ss_wedge {
-    double first[2], second[2], square[3];
+    double first[2], second[2];
     uint32_t corner; /* 4 times the triangle, and which of its corners */
 } ss_wedge;
 

@@ -51,11 +51,14 @@ static const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, con
     return chosen;
 }
 
-/* Scales its shares of the sides of a wedge to a way of some length in the triangle; false where it has none there. */
-static bool scale_shares(const ss_wedge *wedge, const double way[2], double length, double rates[2]) {
-    const double *square = wedge->square;
-    double along = way[0] * (square[0] * way[0] + 2 * square[1] * way[1]) + square[2] * way[1] * way[1];
-    double scale = length / sqrt(along);
+/* Scales the shares that a way, whose length has that square, comes to as it is seen, to those of one as long in the triangle; false
+ * where there is none. For a way as it is seen, the triangle, whose normal is n, rises by -(n . way) / (n . up). */
+static bool scale_shares(const ss_ground *ground, int32_t vertex, const ss_wedge *wedge, const double way[2], double square,
+                         double rates[2]) {
+    const double *n = ground->pose.facet[wedge->corner >> 2].normal;
+    double rise = way[0] * ss_dot(n, ground->tangent[vertex][0]) + way[1] * ss_dot(n, ground->tangent[vertex][1]);
+    double slant = ss_dot(n, ground->normal[vertex]), seen = slant * slant * square;
+    double scale = sqrt(seen / (seen + rise * rise));
     rates[0] = ss_most(scale * rates[0], 0), rates[1] = ss_most(scale * rates[1], 0);
     return isfinite(scale);
 }
@@ -127,11 +130,11 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
 /* False where the walk ends there, of which *part is walked. */
 static bool set_out(const ss_ground *ground, int32_t vertex, const double way[2], const ss_meter *meter, walker *w,
                     ss_place *place, double *part) {
-    double length = sqrt(way[0] * way[0] + way[1] * way[1]), rates[2];
-    const ss_wedge *wedge = length > 0 ? choose_wedge(ground, vertex, way, rates) : NULL;
-    if (!wedge || !scale_shares(wedge, way, length, rates)) {
+    double square = way[0] * way[0] + way[1] * way[1], rates[2];
+    const ss_wedge *wedge = square > 0 ? choose_wedge(ground, vertex, way, rates) : NULL;
+    if (!wedge || !scale_shares(ground, vertex, wedge, way, square, rates)) {
         *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
-        *part = !(length > 0);
+        *part = !(square > 0);
         return false;
     }
     if (!meter && rates[0] + rates[1] <= 1) {
@@ -139,6 +142,7 @@ static bool set_out(const ss_ground *ground, int32_t vertex, const double way[2]
         *part = 1;
         return false;
     }
+    double length = sqrt(square);
     *w = (walker){.ground = ground, .up = ground->normal[vertex], .left = length, .whole = length, .came = -1};
     for (int j = 0; j < 2; j++)
         ss_add(way[j] / length, ground->tangent[vertex][j], w->heading);

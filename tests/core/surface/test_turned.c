@@ -125,6 +125,36 @@ static void places_stay_places(void **state) {
     }
 }
 
+static bool is_inside(const walk_scene *s, const ss_place *place, int32_t vertex) {
+    const int32_t *v = s->patch->triangles.vertex[place->triangle];
+    const double *weight = place->weight, least = ss_least(weight[0], ss_least(weight[1], weight[2]));
+    return (v[0] == vertex || v[1] == vertex || v[2] == vertex) && least > 1e-12;
+}
+
+/* Inside its first triangle a walk ends as far as its way is long, however that triangle lies to the normal of the vertex. */
+static void first_triangles_keep_lengths(void **state) {
+    (void)state;
+    int inside = 0;
+    for (int32_t i = 0; i < FIXTURE_COUNT; i++) {
+        walk_scene s = scene_of(make_fixture(i).mesh);
+        dice d = {(uint64_t)i};
+        for (int n = 0; n < 100; n++) {
+            int32_t v = roll_below(&d, s.patch->vertex_count);
+            double way[2] = {roll_between(&d, -1e-3, 1e-3), roll_between(&d, -1e-3, 1e-3)}, end[3];
+            ss_place place;
+            ss_walk_turned(&s.ground, v, way, NULL, &place);
+            if (!is_inside(&s, &place, v))
+                continue;
+            ss_place_point(&s.ground.pose, &place, end);
+            ss_subtract(end, s.ground.pose.point[v], end);
+            assert_near(ss_length(end) / hypot(way[0], way[1]), 1, 1e-9);
+            inside++;
+        }
+        free_scene(&s);
+    }
+    assert_true(inside > 50 * FIXTURE_COUNT);
+}
+
 /* On a fine tube a walk round it stays at its height: the direction turns with the surface. */
 static void walks_go_round(void **state) {
     (void)state;
@@ -173,7 +203,7 @@ int main(void) {
         cmocka_unit_test(straight_in_a_plane), cmocka_unit_test(straight_from_a_place),
         cmocka_unit_test(nothing_and_a_meter), cmocka_unit_test(a_meter_ends_at_its_limit),
         cmocka_unit_test(places_stay_places),  cmocka_unit_test(walks_go_round),
-        cmocka_unit_test(several_as_alone),
+        cmocka_unit_test(several_as_alone),    cmocka_unit_test(first_triangles_keep_lengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
