@@ -19,7 +19,7 @@ typedef struct place {
 
 typedef struct box {
     float low[3], high[3];
-    bool ahead; /* all of it */
+    bool ahead, behind; /* all of it */
 } box;
 
 /* Scratch of one figure. */
@@ -54,7 +54,7 @@ static void find_places(const sight *own) {
 
 static box box_of(const sight *own, const uint32_t triangle[3]) {
     const place *a = &own->places[triangle[0]], *b = &own->places[triangle[1]], *c = &own->places[triangle[2]];
-    box made = {.ahead = a->ahead && b->ahead && c->ahead};
+    box made = {.ahead = a->ahead && b->ahead && c->ahead, .behind = !a->ahead && !b->ahead && !c->ahead};
     for (int i = 0; i < 3; i++) {
         float low = a->at[i] < b->at[i] ? a->at[i] : b->at[i], high = a->at[i] < b->at[i] ? b->at[i] : a->at[i];
         made.low[i] = low < c->at[i] ? low : c->at[i], made.high[i] = high > c->at[i] ? high : c->at[i];
@@ -86,7 +86,7 @@ static bool faces_away(const sight *own, const uint32_t triangle[3], const box *
 
 static bool is_seen(const sight *own, const uint32_t triangle[3], const box *around) {
     if (!around->ahead)
-        return true;
+        return !around->behind;
     return reaches_into_picture(around) && (own->drawn->figure->double_sided || !faces_away(own, triangle, around));
 }
 

@@ -893,6 +893,35 @@ static void from_inside_nothing_smears(void **state) {
     free_mesh(&mesh);
 }
 
+/* A floor that reaches from far ahead of the camera to far behind it, of which the patch has both: it makes no difference where on it
+ * is what is behind. Vertices that are next to those ahead stay. */
+static void what_is_behind_is_nowhere(void **state) {
+    (void)state;
+    enum { ROWS = 16 };
+    static pixel pictures[2][HEIGHT][WIDTH];
+    static const double square[4] = {-12, -21, 12, 19};
+    const double n = 0.01, f = 100;
+    const skinslide_camera camera = {
+        .to_camera = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}, /* along y, z up */
+        .to_screen = {1, 0, 0, 0, 0, 1.5, 0, 0, 0, 0, -(f + n) / (f - n), -1, 0, 0, -2 * f * n / (f - n), 0}};
+    for (int ghosts = 0; ghosts < 2; ghosts++) {
+        sheet s = sheet_of(12, ROWS, square, 12 * 3 * ROWS / 4, true);
+        s.figure.double_sided = 1, s.figure.ghosts = ghosts, s.figure.squares = 9;
+        for (int32_t v = 0; v < s.mesh.vertex_count; v++)
+            s.mesh.points[3 * v + 2] = -0.5f;
+        for (int moved = 0; moved < 2; moved++) {
+            for (int32_t v = 0; moved && v < s.mesh.vertex_count; v++)
+                s.mesh.points[3 * v] *= s.mesh.points[3 * v + 1] < -2 ? -1 : 1;
+            skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
+            draw_in(canvas, whole, &s.figure, camera);
+            read_all(canvas, pictures[moved]);
+        }
+        assert_same_bytes(pictures[0], pictures[1], sizeof pictures[0]);
+        assert_true(is_colour(pictures[0][0][0], blue, 1e-3) && !is_colour(pictures[0][HEIGHT - 1][WIDTH / 2], blue, 0.1));
+        end_sheet(&s);
+    }
+}
+
 /* ---- A part of a picture ---- */
 
 /* A torus with creases and a mesh of polygons in perspective, as a whole; and each of 4 by 4 parts by itself, in which most is out
@@ -1035,6 +1064,7 @@ int main(void) {
         cmocka_unit_test(tiles_are_drawn_where_st_is),
         cmocka_unit_test(tiles_that_cannot_be),
         cmocka_unit_test(from_inside_nothing_smears),
+        cmocka_unit_test(what_is_behind_is_nowhere),
         cmocka_unit_test(parts_of_pictures_are_theirs),
         cmocka_unit_test(pictures_do_not_know_sizes_or_places),
         cmocka_unit_test(a_million_faces),
