@@ -59,7 +59,7 @@ typedef struct ss_patch_work {
     ss_slide *slide;
     ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
     double *lengths;                  /* [edge_count] */
-    double *own_paint;                /* [edge_count] it and what follows are there once a frame has had controls */
+    double *own_paint;                /* [edge_count] what is its own is there once a frame has had controls */
     double *own_weights, *own_limits; /* [free_count] */
     double *own_holds;                /* [vertex_count] */
     double (*displacement)[3];        /* [free_count] in the room, once the rule has finished */
