@@ -31,7 +31,7 @@ static skinslide_status check_options(const skinslide_canvas_options *options, s
                        "a picture of %d by %d pixels; each side is 1 to %d, and all are at most %d", width, height, MOST_SIDE,
                        MOST_PIXELS);
     if (options->layers < 0 || options->layers > SKINSLIDE_MOST_LAYERS)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a canvas of %d layers; there may be 0 to %d", options->layers,
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a canvas of %d layers; it may have 0 to %d", options->layers,
                        SKINSLIDE_MOST_LAYERS);
     if ((unsigned)options->pixels > SKINSLIDE_PIXELS_FLOATS)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such pixels: %d", (int)options->pixels);
