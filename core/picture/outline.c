@@ -6,14 +6,16 @@
 
 typedef struct segments {
     uint32_t (*ends)[2];
-    int32_t *edge; /* of each */
+    int32_t *edge; /* of each; NULL: it is not wanted */
     int32_t count;
     int32_t of; /* the edge of those that are added */
 } segments;
 
 static void add_segment(segments *to, uint32_t begin, uint32_t end) {
     to->ends[to->count][0] = begin, to->ends[to->count][1] = end;
-    to->edge[to->count++] = to->of;
+    if (to->edge)
+        to->edge[to->count] = to->of;
+    to->count++;
 }
 
 static void add_side(segments *to, const ss_grid *grid, int side) {
@@ -121,13 +123,12 @@ static bool fill(skinslide_outline *own, const int32_t *chosen, int32_t count) {
     own->segments = ss_new(&own->memory, most, sizeof *own->segments);
     own->sides = ss_new(&own->memory, most, sizeof *own->sides);
     own->side_edge = SS_NEW(&own->memory, int32_t, most);
-    int32_t *border_edge = SS_NEW(&scratch, int32_t, most);
     own->corners = ss_new(&own->memory, mesh->mesh_vertex_count, sizeof *own->corners);
     bool allocated = !scratch.failed && !own->memory.failed;
     if (allocated) {
         find_border(own, uses, border);
         choose_each_once(own, used, once);
-        own->segment_count = list_sides(own, border, own->segments, border_edge);
+        own->segment_count = list_sides(own, border, own->segments, NULL);
         own->side_count = list_sides(own, once, own->sides, own->side_edge);
         list_corners(own, listed);
     }
