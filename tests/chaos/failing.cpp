@@ -206,6 +206,14 @@ void operator delete[](void *memory, size_t) noexcept {
     __libc_free(memory);
 }
 
+// A process that ends at once runs no destructors.
+extern "C" [[noreturn]] void _exit(int code) {
+    static auto next = real<void (*)(int)>("_exit");
+    end();
+    next(code);
+    abort();
+}
+
 // ---- Files ----
 
 #define OPEN(name)                                                                                                             \
