@@ -183,9 +183,7 @@ class Canvas:
         figure.points = native.points(points, tessellation.vertex_count, "points")
         figure.to_world = ffi.NULL if world is None else world
         figure.squares, figure.double_sided, figure.left_handed = squares, double_sided, left_handed
-        if scale:
-            figure.values = native.pointer(scale.values, np.float32, (tessellation.vertex_count,), "values")
-            figure.lowest, figure.highest = scale.lowest, scale.highest
+        kept = [_paint(native, figure, scale, texture, tessellation.vertex_count)]
         figure.ghosts, figure.wire, figure.line = ghosts, marks.wire, line
         if marks.pins is not None:
             figure.pins = native.pointer(marks.pins, np.bool_, (tessellation.vertex_count,), "pins")
@@ -195,13 +193,10 @@ class Canvas:
             figure.edges = native.pointer(marks.edges, np.int32, (-1, 2), "edges")
             figure.edge_values = native.pointer(marks.edge_values, np.float32, (len(marks.edges),), "edge_values")
             figure.edge_count = len(marks.edges)
-        tiles = _tiles(native, texture or {})
-        figure.tiles, figure.tile_count = tiles, len(texture or {})
         paints = new_array("paint", len(others))
-        kept = [
-            _paint(native, paint, *own, tessellation.vertex_count) for paint, own in zip(paints, others, strict=True)
-        ]
-        figure.others, figure.other_count = paints, len(kept)
+        for paint, own in zip(paints, others, strict=True):
+            kept.append(_paint(native, paint, *own, tessellation.vertex_count))
+        figure.others, figure.other_count = paints, len(others)
         call(lib.skinslide_canvas_draw, self._handle.pointer, _viewport(viewport), _camera(camera), figure)
 
     def read(self, layer: int = 0) -> np.ndarray:
@@ -256,7 +251,7 @@ def _camera(camera: Camera) -> Any:
 def _paint(
     native: Arguments, out: Any, scale: Scale | None, texture: Mapping[int, np.ndarray] | None, vertex_count: int
 ) -> Any:
-    """Fills a paint; gives what it points to."""
+    """Fills a paint, or a figure's own; gives what it points to."""
     if scale:
         out.values = native.pointer(scale.values, np.float32, (vertex_count,), "values")
         out.lowest, out.highest = scale.lowest, scale.highest
