@@ -61,6 +61,7 @@ typedef struct ss_stroke {
     float width;          /* in lines of the outline */
     float nearer;         /* brought towards the camera, in its depth */
     float light[3];
+    float colour[3]; /* in the canvas's pixels: of segments that are added */
 } ss_stroke;
 
 enum { SS_WIRE, SS_OUTLINE, SS_EDGE_BORDERS, SS_EDGES, SS_WAYS, SS_ENDS_OF_WAYS, SS_PINS, SS_STROKES };

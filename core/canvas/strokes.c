@@ -16,15 +16,15 @@ static const ss_stroke kinds[SS_STROKES] = {
     [SS_PINS] = {.width = 3, .nearer = 1e-3f, .light = {0.80f, 0.02f, 0.30f}},
 };
 
-static void add_segment(const ss_drawing *drawn, ss_stroke *to, const float begin[3], const float end[3]) {
+static void add_segment(ss_stroke *to, const float begin[3], const float end[3]) {
     ss_segment *segment = &to->segments[to->count++];
     memcpy(segment->ends[0], begin, sizeof segment->ends[0]);
     memcpy(segment->ends[1], end, sizeof segment->ends[1]);
-    ss_canvas_colour(drawn->canvas, to->light, segment->colour);
+    memcpy(segment->colour, to->colour, sizeof segment->colour);
 }
 
 static void add_side(const ss_drawing *drawn, ss_stroke *to, const uint32_t vertices[2]) {
-    add_segment(drawn, to, drawn->work.vertices[vertices[0]].place, drawn->work.vertices[vertices[1]].place);
+    add_segment(to, drawn->work.vertices[vertices[0]].place, drawn->work.vertices[vertices[1]].place);
 }
 
 static void list_segments(const ss_drawing *drawn, uint32_t (*const segments)[2], int32_t count, ss_stroke *stroke) {
@@ -41,6 +41,7 @@ static void list_edges(ss_drawing *drawn) {
         if (isnan(value))
             continue;
         skinslide_false_colour((value - figure->lowest) / (figure->highest - figure->lowest), edges->light);
+        ss_canvas_colour(drawn->canvas, edges->light, edges->colour);
         add_side(drawn, &drawn->strokes[SS_EDGE_BORDERS], drawn->outline->sides[i]);
         add_side(drawn, edges, drawn->outline->sides[i]);
     }
@@ -54,8 +55,8 @@ static void list_ways(ss_drawing *drawn) {
         const float *place = drawn->work.vertices[drawn->outline->corners[i][1]].place;
         if (way[0] == 0 && way[1] == 0 && way[2] == 0)
             continue;
-        add_segment(drawn, ways, (float[3]){place[0] - way[0], place[1] - way[1], place[2] - way[2]}, place);
-        add_segment(drawn, ends, place, place);
+        add_segment(ways, (float[3]){place[0] - way[0], place[1] - way[1], place[2] - way[2]}, place);
+        add_segment(ends, place, place);
     }
 }
 
@@ -64,7 +65,7 @@ static void list_pins(ss_drawing *drawn) {
     for (int32_t i = 0; drawn->figure->pins && i < drawn->outline->corner_count; i++)
         if (drawn->figure->pins[drawn->outline->corners[i][0]]) {
             const float *place = drawn->work.vertices[drawn->outline->corners[i][1]].place;
-            add_segment(drawn, pins, place, place);
+            add_segment(pins, place, place);
         }
 }
 
@@ -83,6 +84,7 @@ bool ss_list_strokes(ss_drawing *drawn) {
     };
     for (int i = 0; i < SS_STROKES; i++) {
         drawn->strokes[i] = kinds[i];
+        ss_canvas_colour(drawn->canvas, kinds[i].light, drawn->strokes[i].colour);
         drawn->strokes[i].segments = SS_NEW(&drawn->work.memory, ss_segment, room[i]);
     }
     if (drawn->work.memory.failed)
