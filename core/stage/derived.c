@@ -322,7 +322,7 @@ static void take(skinslide_stage_derived *derived, const ss_input *input, const 
     skinslide_status status = judge(derived, input, record, interpolation, times, time_count, &layout, &why);
     add(derived, input, record, layout, status ? why.message : NULL);
     if (record->indices.type != SKINSLIDE_VALUE_NONE)
-        block(derived, input, ":indices", "int[]");
+        block(derived, input, SS_INDICES, "int[]");
     if (!status && is_carried && time_count < 2 && derived->merged_count > 1)
         warn_of_static(derived, record->value.name);
 }

@@ -113,9 +113,8 @@ typedef struct place {
 
 /* How long a name is without the ending of indices of a primvar. */
 static size_t without_indices(const char *property) {
-    static const char indices[] = ":indices";
-    size_t length = strlen(property), ending = sizeof indices - 1;
-    return length > ending && strcmp(property + length - ending, indices) == 0 ? length - ending : length;
+    size_t length = strlen(property), ending = sizeof SS_INDICES - 1;
+    return length > ending && strcmp(property + length - ending, SS_INDICES) == 0 ? length - ending : length;
 }
 
 static place place_of(const char *property) {

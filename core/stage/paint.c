@@ -23,7 +23,7 @@ static likeness like_letter(char wanted, char letter) {
     return letter == wanted ? LIKE_ITSELF : wanted == ':' && letter == '_' ? LIKE_UNDERSCORED : LIKE_FOLDED;
 }
 
-/* An input of a patch under the schema's name: the parts of that. more: what follows, such as :indices. */
+/* An input of a patch under the schema's name: the parts of that. more: what follows, such as SS_INDICES. */
 enum { PARTS = 5 };
 #define PARTS_OF(patch, input, more)                                                                                           \
     { (input)->prefix, patch, ":", (input)->name, more }
@@ -118,7 +118,7 @@ static void match_patch(const char *patch, ss_paint_names *all) {
         const ss_input *inputs = ss_inputs((skinslide_stage_group)group, &count);
         for (int32_t i = 0; i < count; i++)
             if (inputs[i].shown.is_primvar)
-                match_input(patch, &inputs[i].shown, "", all), match_input(patch, &inputs[i].shown, ":indices", all);
+                match_input(patch, &inputs[i].shown, "", all), match_input(patch, &inputs[i].shown, SS_INDICES, all);
     }
 }
 

@@ -378,6 +378,7 @@ const skinslide_stage_texture *ss_texture_shown(const ss_texture *texture);
 /* ---- follows.c: primvars that follow the skin ---- */
 
 #define SS_PRIMVARS "primvars:"
+#define SS_INDICES  ":indices" /* of a primvar: what its name ends in then */
 
 /* A primvar of a mesh as it is declared. */
 typedef struct ss_primvar {
