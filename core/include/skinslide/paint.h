@@ -1,5 +1,5 @@
-/* skinslide/paint.h: what artists paint patches with. OpenEXR files as bytes, textures, curves, the other side of a mesh, and
- * where a mesh stretches.
+/* skinslide/paint.h: what artists paint patches with: OpenEXR files, textures, curves, the other side of a symmetric mesh, and
+ * the faces that ever stretch.
  *
  * Conventions are those of skinslide.h. */
 #ifndef SKINSLIDE_PAINT_H
@@ -30,7 +30,7 @@ typedef struct skinslide_image {
     skinslide_wrap wrap_s; /* along width */
     skinslide_wrap wrap_t; /* along height */
     const float *pixels;   /* [height][width] from the top row on; 0 where the data window has none; may be not finite */
-    const char *channel;   /* its name in the file, after the part's and a dot where there are several parts */
+    const char *channel;   /* its name in the file, with the part's name and a dot in front where there are several parts */
 } skinslide_image;
 
 #define SKINSLIDE_IMAGE_DEFAULT                                                                                                \
@@ -39,8 +39,8 @@ typedef struct skinslide_image {
 /* Reads one channel of an OpenEXR file: scanlines or tiles (the largest level), half or float, of any part that is not deep,
  * compressed as NONE, RLE, ZIPS, ZIP, PIZ or PXR24.
  *   bytes    in  [size] the whole file
- *   channel  in  the name of a channel, of the first part that has it; or PART.CHANNEL; NULL or "": R, else Y, else the first
- *                in the file's order but A, of the first part; LAYER.R, LAYER.Y, LAYER.A where all are of one layer
+ *   channel  in  the name of a channel, in the first part that has it; or PART.CHANNEL; NULL or "": of the first part R, else
+ *                Y, else the first in the file's order that is not A; LAYER.R, LAYER.Y, LAYER.A where all are of one layer
  *   out      out, the caller's to destroy
  * Fails with BAD_IMAGE (not OpenEXR, truncated, corrupt, empty, deep, no such channel: names those there are), UNSUPPORTED (a
  * channel of whole numbers or of fewer texels than the image, another compression, more than 16384 * 16384 texels,
@@ -49,10 +49,10 @@ typedef struct skinslide_image {
 SKINSLIDE_API skinslide_status skinslide_exr_decode(const uint8_t *bytes, int64_t size, const char *channel,
                                                     skinslide_image **out, skinslide_error *error);
 
-/* The same of a file that lies open, of which no more is read, and is in memory at a time, than is needed.
- *   descriptor  in  that of the file, which is read by pread(): its own place in the file stays
+/* The same for an open file; no more of it is read, or in memory at a time, than is needed.
+ *   descriptor  in  that of the file, which is read by pread(): its file offset stays
  *   offset      in  where the OpenEXR file begins in it: above 0 in a package
- *   size        in  bytes of the OpenEXR file; where there are fewer by now, it is a truncated one */
+ *   size        in  bytes of the OpenEXR file; where the file has fewer by now, it counts as truncated */
 SKINSLIDE_API skinslide_status skinslide_exr_read(int32_t descriptor, int64_t offset, int64_t size, const char *channel,
                                                   skinslide_image **out, skinslide_error *error);
 
@@ -69,7 +69,7 @@ typedef struct skinslide_channel {
 #define SKINSLIDE_CHANNEL_DEFAULT                                                                                              \
     { sizeof(skinslide_channel), 0, 0 }
 
-/* What the library made, and destroys. */
+/* Bytes that the library made; skinslide_bytes_destroy frees them. */
 typedef struct skinslide_bytes {
     int64_t size; /* of data */
     const uint8_t *data;
@@ -161,7 +161,7 @@ typedef struct skinslide_curves {
 #define SKINSLIDE_CURVES_DEFAULT                                                                                               \
     { sizeof(skinslide_curves), 0, 0, 0, 0, 0, SKINSLIDE_CURVE_BASIS_LINEAR, SKINSLIDE_CURVE_WRAP_NONPERIODIC }
 
-/* Which edges near a curve count, by their direction and the curve's where it is nearest. Of no length: across. */
+/* Which edges near a curve count, by their angle with the curve where it is nearest. Edges of no length are across. */
 typedef enum skinslide_direction {
     SKINSLIDE_DIRECTION_ANY,
     SKINSLIDE_DIRECTION_ALONG, /* 45 degrees or less between them */
@@ -174,13 +174,13 @@ typedef enum skinslide_direction {
  *   distance  in  >= 0
  *   near      out [edge_count] 1 for those found, else 0
  * Fails with BAD_ARGUMENT (curves whose counts do not fit: names the curve; an edge's vertex out of range; a distance that is
- * none), BAD_POINTS (not finite), OUT_OF_MEMORY. */
+ * negative or not finite), BAD_POINTS (not finite), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count, const int32_t *edges,
                                                     int32_t edge_count, const skinslide_curves *curves, double distance,
                                                     skinslide_direction direction, uint8_t *near, skinslide_error *error);
 
-/* How far the nearest of some edges is from a curve, for those who find none within a distance.
- *   distance  out of its middle; infinite where no edge runs in that direction
+/* How far the nearest of some edges is from a curve, for callers whose skinslide_edges_near found none.
+ *   distance  out to the middle of that edge; infinite where no edge runs in that direction
  * Fails as skinslide_edges_near. */
 SKINSLIDE_API skinslide_status skinslide_nearest_edge(const float *points, int32_t vertex_count, const int32_t *edges,
                                                       int32_t edge_count, const skinslide_curves *curves,
@@ -198,13 +198,14 @@ SKINSLIDE_API skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int3
                                                 const int32_t *faces, int32_t face_count, int32_t *mirror_faces,
                                                 int32_t *mirror_vertices, skinslide_error *error);
 
-/* The same by nearest place, of a mesh whose faces have no counterparts, but whose surface is symmetric: quads cut along other
- * diagonals. A face is found where the mirror image of its middle is nearest to one of the faces.
+/* The same by nearest place, for a mesh whose surface is symmetric, but whose faces have no counterparts, such as quads
+ * cut along the other diagonal. A face is found if the mirror image of its middle is nearer to one of `faces` than to any
+ * other.
  *   tolerance       in  how far a mirror image may be from the mesh; below 0: 1e-4 of the mesh's largest extent at rest
  *   faces           in  [face_count] mesh faces
- *   face_sources    out [mesh face_count] of each face found the one of faces that it is nearest to; -1 for others
- *   vertex_sources  out [vertex_count] of each vertex of a face found the one nearest to its mirror image; -1 for others
- *   worst           out how far a mirror image is from the mesh at most
+ *   face_sources    out [mesh face_count] for each face found, the one of `faces` that it is nearest to; -1 for others
+ *   vertex_sources  out [vertex_count] for each vertex of a face found, the vertex nearest to its mirror image; -1 for others
+ *   worst           out the largest distance of a mirror image from the mesh
  * Fails with BAD_MESH (a vertex of either side whose mirror image is too far from the mesh: names it; no face found),
  * BAD_POINTS, BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_mirror_nearest(const skinslide_mesh *mesh, int32_t axis, double plane,
@@ -214,7 +215,7 @@ SKINSLIDE_API skinslide_status skinslide_mirror_nearest(const skinslide_mesh *me
 
 /* ---- A set-up that nobody painted: where skin stretches ----------------------------------------------------------------- */
 
-/* Notes how far the sides of faces are from their rest lengths in a pose, beside what was noted of the poses before.
+/* Notes how far the sides of faces are from their rest lengths in a pose, on top of what was noted of earlier poses.
  *   points   in       [vertex_count][3]
  *   stretch  in, out  [index_count] the largest |log(length / rest length)| of the side from each corner to the next; all 0
  *                     before the first pose. A side of no length at rest has none
@@ -225,17 +226,17 @@ SKINSLIDE_API skinslide_status skinslide_note_stretch(const skinslide_mesh *mesh
 /* How a mask is made of what was noted. Start from SKINSLIDE_MASK_OPTIONS_DEFAULT. */
 typedef struct skinslide_mask_options {
     size_t size;   /* sizeof(skinslide_mask_options) */
-    double least;  /* a side counts whose stretch is above this */
-    double grow;   /* how far a region grows, as a share of its radius: the root of its area at rest over pi */
-    int64_t rings; /* and by how many rings of faces at least */
+    double least;  /* a side counts if its stretch is above this */
+    double grow;   /* how far a region grows, as a share of its radius: the square root of its area at rest over pi */
+    int64_t rings; /* and by at least how many rings of faces */
 } skinslide_mask_options;
 
 #define SKINSLIDE_MASK_OPTIONS_DEFAULT                                                                                         \
     { sizeof(skinslide_mask_options), 0.02, 0.5, 3 }
 
-/* Chooses the faces that a patch needs so that skin may slide wherever it stretched: regions, each of faces that meet and have
- * an end of a side that counts, and what is near them on the mesh at rest. A patch takes more from the skin around it than it
- * loses by the pins that end it there.
+/* Chooses the faces that a patch needs so that skin may slide wherever it stretched: regions of connected faces that have an
+ * end of a side that counts, and the faces near them on the mesh at rest. Growing gains more from the skin around than the pins
+ * at the new border cost.
  *   stretch  in   [index_count] of skinslide_note_stretch
  *   options  in, or NULL: the default
  *   faces    out  [face_count] 1 for those chosen, else 0

@@ -5,26 +5,26 @@
  * and the face found there says where on the deformed surface the vertex belongs.
  *
  * Life cycle
- *     skinslide_slider     one mesh with all its patches; built once a shot; immutable, so any number of threads may share it.
- *     skinslide_workspace  the memory of one frame's work; one a thread.
- *     skinslide_slide      one call a frame. Frames do not depend on each other: any order, any thread, the same bytes;
- *                          other machines too, with the same builds of this library, CAMD and OpenSubdiv.
+ *     skinslide_slider     one mesh with all its patches; built once for a shot; immutable: any number of threads may share it
+ *     skinslide_workspace  the memory that sliding a frame needs; one for each thread
+ *     skinslide_slide      one call for each frame. Frames do not depend on each other: in any order, on any thread and on any
+ *                          machine with the same builds of this library, CAMD and OpenSubdiv they come to the same bytes
  *
  * Conventions
- *     Points are float [vertex][3] in the mesh's object space; lengths have its units. Work between is done in double.
+ *     Points are float [vertex][3] in the mesh's object space; lengths are in its units. Work in between is done in double.
  *     Index spaces: a "mesh vertex" or "mesh face" counts within the mesh, a "patch vertex" or "patch face" within one patch.
- *     A truth, skinslide_bool, is 0 for no and anything else for yes; answers are 0 or 1.
+ *     A skinslide_bool is 0 for no and anything else for yes; those that the library returns are 0 or 1.
  *     Arrays are the caller's; inputs are read during the call only, and are never kept. NULL is allowed only where said.
  *     A function that can fail returns a status; *out and output arrays are written only on success. The last parameter, an
  *     optional skinslide_error of the caller's, then says in one line what is wrong and names the element. No function prints,
- *     aborts or keeps state of the process; every function may be called on several threads at once for different objects.
+ *     aborts or keeps global state; every function may be called on several threads at once for different objects.
  *
  * Versions
- *     A struct that begins with its size may grow at its end. Start from its default, which sets the size and what is not 0; an
- *     array's elements all have the size of the first. A library that knows more members than a program was compiled with takes
- *     their defaults; one that knows fewer fails with UNSUPPORTED where one of them is not 0, and answers them with 0. What the
- *     library alone makes may grow likewise; other structs without a size stay as they are. What is not of the first version
- *     says since when it is there.
+ *     A struct that begins with its size may grow at its end. Start from its default, which sets the size and what is not 0.
+ *     All elements of an array have the size of the first. Members that the library knows and the program was compiled without
+ *     have their defaults. Members that the program has and the library does not know must be 0, or the call fails with
+ *     UNSUPPORTED; in results they are set to 0. Structs that only the library makes may grow likewise; other structs without a
+ *     size stay as they are. What was added after 0.2 says since which version it is there.
  */
 #ifndef SKINSLIDE_H
 #define SKINSLIDE_H
@@ -84,8 +84,8 @@ SKINSLIDE_API const char *skinslide_version(void);
 
 /* ---- The mesh and its patches ------------------------------------------------------------------------------------------- */
 
-/* How a mesh is subdivided when rendered, in the words of UsdGeomMesh. The fallbacks of USD come first, so that an initialiser
- * that names nothing but the scheme gives USD's. */
+/* How a mesh is subdivided when rendered, in the words of UsdGeomMesh. USD's fallbacks come first, so that zeros beside the
+ * scheme mean what nothing authored means in USD. */
 typedef enum skinslide_scheme {
     SKINSLIDE_SCHEME_NONE,
     SKINSLIDE_SCHEME_CATMULL_CLARK,
@@ -150,7 +150,7 @@ typedef struct skinslide_mesh {
 #define SKINSLIDE_MESH_DEFAULT                                                                                                 \
     { sizeof(skinslide_mesh), 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
-/* Where the outer boundary of a patch goes (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
+/* What the outer boundary of a patch is laid out on (paper, section 3.2). AUTO: SQUARE with corners, else CIRCLE. */
 typedef enum skinslide_boundary {
     SKINSLIDE_BOUNDARY_AUTO,
     SKINSLIDE_BOUNDARY_SQUARE, /* the unit square; without corners: the sharpest vertex and those nearest the quarters of the
@@ -160,9 +160,9 @@ typedef enum skinslide_boundary {
 
 /* What holds the loops of holes (eyes, nostrils, mouth, the other end of a sleeve). */
 typedef enum skinslide_holes {
-    SKINSLIDE_HOLES_PINNED,  /* each where it falls at rest with the holes capped: embeddings rarely fold, and it is counted */
-    SKINSLIDE_HOLES_FREE,    /* nothing: loops slide along themselves; embeddings may fold, which is counted */
-    SKINSLIDE_HOLES_FREE_ALL /* nothing, and the outer boundary slides along itself, too: of RELAXED and EVEN alone */
+    SKINSLIDE_HOLES_PINNED,  /* each where it falls at rest with the holes capped; embeddings rarely fold; folds are counted */
+    SKINSLIDE_HOLES_FREE,    /* nothing: loops slide along themselves; embeddings may fold; folds are counted */
+    SKINSLIDE_HOLES_FREE_ALL /* nothing, and the outer boundary slides along itself too: under RELAXED and EVEN only */
 } skinslide_holes;
 
 /* Where skin slides to. UNIT and FAST are the paper's: force density of an edge of length l (section 3.1), and a lookup in
@@ -213,10 +213,10 @@ typedef struct skinslide_controls {
                             a vertex of weight 0 still moves as its neighbours slide, so that its limit point stays */
     const float *max_distance; /* [mesh vertex_count] or NULL: no limit; how far each vertex may slide along the surface, >= 0,
                                   object units; measured on the triangles that `linear` interpolates in */
-    const float *hold; /* [mesh vertex_count] or NULL: 1; of RELAXED and EVEN: how much a vertex keeps to how its neighbours
-                                   slide, finite and > 0: low where surplus skin is to come from, high where it must not */
-    float stretch_response;     /* of RELAXED and EVEN: how much of stretch is evened out, 0..1 */
-    float compression_response; /* and of compression */
+    const float *hold; /* [mesh vertex_count] or NULL: 1; under RELAXED and EVEN: how closely a vertex follows the slide of its
+                          neighbours, finite and > 0: low where surplus skin is to come from, high where it must not */
+    float stretch_response;     /* under RELAXED and EVEN: how much of the stretch is evened out, 0..1 */
+    float compression_response; /* and how much of the compression */
 } skinslide_controls;
 
 #define SKINSLIDE_CONTROLS_DEFAULT                                                                                             \
@@ -235,8 +235,8 @@ typedef struct skinslide_patch_setup {
     skinslide_rule rule;
     skinslide_interpolation interpolation;
     const skinslide_controls *controls; /* used by frames that bring none of their own; NULL: the default */
-    const uint8_t *held; /* [mesh vertex_count] 1 for those that stay where they are on a border, whatever holes says, such as
-                            where another mesh meets this one; NULL: none */
+    const uint8_t *held; /* [mesh vertex_count] 1 for vertices that stay where they are on a border, whatever `holes` says, such
+                            as those at which another mesh meets this one; NULL: none */
 } skinslide_patch_setup;
 
 #define SKINSLIDE_PATCH_SETUP_DEFAULT                                                                                          \
@@ -247,23 +247,23 @@ typedef struct skinslide_patch_setup {
 
 /* ---- Points in one place ------------------------------------------------------------------------------------------------- */
 
-/* Which vertices of a mesh are one: meshes from games and exporters have a point for each side of a seam, or for each corner of
- * a face. Points that are in one place at rest, and in every pose shown, are one vertex where faces of patches meet there edge
- * to edge: a side of one face and a side of another run between the same places, opposite ways. Points off the patches are one
- * with those of the patches in their place, where these are. What cannot be one stays as it is: points of a place in which a
- * face has two corners, or at an edge that would have more than two faces, such as that of a doubled sheet, or faces wound
- * against each other.
+/* Which points of a mesh are to be one vertex: meshes from games and exporters have a point for each side of a seam, or for
+ * each corner of a face. Points that are in one place at rest, and in every pose shown, are welded where faces of patches meet
+ * there edge to edge: a side of one face and a side of another run between the same places, in opposite directions. Points off
+ * the patches are welded to those of the patches in the same place. Points stay apart in a place where a face has two corners,
+ * and where welding would give an edge more than two faces, as in a doubled sheet, or two faces that are wound against each
+ * other.
  *
- * The answer must be the same for every part of a shot: show all poses that the shot has, not those that are to be slid. */
+ * The answer must be the same for every part of a shot: show all poses of the shot, not only those that are to be slid. */
 typedef struct skinslide_weld skinslide_weld;
 
-/* Looks at rest.
+/* Begins with the rest points.
  *   mesh       in  its weld is not read
- *   setups     in  [setup_count] of which only faces count; those that the mesh has not are passed over
- *   tolerance  in  distance within which points are in one place, as are those linked by such; object units, 0 to a thousandth
- *                  of the diagonal of the rest points' box. 0: where their coordinates are equal
+ *   setups     in  [setup_count] only their faces are read; faces that the mesh does not have are ignored
+ *   tolerance  in  points within this distance are in one place, as are points linked by a chain of such; object units, 0 to a
+ *                  thousandth of the diagonal of the rest points' box. 0: where their coordinates are equal
  *   out        out the caller's to destroy
- * Fails with BAD_MESH, BAD_POINTS (rest points not finite), BAD_ARGUMENT (the tolerance, too), OUT_OF_MEMORY. */
+ * Fails with BAD_MESH, BAD_POINTS (rest points not finite), BAD_ARGUMENT (also a tolerance out of range), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_weld_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                      int32_t setup_count, double tolerance, skinslide_weld **out,
                                                      skinslide_error *error);
@@ -271,36 +271,35 @@ SKINSLIDE_API skinslide_status skinslide_weld_create(const skinslide_mesh *mesh,
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_weld_destroy(skinslide_weld *weld);
 
-/* Whether there is anything to find out from poses: no, where no point of a patch shares its place at rest. */
+/* Whether poses need be shown: not where no point of a patch shares its place at rest. */
 SKINSLIDE_API skinslide_bool skinslide_weld_wants_poses(const skinslide_weld *weld);
 
-/* Shows a pose, in the order of time: points that are apart in it are not one. One thread a weld.
- *   frame   in  its time, for the answer
+/* Shows a pose; call it in the order of time. Points that are apart in it are not welded. One thread at a time for a weld.
+ *   frame   in  its time, which skinslide_weld_info reports
  *   points  in  [vertex_count][3]
- * Fails with BAD_POINTS (a point that shares a place is not finite: names it), BAD_ARGUMENT; then the pose was not looked
- * at. */
+ * Fails with BAD_POINTS (a point that shares a place is not finite: names it), BAD_ARGUMENT, and then leaves the pose out. */
 SKINSLIDE_API skinslide_status skinslide_weld_show(skinslide_weld *weld, double frame, const float *points,
                                                    skinslide_error *error);
 
-/* What came of it. Start from SKINSLIDE_WELD_INFO_DEFAULT. */
+/* What was welded. Start from SKINSLIDE_WELD_INFO_DEFAULT. */
 typedef struct skinslide_weld_info {
     size_t size;            /* sizeof(skinslide_weld_info) */
-    int32_t welded_points;  /* that are one with others */
-    int32_t welded_places;  /* vertices that these are */
-    int32_t parted_points;  /* that would be one with others, had they not left them in a pose */
-    int32_t refused_points; /* of patches, in places that cannot be one */
-    int32_t parted_vertex;  /* the first that parts ... */
-    int32_t parted_from;    /* ... from another */
-    double parted_frame;    /* when they do */
-    char refused[160];      /* why the first place cannot: "vertices 3 and 4 are both corners of face 2"; or empty */
+    int32_t welded_points;  /* points that are welded to others */
+    int32_t welded_places;  /* vertices that these make */
+    int32_t parted_points;  /* points that would be welded to others, were they not apart in some pose */
+    int32_t refused_points; /* points of patches in places that cannot be one vertex */
+    int32_t parted_vertex;  /* the first point that parts from another ... */
+    int32_t parted_from;    /* ... that other ... */
+    double parted_frame;    /* ... and when it does */
+    char refused[160];      /* why the first place cannot be one: "vertices 3 and 4 are both corners of face 2"; or empty */
 } skinslide_weld_info;
 
 #define SKINSLIDE_WELD_INFO_DEFAULT                                                                                            \
     { sizeof(skinslide_weld_info), 0, 0, 0, 0, 0, 0, 0, "" }
 
-/* What is one.
- *   vertices  out [vertex_count] of each the vertex that it is one with, as skinslide_mesh has it: the lowest of a patch;
- *                 itself for most
+/* The answer.
+ *   vertices  out [vertex_count] the vertex that each is one with, as skinslide_mesh has it: the lowest one of a patch in that
+ *                 place; most are themselves
  *   info      out, or NULL
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_weld_get(const skinslide_weld *weld, int32_t *vertices, skinslide_weld_info *info,
@@ -319,7 +318,7 @@ typedef struct skinslide_slider skinslide_slider;
  * edge with three faces, faces wound against each other, a boundary that touches itself, faces that meet in a vertex alone, a
  * handle; RELAXED and EVEN need no boundary, take handles, and let vertices at which faces meet in a point stay), BAD_CONTROL
  * (a density or a hold not > 0, a response not in 0..1, a weight or an envelope that is not a number, a largest distance not
- * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, no such choice),
+ * >= 0, edges not of the patch, corners not on the outer loop), BAD_ARGUMENT (NULL, a negative count, an unknown enum value),
  * SINGULAR, UNSUPPORTED (FREE_ALL by UNIT or FAST), OUT_OF_MEMORY.
  * With LIMIT also with BAD_MESH (a face of fewer than three vertices or under LOOP not a triangle, a crease that is not an
  * edge, a sharpness out of range, counts or indices of the subdivision that do not fit), BAD_PATCH (a face that is a hole of
@@ -328,7 +327,7 @@ typedef struct skinslide_slider skinslide_slider;
 SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                        int32_t setup_count, skinslide_slider **out, skinslide_error *error);
 
-/* NULL does nothing. Workspaces of the slider must be gone before it. */
+/* NULL does nothing. Destroy the slider's workspaces first. */
 SKINSLIDE_API void skinslide_slider_destroy(skinslide_slider *slider);
 
 /* What a patch is. Patches are numbered set-up by set-up, and the pieces of one set-up by their lowest face. Start from
@@ -339,7 +338,7 @@ typedef struct skinslide_patch_info {
     int32_t setup;             /* its number, from 0 */
     int32_t piece;             /* of this set-up, from 0 */
     int32_t piece_count;       /* of this set-up */
-    int32_t vertex_count;      /* of the patch; RELAXED and EVEN split those at which faces meet in a point, which stay */
+    int32_t vertex_count;      /* of the patch; RELAXED and EVEN split those at which faces meet only in a point, which stay */
     int32_t edge_count;        /* of the patch, each once */
     int32_t face_count;        /* of the patch */
     int32_t free_count;        /* vertices that may slide */
@@ -347,13 +346,13 @@ typedef struct skinslide_patch_info {
     int32_t zero_length_edges; /* at rest: taken as 1e-6 of the mean edge */
     int32_t collapsed_faces; /* of no area in the rest embedding, such as a triangle with two edges on one side of the square */
     int32_t folded_faces;    /* turned over in the rest embedding */
-    int32_t held_count;      /* vertices on borders that the set-up holds, and that would slide else */
+    int32_t held_count;      /* vertices on borders that would slide, were they not held by the set-up */
 } skinslide_patch_info;
 
 #define SKINSLIDE_PATCH_INFO_DEFAULT                                                                                           \
     { sizeof(skinslide_patch_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
-/* How many patches there are: the patches of a slider are 0 to this. */
+/* How many patches a slider has. They are numbered from 0. */
 SKINSLIDE_API int32_t skinslide_slider_patch_count(const skinslide_slider *slider);
 
 /* What a patch of a slider is. Fails with BAD_ARGUMENT (there is no such patch). */
@@ -361,8 +360,8 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_info(const skinslide_slide
                                                            skinslide_patch_info *info, skinslide_error *error);
 
 /* The vertices of a patch.
- *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending: again where it is split;
- *                 of those that are one, that which they are one with
+ *   vertices  out [vertex_count of the patch] the mesh vertex of each patch vertex, ascending; a vertex that is split comes
+ *                 once for each part, and of welded points only the one that the others are welded to
  * Fails with BAD_ARGUMENT (there is no such patch). */
 SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_slider *slider, int32_t patch, int32_t *vertices,
                                                                skinslide_error *error);
@@ -373,11 +372,11 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_vertices(const skinslide_s
 SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slider *slider, int32_t patch, int32_t *faces,
                                                             skinslide_error *error);
 
-/* Whether the points of a frame can be slid. Those that no slide reads, of no face at a patch, may hold anything: they pass as
- * they are.
+/* Whether the points of a frame can be slid. Points that sliding does not read, as no face at a patch has them, may hold
+ * anything, and are copied as they are.
  *   points  in  [vertex_count][3]
- *   passed  out how many of them are not finite
- *   told    out where there are any, what to warn of: names the first; or NULL
+ *   passed  out how many of these are not finite
+ *   told    out, or NULL: where there are any, a warning that names the first
  * Fails as skinslide_slide does: with BAD_POINTS (not finite: names the vertex), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, const float *points,
                                                              int32_t *passed, skinslide_error *told, skinslide_error *error);
@@ -385,9 +384,9 @@ SKINSLIDE_API skinslide_status skinslide_slider_check_points(const skinslide_sli
 /* How many vertices of a patch have a point of another mesh in their place, as where a head and a body meet at the neck.
  *   points     in  [vertex_count][3] the slider's mesh in some pose
  *   others     in  [other_count][3] the other mesh in that pose, in the same space
- *   tolerance  in  as of skinslide_weld_create, but of any size; 0 is fast
- *   held       out those that stay
- *   loose      out those that may slide, which the other mesh does not follow
+ *   tolerance  in  as for skinslide_weld_create, but with no upper bound; 0 is fast
+ *   held       out how many of them stay
+ *   loose      out how many may slide, away from the other mesh
  * Fails with BAD_ARGUMENT (there is no such patch; NULL), BAD_POINTS (not finite), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int32_t patch, const float *points,
                                                            const float *others, int32_t other_count, double tolerance,
@@ -395,18 +394,18 @@ SKINSLIDE_API skinslide_status skinslide_slider_neighbours(const skinslide_slide
 
 /* The rest embedding U0 of a patch.
  *   uv  out [vertex_count of the patch][2], in [0,1]^2 up to rounding
- * Fails with BAD_ARGUMENT (there is no such patch), UNSUPPORTED (its rule has none). */
+ * Fails with BAD_ARGUMENT (there is no such patch), UNSUPPORTED (its rule has no embedding). */
 SKINSLIDE_API skinslide_status skinslide_slider_embedding(const skinslide_slider *slider, int32_t patch, double *uv,
                                                           skinslide_error *error);
 
 /* ---- Frames ------------------------------------------------------------------------------------------------------------- */
 
-/* How rest vertices are looked up in the frame's embedding; where they are found is the same bit for bit. */
+/* How rest vertices are looked up in the frame's embedding. The result is the same, bit for bit. */
 typedef enum skinslide_lookup {
     SKINSLIDE_LOOKUP_AUTO, /* EGL where it has a hardware device; EXACT on software rasterisers and where EGL is missing, its
                               device fails when the workspace is made, or a fixed resolution is above the device's limit */
-    SKINSLIDE_LOOKUP_EGL,  /* proposed by rendering a colour a face (paper, section 3.3), decided exactly, and walked for where
-                              the texture missed */
+    SKINSLIDE_LOOKUP_EGL,  /* proposed by rendering each face in its own colour (paper, section 3.3), then tested exactly; found
+                              by walking where the texture missed */
     SKINSLIDE_LOOKUP_EXACT /* by walking from face to face */
 } skinslide_lookup;
 
@@ -419,19 +418,19 @@ typedef struct skinslide_workspace_options {
     int32_t device;     /* number of one of EGL's devices, the only one tried; or SKINSLIDE_ANY_DEVICE: EGL's devices in their
                            order, hardware before software, then its surfaceless platform, then its default display */
     int32_t resolution; /* texels along a side of the texture, within the device's limit (OpenGL ES 3 has 2048 or more); 0:
-                           for each patch, the power of two from 256 to 4096, within the device's limit, that gives four texels
-                           along a side for each free vertex under the root, and up to four times as many where the smallest
-                           face of the rest embedding would be under a texel */
+                           for each patch, the power of two from 256 to 4096, within the device's limit, that is at least four
+                           times the square root of its free vertices, and up to four times as large where the smallest face of
+                           the rest embedding would be under a texel */
 } skinslide_workspace_options;
 
 #define SKINSLIDE_WORKSPACE_OPTIONS_DEFAULT                                                                                    \
     { sizeof(skinslide_workspace_options), SKINSLIDE_LOOKUP_AUTO, SKINSLIDE_ANY_DEVICE, 0 }
 
-/* What options come to on this machine. Start from SKINSLIDE_LOOKUP_INFO_DEFAULT. */
+/* Which lookup the options lead to on this machine. Start from SKINSLIDE_LOOKUP_INFO_DEFAULT. */
 typedef struct skinslide_lookup_info {
     size_t size;             /* sizeof(skinslide_lookup_info) */
     skinslide_lookup lookup; /* EGL or EXACT */
-    char reason[480];        /* why AUTO came to EXACT, or how the device failed last; one line, or empty */
+    char reason[480];        /* why AUTO led to EXACT, or how the device failed last; one line, or empty */
 } skinslide_lookup_info;
 
 #define SKINSLIDE_LOOKUP_INFO_DEFAULT                                                                                          \
@@ -441,7 +440,7 @@ typedef struct skinslide_lookup_info {
 typedef struct skinslide_device_info {
     size_t size;                /* sizeof(skinslide_device_info) */
     int32_t device;             /* its number, or SKINSLIDE_ANY_DEVICE where the display has none, or there is no device */
-    skinslide_bool software;    /* it is a software rasteriser */
+    skinslide_bool software;    /* whether it is a software rasteriser */
     int32_t largest_resolution; /* texels along a side, the device's limit; 0: there is no device */
     char device_name[96];       /* "EGL device 0 (/dev/dri/card0)" */
     char renderer[128];         /* as the driver names the device */
@@ -451,11 +450,11 @@ typedef struct skinslide_device_info {
 #define SKINSLIDE_DEVICE_INFO_DEFAULT                                                                                          \
     { sizeof(skinslide_device_info), SKINSLIDE_ANY_DEVICE, 0, 0, "", "", "" }
 
-/* Says what options come to; makes a context and drops it where that must be tried, with the largest texture that a workspace
- * with these options could ask for.
+/* Says which lookup the options lead to. Where that must be tried, it makes a context, with the largest texture that a
+ * workspace with these options could ask for, and destroys it.
  *   options  in, or NULL: the default
  *   info     out
- *   device   out, or NULL: that of lookup EGL; none for EXACT
+ *   device   out, or NULL: that of lookup EGL; for EXACT there is none
  * Fails with BAD_ARGUMENT (no such lookup, device or resolution), DEVICE_FAILED, NO_DEVICE (lookup EGL: names all that was
  * tried, with EGL's errors), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_choose_lookup(const skinslide_workspace_options *options, skinslide_lookup_info *info,
@@ -463,9 +462,9 @@ SKINSLIDE_API skinslide_status skinslide_choose_lookup(const skinslide_workspace
 
 typedef struct skinslide_workspace skinslide_workspace;
 
-/* Memory for frames of a slider, for use by one thread at a time, not always the same. The slider must outlive it. With lookup
- * EGL it has an OpenGL ES context of its own, which is current only within calls: whatever EGL context the thread had is
- * current again after each. A thread that has a context of another window system, such as GLX, current cannot use EGL.
+/* Memory for sliding frames of a slider. Only one thread at a time may use it, but not always the same. The slider must outlive
+ * it. With lookup EGL it has an OpenGL ES context of its own, which is current only within calls: whatever EGL context the
+ * thread had is current again after each. A thread cannot use EGL while a context of another system, such as GLX, is current.
  *   options  in, or NULL: the default
  * Fails with OUT_OF_MEMORY, BAD_ARGUMENT (no such lookup, device or resolution), and with lookup EGL NO_DEVICE,
  * DEVICE_FAILED. */
@@ -476,35 +475,36 @@ SKINSLIDE_API skinslide_status skinslide_workspace_create(const skinslide_slider
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_destroy(skinslide_workspace *workspace);
 
-/* Makes the frame that is slid in the workspace, or where there is none the next one, fail with INTERRUPTED, before long: work
- * is left between stages and steps. The only function that may be called while another thread uses the workspace, and one that
- * signal handlers may call. NULL does nothing. */
+/* Makes the frame that is being slid in the workspace, or the next one where there is none, fail soon with INTERRUPTED: work
+ * stops between stages, and between steps of the long ones. This is the only function that may be called while another thread
+ * uses the workspace, and signal handlers may call it. NULL does nothing. */
 SKINSLIDE_API void skinslide_workspace_interrupt(skinslide_workspace *workspace);
 
-/* What a workspace's options came to.
+/* Which lookup a workspace's options led to.
  *   info    out
- *   device  out, or NULL: that of lookup EGL; none for EXACT
+ *   device  out, or NULL: that of lookup EGL; for EXACT there is none
  * Fails with BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace, skinslide_lookup_info *info,
                                                           skinslide_device_info *device, skinslide_error *error);
 
-/* What happened to one patch in one frame. Everything but the seconds is the same in every run with the same lookup; how
- * vertices were found depends on the lookup, its resolution and its device. Start from SKINSLIDE_PATCH_RESULT_DEFAULT. */
+/* What happened to one patch in one frame. Everything but the seconds is the same in every run with the same lookup; how many
+ * vertices were found in which way depends on the lookup, its resolution and its device. Start from
+ * SKINSLIDE_PATCH_RESULT_DEFAULT. */
 typedef struct skinslide_patch_result {
     size_t size;               /* sizeof(skinslide_patch_result) */
     int32_t slid_vertices;     /* free vertices that moved */
     int32_t clamped_vertices;  /* looked up outside every face (in a hole), put on the nearest */
     int32_t clamped_weights;   /* weights and envelope that were outside 0..1 */
     int32_t damped_vertices;   /* LIMIT only: brought back towards their place under LINEAR */
-    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes. Of the
-                                  relaxed and the even rule: on the rest surface where its corners come from */
+    int32_t folded_faces;      /* turned over in this frame's embedding; none on a disk, rarely any with pinned holes. Under
+                                  RELAXED and EVEN: turned over on the rest surface, once its corners are where they slide to */
     int32_t zero_length_edges; /* in this frame: taken as 1e-6 of the mean rest edge */
     int32_t found_in_centre;   /* vertices in the face of their own texel of the texture */
     int32_t found_in_3x3;      /* in another face of the texels around it */
     int32_t walked_vertices;   /* found by walking */
-    int32_t searched_vertices; /* that the walk could not reach and the tree of faces answered */
-    int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was walked for */
-    int32_t relax_steps;       /* of the relaxed rule: those on the pose itself. 3; fewer where the next could not be solved */
+    int32_t searched_vertices; /* that the walk could not reach, found by the tree of faces */
+    int32_t lost_textures;     /* 1 where lookup EGL failed (a lost context) and every vertex was found by walking */
+    int32_t relax_steps;       /* under RELAXED: steps on the pose itself: 3, or fewer where the next could not be solved */
     int64_t walk_steps;        /* triangles entered by walking, in all */
     double largest_slide;      /* of a vertex from its place in the cache, overlapping patches included; object units */
     double stretch_before;     /* RMS over the patch's edges of log(length / rest length), in the cache */
@@ -512,27 +512,27 @@ typedef struct skinslide_patch_result {
 
     double density_seconds;     /* force densities from edge lengths */
     double embed_seconds;       /* the frame's embedding */
-    double relax_seconds;       /* of the relaxed and the even rule, in place of embedding and locating */
+    double relax_seconds;       /* under RELAXED and EVEN, in place of embedding and locating */
     double locate_seconds;      /* looking rest vertices up in the embedding */
-    double interpolate_seconds; /* their places on the deformed surface; of LIMIT, the faces fitted to them, too */
-    int32_t cut_steps; /* of the relaxed and the even rule: those of their steps that faces would not have stood whole */
+    double interpolate_seconds; /* their places on the deformed surface; under LIMIT, fitting the faces to them too */
+    int32_t cut_steps;          /* under RELAXED and EVEN: how many of their steps were cut short, lest a face turn over */
 } skinslide_patch_result;
 
 #define SKINSLIDE_PATCH_RESULT_DEFAULT                                                                                         \
     { sizeof(skinslide_patch_result), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
-/* Slides the skin of one frame (paper, section 3): density, embed, locate, interpolate for every patch, then the blend.
+/* Slides the skin of one frame (paper, section 3): density, embed, locate and interpolate for every patch, then blend them.
  *   points    in  [vertex_count][3] the deformed mesh
  *   controls  in  [setup_count] the frame's controls, in place of the set-ups' own; NULL: the set-ups' own. Force
- *                 densities that differ from the set-up's cost a second embedding, since rest is then embedded anew.
- *   slid      out [vertex_count][3] the corrected points; may be points itself. Vertices outside patches keep their bits
- *                 (but for those welded to one that slides), finite or not where they are of no face at a patch; so do
- *                 those on the outer boundary or a pinned hole of every patch they are in, and so does every vertex when
- *                 points are the rest points. A vertex that may slide in several patches moves by the mean of their
- *                 displacements, weighted by weight times envelope.
+ *                 densities that differ from the set-up's cost a second embedding, since rest is then embedded again.
+ *   slid      out [vertex_count][3] the corrected points; may be points itself. Bits stay the same of vertices outside
+ *                 patches, but for those welded to one that slides; of vertices that are on the outer boundary or a pinned
+ *                 hole of every patch they are in; and of all vertices when points are the rest points. A vertex that may
+ *                 slide in several patches moves by the mean of their displacements, weighted by weight times envelope.
  *   results   out [patch_count], or NULL; only the first need have its size
- * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid to where a float is not: names the
- * vertex), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid beyond what a float can hold: names
+ * the vertex; see skinslide_slider_check_points), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread at a time for a
+ * workspace. */
 SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points,
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
@@ -543,7 +543,7 @@ SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, c
 SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_workspace *workspace, int32_t patch, double *uv,
                                                              skinslide_error *error);
 
-/* The texture of lookup EGL: the last frame's embedding, drawn again. Pictures are made of it.
+/* The texture of lookup EGL: the last frame's embedding, drawn again, for pictures of it.
  *   side    out  texels along a side
  *   texels  out  [side][side], in rows of u from v = 0 on: 1 + patch face, 0 where there is none; NULL: only side is wanted
  * Fails with BAD_ARGUMENT where there is no such patch, no frame yet, or the lookup is EXACT; UNSUPPORTED where the rule has no
@@ -551,20 +551,21 @@ SKINSLIDE_API skinslide_status skinslide_workspace_embedding(const skinslide_wor
 SKINSLIDE_API skinslide_status skinslide_workspace_id_buffer(skinslide_workspace *workspace, int32_t patch, int32_t *side,
                                                              uint32_t *texels, skinslide_error *error);
 
-/* Searches for the least stretch that a pose allows: slow. Vertices inside a patch may go anywhere on it, and faces may turn
- * over; the search begins where the cache has vertices, and where the last frame that this workspace slid left them. Of the
- * stretch that can be removed, sliding removes the share (before - after) / (before - least); a workspace of the relaxed rule
- * finds the lowest.
+/* Searches for the least stretch that a pose allows, which is slow. Vertices inside a patch may go anywhere on it, and faces
+ * may turn over; the search begins both from where the cache has vertices and from where the last frame that this workspace
+ * slid left them. Of the stretch that can be removed, sliding removes the share (before - after) / (before - least); a slider
+ * with the rule RELAXED finds the lowest.
  *   points  in  [vertex_count][3] of that frame
  *   least   out [patch_count] RMS over the edges of log(length / rest length), no more than in the cache
- * Fails with BAD_ARGUMENT (NULL, no frame yet), BAD_POINTS, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread a workspace. */
+ * Fails with BAD_ARGUMENT (NULL, no frame yet), BAD_POINTS, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread at a time for a
+ * workspace. */
 SKINSLIDE_API skinslide_status skinslide_workspace_least_stretch(skinslide_workspace *workspace, const float *points,
                                                                  double *least, skinslide_error *error);
 
 /* ---- What a slide did, by vertex ---------------------------------------------------------------------------------------- */
 
-/* For pictures and maps. Edges count that are of a patch, each once. Any of the arrays may be NULL: it is not wanted. Start
- * from SKINSLIDE_DIAGNOSTICS_DEFAULT. */
+/* Measures of a slide, for pictures and maps. Only edges of patches count, each once. Any of the arrays may be NULL: it is not
+ * wanted. Start from SKINSLIDE_DIAGNOSTICS_DEFAULT. */
 typedef struct skinslide_diagnostics {
     size_t size;           /* sizeof(skinslide_diagnostics) */
     float *stretch_before; /* out [vertex_count] RMS over the edges at the vertex of log(length / rest length), in the cache */
@@ -583,8 +584,8 @@ typedef struct skinslide_diagnostics {
  *   cached       in  [vertex_count][3] the points before sliding
  *   slid         in  [vertex_count][3] after
  *   diagnostics  in, its arrays out
- * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or a slide longer than a float can say:
- * names the vertex), BAD_CONTROL (also where a density is more than a float can say), OUT_OF_MEMORY. */
+ * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or a slide longer than a float can hold:
+ * names the vertex), BAD_CONTROL (also a density larger than a float can hold), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_diagnose(const skinslide_slider *slider, const skinslide_controls *controls,
                                                   const uint8_t *chosen, const float *cached, const float *slid,
                                                   const skinslide_diagnostics *diagnostics, skinslide_error *error);
@@ -614,12 +615,13 @@ SKINSLIDE_API skinslide_status skinslide_limit_points(const skinslide_mesh *mesh
 /* ---- What else a cache holds -------------------------------------------------------------------------------------------- */
 
 /* How the skin turned under each vertex in the last frame that this workspace slid: the least rotation from the smooth normal
- * of the cache at the vertex's own place to that at the place it slid to. Smooth normals are means over all faces of the mesh,
- * and blended from vertex to vertex.
+ * of the cache at the vertex's own place to that at the place it slid to. The smooth normal of a vertex is the mean over all
+ * faces of the mesh at it, and is blended between vertices.
  *   points  in   [vertex_count][3] those of that frame, before sliding
- *   turns   out  [vertex_count][3] axis times the sine of half the angle, right-handed, which is at most half a circle; 0, and
- *                no other, where a vertex did not slide, no face has an area, or the normals are opposite
- * Fails with BAD_ARGUMENT (NULL, no frame yet), BAD_POINTS (not finite), OUT_OF_MEMORY. One thread a workspace. */
+ *   turns   out  [vertex_count][3] axis times the sine of half the angle, right-handed, the angle at most half a circle; 0
+ *                where, and only where, a vertex did not slide, no face there has an area, or the normals are opposite
+ * Fails with BAD_ARGUMENT (NULL, no frame yet), BAD_POINTS (not finite), OUT_OF_MEMORY. One thread at a time for a
+ * workspace. */
 SKINSLIDE_API skinslide_status skinslide_workspace_turns(skinslide_workspace *workspace, const float *points, float *turns,
                                                          skinslide_error *error);
 
@@ -636,7 +638,7 @@ typedef enum skinslide_normals_layout {
  *   turns    in  [vertex_count][3] as skinslide_workspace_turns gives them
  *   vectors  in, out  the cache's, then the carried
  * Fails with BAD_MESH, BAD_ARGUMENT (NULL, no such layout), BAD_POINTS (a vector so long that it might not stay finite: names
- * it), and then carries none. */
+ * it), and then changes none. */
 SKINSLIDE_API skinslide_status skinslide_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout,
                                                float *vectors, skinslide_error *error);
 
@@ -670,16 +672,16 @@ SKINSLIDE_API skinslide_status skinslide_accelerations(int32_t vertex_count, con
 
 /* ---- How smoothly skin moves -------------------------------------------------------------------------------------------- */
 
-/* How roughly a patch moves at a time between two others: by the largest second difference in time of any of its vertices, in
- * object units. Over a shot, the largest in the result over the largest in the cache, neither below what counts, says whether
- * skin pops: it is 1 where skin moves as smoothly as what it slides on. Start from SKINSLIDE_ROUGHNESS_DEFAULT. */
+/* How roughly a patch moves at a time between two others: the largest second difference in time of any of its vertices, in
+ * object units. The largest of the result over a shot, divided by the largest of the cache, says whether skin pops: it is 1
+ * where skin moves as smoothly as what it slides on. Raise both to `least` first. Start from SKINSLIDE_ROUGHNESS_DEFAULT. */
 typedef struct skinslide_roughness {
     size_t size;   /* sizeof(skinslide_roughness) */
-    double before; /* in the cache: |p0 - 2 p1 + p2|, and where steps are uneven, twice the distance of p1 from where even
-                              motion from p0 to p2 would have it */
+    double before; /* in the cache: |p0 - 2 p1 + p2|; where steps are uneven, twice the distance of p1 from where motion at a
+                      constant speed from p0 to p2 would have it */
     double after;  /* and in the result */
-    double least;  /* what counts as no rougher than this, in either: a hundredth of the mean edge at rest, which nobody
-                              sees, or what the rounding of points to float may come to where that is more */
+    double least;  /* the least that counts, in either: a hundredth of the mean edge at rest, which nobody sees, or what
+                      rounding points to float may come to where that is more */
     int32_t vertex_before; /* the mesh vertex that has the largest in the cache */
     int32_t vertex_after;  /* and in the result */
 } skinslide_roughness;
