@@ -196,7 +196,7 @@ static skinslide_status name_lost(const mirror *m, const uint8_t *lost, int32_t 
     if (count > named)
         snprintf(list + used, sizeof list - (size_t)used, " and %d more", count - named);
     return ss_fail(error, SKINSLIDE_BAD_MESH, "point%s %s ha%s no mirror image within %g beyond %c = %g", count > 1 ? "s" : "",
-                   list, count > 1 ? "ve" : "s", m->tolerance, "xyz"[m->axis], m -> plane);
+                   list, count > 1 ? "ve" : "s", m->tolerance, ss_axis_name(m->axis), m->plane);
 }
 
 static skinslide_status allocate(mirror *m, ss_memory *memory, uint8_t **lost, skinslide_error *error) {
@@ -235,7 +235,7 @@ static skinslide_status mirror_faces_of(mirror *m, const int32_t *faces, int32_t
     for (int32_t i = 0; i < face_count; i++)
         if (!mirror_face(m, faces[i], &mirror_faces[i]))
             return ss_fail(error, SKINSLIDE_BAD_MESH, "face %d has no mirror image beyond %c = %g, though its points have",
-                           faces[i], "xyz"[m->axis], m -> plane);
+                           faces[i], ss_axis_name(m->axis), m->plane);
     return SKINSLIDE_OK;
 }
 

@@ -190,7 +190,7 @@ static skinslide_status find_points(search *s, const uint8_t *side, int32_t *sou
             found source = nearest_to(s, at);
             if (!(source.distance <= s->tolerance))
                 return ss_fail(error, SKINSLIDE_BAD_MESH, "the mirror image of point %d beyond %c = %g is %g from the mesh",
-                               vertex, "xyz"[s->axis], s -> plane, source.distance);
+                               vertex, ss_axis_name(s->axis), s->plane, source.distance);
             s->worst = fmax(s->worst, source.distance);
             if (sources)
                 sources[vertex] = source.vertex;
@@ -221,7 +221,8 @@ static skinslide_status run(search *s, const int32_t *faces, int32_t face_count,
         count += s->is_found[f];
     skinslide_status status = find_points(s, s->is_chosen, NULL, error);
     if (!status && !count)
-        status = ss_fail(error, SKINSLIDE_BAD_MESH, "no face is beyond %c = %g where these are", "xyz"[s->axis], s -> plane);
+        status =
+            ss_fail(error, SKINSLIDE_BAD_MESH, "no face is beyond %c = %g where these are", ss_axis_name(s->axis), s->plane);
     return status ? status : find_points(s, s->is_found, sources, error);
 }
 

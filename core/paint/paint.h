@@ -10,9 +10,13 @@ enum { SS_FIRST_TILE = 1001, SS_TILE_COLUMNS = 10, SS_TILE_ROWS = 900 };
 
 /* ---- mirror.c ---- */
 
-/* What both ways to the other side of a mesh are asked. */
+/* Checks the arguments that skinslide_mirror and skinslide_mirror_nearest share. */
 skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
                                  int32_t face_count, skinslide_error *error);
+/* For messages: x, y or z. */
+static inline char ss_axis_name(int32_t axis) {
+    return (char)('x' + axis);
+}
 
 /* ---- texture.c ---- */
 
@@ -23,10 +27,13 @@ typedef struct ss_taken_layout {
 } ss_taken_layout;
 /* Puts what it takes in the place of the caller's layout, and checks that. */
 skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_taken_layout *own, skinslide_error *error);
-/* Files may claim any size, such as that one "has " so many "bytes". */
-skinslide_status ss_check_most(const char *before, uint64_t count, const char *of, uint64_t most, skinslide_status status,
-                               skinslide_error *error);
 /* Texture coordinates of a corner of a face must be finite. */
 skinslide_status ss_check_st(const float st[2], int32_t face, skinslide_error *error);
+
+/* ---- exrread.c ---- */
+
+/* Fails with a status where a count that a file claims is too large: "has " 5000000000 "bytes". */
+skinslide_status ss_check_most(const char *before, uint64_t count, const char *of, uint64_t most, skinslide_status status,
+                               skinslide_error *error);
 
 #endif
