@@ -3,8 +3,9 @@
  * Which face: the lowest that holds the point, its border included, among faces with area. All tests are exact, so the answer
  * depends on the embedding alone and not on how it was found. A vertex whose point is its own place stays, whatever else is
  * there. Where candidates are proposed, from a texture, the first that holds the point begins; else a walk over triangles, see
- * paving.c, which starts where the neighbour before it landed and takes about two steps a query. Where faces may overlap, where a
- * walk goes round or runs into a hole, a tree of faces answers. A point in no face goes to the nearest, and is counted. */
+ * paving.c, which starts where the neighbour before it landed; of its two steps or so most are made beforehand, see approach.c.
+ * Where faces may overlap, where a walk goes round or runs into a hole, a tree of faces answers. A point in no face goes to the
+ * nearest, and is counted. */
 #include "plane.h"
 
 #include <math.h>
@@ -208,11 +209,12 @@ ss_place ss_locate_near(ss_locator *locator, int32_t triangle, const double p[2]
     return place;
 }
 
-static void locate_one(ss_locator *locator, int32_t i, const double p[2], const ss_candidates *candidates, ss_place *out,
-                       ss_located *located) {
+/* from is a slab near by. */
+static void locate_one(ss_locator *locator, int32_t i, int32_t from, const double p[2], const ss_candidates *candidates,
+                       ss_place *out, ss_located *located) {
     const ss_patch *patch = locator->patch;
     const double *own = locator->paving.uv[i];
-    int32_t vertex = patch->free_vertex[i], before = patch->free_before[i], slab = -1;
+    int32_t vertex = patch->free_vertex[i], slab = -1;
     if (p[0] == own[0] && p[1] == own[1]) {
         *out = ss_place_staying(p);
         return;
@@ -223,7 +225,7 @@ static void locate_one(ss_locator *locator, int32_t i, const double p[2], const 
     }
     int32_t candidate = locator->regular ? try_candidates(locator, candidates, p, out) : -1;
     if (candidate < 0 && locator->regular)
-        slab = walk_to(locator, locator->landed[before < 0 ? i : before], p, &located->steps, out);
+        slab = walk_to(locator, from, p, &located->steps, out);
     located->centre += candidate == 0;
     located->around += candidate > 0;
     located->walked += slab >= 0;
@@ -232,13 +234,28 @@ static void locate_one(ss_locator *locator, int32_t i, const double p[2], const 
     locator->landed[i] = slab < 0 ? locator->paving.slab_of[out->triangle] : slab;
 }
 
+/* Those of count queries from begin on, which begin where their neighbours before them landed; of one among themselves, at its own. */
+static void locate_some(ss_locator *locator, int32_t begin, int32_t count, const double (*query)[2],
+                        const ss_candidates *candidates, ss_place *places, ss_located *located) {
+    int32_t near[SS_AT_ONCE];
+    for (int32_t k = 0; k < count; k++) {
+        int32_t before = locator->patch->free_before[begin + k];
+        near[k] = locator->landed[before < 0 ? begin + k : before];
+    }
+    if (count == SS_AT_ONCE && locator->regular && !candidates)
+        located->steps += ss_paving_approach(&locator->paving, query + begin, near);
+    for (int32_t k = 0, i = begin; k < count; k++, i++)
+        locate_one(locator, i, near[k], query[i], candidates ? &candidates[i] : NULL, &places[i], located);
+}
+
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],
                      const ss_candidates *candidates, ss_place *places) {
     ss_located located = {0};
     int32_t count = locator->patch->free_count;
     ss_locator_set(locator, uv, regular);
     memcpy(locator->landed, locator->own, (size_t)count * sizeof *locator->landed);
-    for (int32_t i = 0; i < count; i++)
-        locate_one(locator, i, query[i], candidates ? &candidates[i] : NULL, &places[i], &located);
+    for (int32_t begin = 0; begin < count; begin += SS_AT_ONCE)
+        locate_some(locator, begin, count - begin < SS_AT_ONCE ? count - begin : SS_AT_ONCE, query, candidates, places,
+                    &located);
     return located;
 }

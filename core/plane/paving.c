@@ -44,6 +44,7 @@ static void lay_slabs(const ss_patch *patch, ss_paving *paving, const int32_t *n
             slab->vertex[k] = number[triangles->vertex[t][k]];
             slab->beyond[k] = beyond < 0 ? -1 : paving->slab_of[beyond];
         }
+        slab->beyond[3] = paving->slab_of[t];
     }
 }
 

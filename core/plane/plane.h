@@ -76,7 +76,7 @@ ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]);
 /* ---- paving.c: the triangles of an embedding as walks go over them ---- */
 
 typedef struct ss_slab {
-    int32_t vertex[3], beyond[3]; /* of the paving: slabs over each side, -1 on the border */
+    int32_t vertex[3], beyond[4]; /* of the paving: slabs over each side, -1 on the border; and itself */
     int32_t triangle;             /* of the patch */
 } ss_slab;
 
@@ -97,6 +97,14 @@ void ss_paving_lay_out(ss_paving *paving, const double (*uv)[2]);
 int32_t ss_paving_walk(const ss_paving *paving, int32_t from, const double p[2], bool *on_border, int64_t *steps);
 /* The place of a point of a slab. */
 void ss_paving_place_at(const ss_paving *paving, int32_t slab, const double p[2], ss_place *out);
+
+/* ---- approach.c ---- */
+
+enum { SS_AT_ONCE = 8 };
+/* Goes near as many points: each from its slab to one that may hold it. Returns how many slabs were entered. */
+int64_t ss_paving_approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE]);
+/* The same as processors without AVX2 do it. */
+int64_t ss_paving_approach_plain(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE]);
 
 /* ---- locate.c, facetree.c ---- */
 

@@ -42,6 +42,7 @@ static void every_slab_is_a_triangle_of_the_patch(void **state) {
         for (int32_t t = 0; t < triangles->count; t++) {
             const ss_slab *slab = &paving.slab[paving.slab_of[t]];
             assert_int_equal(slab->triangle, t);
+            assert_int_equal(slab->beyond[3], paving.slab_of[t]);
             for (int k = 0; k < 3; k++) {
                 int32_t beyond = slab->beyond[k];
                 assert_int_equal(paving.vertex[slab->vertex[k]], triangles->vertex[t][k]);
