@@ -81,16 +81,16 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     _add_bake(_add_command(commands, "bake", "slide every frame and write a layer of corrected points"))
-    _add_check(_add_command(commands, "check", "say what would be slid, and every problem"))
+    _add_check(_add_command(commands, "check", "say what would be slid, and list every problem"))
     _add_preview(_add_command(commands, "preview", "draw pictures of every patch, before and after sliding"))
     _add_maps(_add_command(commands, "maps", "draw stretch, slide and force density in texture coordinates"))
     _add_setup(_add_command(commands, "setup", "write a layer that makes a patch of some faces of a mesh"))
     _add_paint(_add_command(commands, "paint", "write a layer that gives edges of a patch a force density"))
     _add_mirror(_add_command(commands, "mirror", "write a layer that copies a patch to a mesh's other side"))
-    _add_cache(_add_command(commands, "cache", "write the points that UsdSkel skins into a layer of samples"))
-    _add_stitch(_add_command(commands, "stitch", "put chunks of frames, baked apart, into one layer"))
+    _add_cache(_add_command(commands, "cache", "write the points that UsdSkel skins to a layer, as samples"))
+    _add_stitch(_add_command(commands, "stitch", "join chunks of frames, baked separately, in one layer"))
     _add_farm(_add_command(commands, "farm", "write a job that bakes chunks of frames on a farm and stitches them"))
-    _add_report(_add_command(commands, "report", "write one page of many shots, from what --json printed of each"))
+    _add_report(_add_command(commands, "report", "write one page of many shots, from what --json printed for each"))
     return parser
 
 
@@ -126,14 +126,14 @@ def _add_device(command: argparse._ActionsContainer) -> None:
         "--egl-device",
         type=count_text,
         metavar="N",
-        help=f"the one of EGL's devices to use (default: {_DEVICE_VARIABLE} in the environment, else the first that "
+        help=f"number of the EGL device to use (default: {_DEVICE_VARIABLE} in the environment, else the first that "
         "works, hardware before software)",
     )
     command.add_argument(
         "--egl-resolution",
         type=positive_text,
         metavar="N",
-        help="texels along a side of the texture of faces (default: by the patch, 256 to 4096)",
+        help="texels along a side of the texture of faces (default: 256 to 4096, by the patch)",
     )
 
 
@@ -146,7 +146,7 @@ def _add_json(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--json",
         action="store_true",
-        help="print the report as one JSON document on stdout; a number that is not finite is null",
+        help="print the report as one JSON document on stdout; numbers that are not finite are null",
     )
 
 
@@ -160,8 +160,8 @@ def _add_page(command: argparse._ActionsContainer) -> None:
     command.add_argument(
         "--html",
         metavar="FILE",
-        help="a page of all pictures, to be scrubbed through, with curves of stretch, slides, folds and time and the "
-        "settings used: one file, which loads no other",
+        help="HTML page to write, in one file that loads no other: all pictures, to scrub through, curves of stretch, "
+        "slides, folds and time, and the settings used",
     )
 
 
@@ -170,20 +170,20 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     _add_output(
         command,
         "OUT",
-        "layer of overs to write, to be sublayered above the cache: .usda, .usdc or .usd. "
-        "Replaced in one step at the end, so a bake that fails or is killed leaves it as it was; one killed outright "
-        "leaves partial files beside it, which the next bake of OUT removes when they are a day old",
+        "layer of overs to write, to sublayer above the cache: .usda, .usdc or .usd. It is replaced in one step at "
+        "the end, so that a bake that fails or is killed leaves it as it was; SIGKILL leaves partial files beside it, "
+        "which the next bake of OUT removes once they are a day old",
     )
     _add_options(command, SlideOptions)
     _add_options(command, LayerOptions)
     _add_options(command, ChunkOptions)
     _add_printing(command)
     pictures = command.add_argument_group("pictures of the same frames, as preview draws them")
-    pictures.add_argument("--pictures", metavar="DIR", help="a folder for them, as of preview -o")
+    pictures.add_argument("--pictures", metavar="DIR", help="folder for them, as preview -o")
     _add_page(pictures)
     _add_options(pictures, PictureOptions)
     maps = command.add_argument_group("maps of the same frames, as maps draws them, with --patch and --st")
-    maps.add_argument("--maps", metavar="DIR", help="a folder for them, as of maps -o")
+    maps.add_argument("--maps", metavar="DIR", help="folder for them, as maps -o")
     _add_option(maps, MapOptions.__dataclass_fields__["size"], "map_size", _MAP_SIZE)
     _add_options(maps, MapOptions, "strain")
 
@@ -200,9 +200,9 @@ def _add_preview(command: argparse.ArgumentParser) -> None:
     _add_output(
         command,
         "DIR",
-        "folder for MESH.PATCH.VIEW.FRAME.png (MESH.PATCH.PIECE.VIEW.FRAME.png where a patch falls into pieces) "
-        "and contact_sheet.png (with --frames contact_sheet.FIRST-LAST.png), made where it is missing; each file is "
-        "replaced in one step. This, --html, or both",
+        "folder for MESH.PATCH.VIEW.FRAME.png (MESH.PATCH.PIECE.VIEW.FRAME.png if a patch falls into pieces) "
+        "and contact_sheet.png (with --frames contact_sheet.FIRST-LAST.png), made if it is missing; each file is "
+        "replaced in one step. Give this, --html, or both",
         dest="folder",
         required=False,
     )
@@ -217,10 +217,10 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
     _add_output(
         command,
         "DIR",
-        "folder for the maps, made where it is missing: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where "
-        "faces reach beyond the first tile of a UDIM. KIND is stretchBefore and stretchAfter (the RMS of log(length / "
-        "rest length) over the edges at a point), slide (distance, in the mesh's units) and forceDensity (as painted). "
-        "One channel, Y. A map is replaced in one step, so one that fails or is killed leaves it as it was",
+        "folder for the maps, made if it is missing: MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr if faces reach "
+        "beyond the first tile of a UDIM. KIND is stretchBefore and stretchAfter (the RMS of log(length / rest length) "
+        "over the edges at a point), slide (distance, in the mesh's units) and forceDensity (as painted). Each has one "
+        "channel, Y. A map is replaced in one step: a run that fails or is killed leaves no half of one",
         dest="folder",
     )
     _add_options(command, SlideOptions)
@@ -231,14 +231,14 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
 
 
 def _add_layer(command: argparse.ArgumentParser) -> None:
-    """What the commands that write a set-up have."""
+    """What all commands that write a set-up have."""
     _add_stage(command)
     _add_output(
         command,
         "X.skinslide",
-        "layer to write: .skinslide, .usda, .usdc or .usd. It sublayers STAGE by a relative path. "
-        "If it exists and sublayers STAGE this is written into it, and it keeps everything else but comments in its "
-        "text; any other existing file is an error",
+        "layer to write: .skinslide, .usda, .usdc or .usd. It sublayers STAGE by a relative path. If it exists and "
+        "sublayers STAGE already, it keeps everything else that is in it, except comments; any other existing file is "
+        "an error",
     )
     command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
 
@@ -253,18 +253,20 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--payload",
         metavar="FILE",
-        help="write FILE too, .usda, .usdc or .usd, which payloads the .skinslide and below it STAGE: where "
-        "skinslide is not, and the first cannot be opened, the character stays as its cache has it",
+        help="also write FILE, .usda, .usdc or .usd, which payloads the .skinslide and, weaker, STAGE: without "
+        "skinslide, where the first cannot be opened, the character shows as its cache has it",
     )
     command.add_argument("--prim", metavar="PATH", help="the mesh; with --whole any prim (default: the whole stage)")
-    command.add_argument("--patch", metavar="NAME", help="the patch's name, such as elbow_L; with --whole: skin")
+    command.add_argument(
+        "--patch", metavar="NAME", help="the patch's name, such as elbow_L (default with --whole: skin)"
+    )
     faces = command.add_mutually_exclusive_group(required=True)
     faces.add_argument("--faces", metavar="SPEC", help="faces by index, such as 0-120,140; both ends count")
     faces.add_argument("--subset", metavar="NAME", help="the faces of the GeomSubset NAME under the mesh")
     faces.add_argument(
         "--primvar",
         metavar="NAME",
-        help="the faces where the primvar NAME is above 0, by face (uniform) or on all points (vertex)",
+        help="the faces where the primvar NAME is above 0: uniform, of the face; vertex, of all its points",
     )
     faces.add_argument(
         "--joint",
@@ -275,31 +277,36 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
     faces.add_argument(
         "--whole",
         action="store_true",
-        help="every mesh that is rendered, where its edges ever stretch by over 2 %%, and so much around that as lets "
-        "it give: nothing need be painted",
+        help="on every mesh that is rendered, the faces whose edges ever stretch by over 2 %%, and enough around them "
+        "to give: nothing need be painted",
     )
     command.add_argument(
-        "--reach", type=float, metavar="X", help="for --joint: how far from it, in its length (default: 0.75)"
+        "--reach", type=float, metavar="X", help="for --joint: how far from it, in lengths of the joint (default: 0.75)"
     )
     command.add_argument(
-        "--mirror", action="store_true", help="for --joint: the other side's too, by the names of joints and patch"
+        "--mirror", action="store_true", help="for --joint: also the other side, found by the names of joints and patch"
     )
-    command.add_argument("--frames", metavar="SPEC", help="of --whole, such as 1001:1024 (default: every sample)")
+    command.add_argument(
+        "--frames", metavar="SPEC", help="for --whole: frames to look at, such as 1001:1024 (default: every sample)"
+    )
     command.add_argument(
         "--pin",
         action="append",
         metavar="NAME",
-        help="points of a GeomSubset, or where a primvar is above 0, that stay, such as lips, lids and nails; more by "
-        "repeating it",
+        help="points that stay, such as lips, lids and nails: a GeomSubset, or a primvar that is above 0 there; may be "
+        "given again",
     )
     command.add_argument(
-        "--weight", type=number_or_name, metavar="X", help="how far points slide, 0 to 1, or a primvar of it by point"
+        "--weight",
+        type=number_or_name,
+        metavar="X",
+        help="how far points slide, 0 to 1, or the name of a primvar of that",
     )
     command.add_argument("--rule", metavar="RULE", help="unit, fast, relaxed or even (default of a new patch: even)")
     command.add_argument("--holes", metavar="HOLES", help="pinned, free or freeAll")
     command.add_argument("--interpolation", metavar="WAY", help="auto, linear, meanValue or limit")
     command.add_argument(
-        "--grow", type=float, metavar="D", help="how far around its faces skin joins the patch, in the mesh's units"
+        "--grow", type=float, metavar="D", help="how far around its faces the patch grows, in the mesh's units"
     )
 
 
@@ -321,14 +328,14 @@ def _add_paint(command: argparse.ArgumentParser) -> None:
         dest="distance",
         type=float,
         metavar="D",
-        help="for --curve: edges whose middle is no farther, in the mesh's units",
+        help="for --curve: how far from it an edge's middle may be, in the mesh's units",
     )
     command.add_argument(
         "--direction",
         choices=("any", "along", "across"),
-        help="for --curve: edges at 45 degrees or less to it (along), at more (across), or any (default)",
+        help="for --curve: edges at 45 degrees or less to it (along), edges at more (across), or any (default)",
     )
-    command.add_argument("--clear", action="store_true", help="forget what was painted by edge before")
+    command.add_argument("--clear", action="store_true", help="first remove what was painted by edge before")
 
 
 def _add_mirror(command: argparse.ArgumentParser) -> None:
@@ -355,30 +362,30 @@ def _add_cache(command: argparse.ArgumentParser) -> None:
     _add_output(
         command,
         "OUT",
-        "layer of overs to write, .usda, .usdc or .usd, to be sublayered above the character, whose meshes are "
-        "then skinned no more; replaced in one step at the end. Live layers slide it",
+        "layer of overs to write, .usda, .usdc or .usd, to sublayer above the character, whose meshes UsdSkel then no "
+        "longer skins; replaced in one step at the end. Live layers slide it",
     )
     _add_options(command, SlideOptions, "prims", "frames")
     _add_printing(command)
 
 
 def _add_stitch(command: argparse.ArgumentParser) -> None:
-    command.add_argument("chunks", nargs="+", metavar="CHUNK", help="layers that bake wrote, each with other --frames")
+    command.add_argument("chunks", nargs="+", metavar="CHUNK", help="layers that bake wrote, each of other frames")
     _add_output(
         command,
         "OUT",
-        "layer of overs to write, with all that one bake of all the frames has; replaced in one step at the end",
+        "layer of overs to write, the same as one bake of all the frames; replaced in one step at the end",
     )
     command.add_argument(
         "--frames",
         metavar="SPEC",
-        help="those that the chunks must have, no more and no less, such as 1001:1024 (default: those of which --chunk "
-        "made parts, else all of the shot between the first and the last)",
+        help="the frames that the chunks must have, no more and no fewer, such as 1001:1024 (default: those that "
+        "--chunk split, else all of the shot between the first and the last)",
     )
     command.add_argument(
         "--clips",
         action="store_true",
-        help="write value clips over the chunks, which stay, instead of copying their samples, with "
+        help="instead of copying samples, write value clips of the chunks, which must stay where they are, and "
         "OUT.manifest.DIGEST.usda",
     )
     _add_printing(command)
@@ -389,13 +396,13 @@ def _add_farm(command: argparse.ArgumentParser) -> None:
     _add_output(
         command,
         "OUT",
-        "the layer that the job is to make, .usda, .usdc or .usd, beside which the job is written, "
-        "OUT.openjd.json or OUT.slurm.sh; or the job, .json, .yaml or .sh, whose layer then has its name",
+        "the layer that the job is to make, .usda, .usdc or .usd; the job is written beside it, as OUT.openjd.json or "
+        "OUT.slurm.sh. Or the job itself, .json, .yaml or .sh; its layer then has the same name",
     )
     _add_options(command, FarmOptions)
     _add_options(command, SlideOptions, "prims", "frames")
     _add_options(command, LayerOptions, *(each.name for each in fields(LayerOptions) if each.name != "share"))
-    command.add_argument("--pictures", metavar="DIR", help="a folder for pictures, which a task draws at the end")
+    command.add_argument("--pictures", metavar="DIR", help="folder for pictures, which one task draws at the end")
     _add_page(command)
     _add_printing(command)
 
@@ -404,8 +411,8 @@ def _add_report(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "folder",
         metavar="DIR",
-        help="a folder with what bake --json or preview --json printed of each shot, in it or below, in files that end "
-        "in .json. A page of pictures beside one, of its name or called report.html, is led to",
+        help="folder with what bake --json or preview --json printed for each shot, in files that end in .json, in it "
+        "or below. A page beside such a file, of the same name or called report.html, is linked to",
     )
     _add_output(command, "FILE", "the page, .html (default: DIR/shots.html)", required=False)
     _add_printing(command)

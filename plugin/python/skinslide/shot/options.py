@@ -39,24 +39,24 @@ class SlideOptions(Options):
         action="append",
         metavar="PATH",
         help="only the mesh at PATH and meshes below it; may be given again (default: every mesh with a patch). What "
-        "USD cannot compose elsewhere, such as a missing payload, is then a warning and no error",
+        "USD cannot compose elsewhere, such as a missing payload, is then a warning instead of an error",
     )
     frames: AskedFrames = option(
         None,
         or_none(checks.frames),
         "--frames",
         metavar="SPEC",
-        help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas "
-        "(default: the samples of points and of animated controls, and the whole time codes between those more than "
-        "one apart; authored: the samples alone; a mesh without any has one default value)",
+        help="frames to take, such as 1001, 1001:1024, 1001-1024x2, -5:5x0.25, or several with commas; or authored, "
+        "the samples of points and of animated controls (default: these, and the whole time codes between samples more "
+        "than one apart; a mesh without samples has one frame, its default values)",
     )
     lookup: Lookup = option(
         "auto",
         checks.lookup,
         "--lookup",
         choices=("auto", "egl", "exact"),
-        help="how rest vertices are looked up in a frame by the rules unit and fast; the result is the same: egl "
-        "renders a colour a face, exact walks, auto is egl where EGL has a hardware device and exact elsewhere "
+        help="how the rules unit and fast look rest vertices up in a frame, with the same result: egl renders each "
+        "face in its own colour, exact walks, auto is egl where EGL has a hardware device and exact elsewhere "
         "(default: %(default)s)",
     )
     jobs: int = option(
@@ -65,7 +65,7 @@ class SlideOptions(Options):
         "--jobs",
         type=checks.positive_text,
         metavar="N",
-        help="frames in hand at once; the result is the same (default: the processors, here %(default)s)",
+        help="frames to work on at once; the result is the same (default: one for each processor, here %(default)s)",
     )
 
     @property
@@ -82,7 +82,7 @@ class SlideOptions(Options):
 
 @dataclass(frozen=True)
 class LayerOptions(Options):
-    """What a bake writes beside points, and how much of what is bad a patch may have; None is any number."""
+    """What a bake writes beside points, and how bad a patch may be before it fails; None sets no limit."""
 
     max_folded: int | None = option(
         None,
@@ -90,7 +90,7 @@ class LayerOptions(Options):
         "--max-folded",
         type=checks.count_text,
         metavar="N",
-        help="fail, and write nothing, where a patch has more than N faces turned over in its embedding at a frame",
+        help="fail, and write nothing, if a patch has more than N faces turned over in its embedding at a frame",
     )
     max_clamped: int | None = option(
         None,
@@ -98,7 +98,7 @@ class LayerOptions(Options):
         "--max-clamped",
         type=checks.count_text,
         metavar="N",
-        help="fail, and write nothing, where a patch has more than N vertices looked up outside every face at a frame",
+        help="fail, and write nothing, if a patch has more than N vertices looked up outside every face at a frame",
     )
     max_stretch: float | None = option(
         None,
@@ -106,7 +106,7 @@ class LayerOptions(Options):
         "--max-stretch",
         type=float,
         metavar="X",
-        help="fail, and write nothing, where a patch has more stretch than X, slid, at a frame: the RMS of "
+        help="fail, and write nothing, if a patch has more stretch than X after sliding at a frame: the RMS of "
         "log(length / rest length) over its edges",
     )
     max_added_stretch: float | None = option(
@@ -115,7 +115,7 @@ class LayerOptions(Options):
         "--max-added-stretch",
         type=float,
         metavar="X",
-        help="fail, and write nothing, where a patch has over X more stretch slid than in the cache, at a frame",
+        help="fail, and write nothing, if sliding adds more than X to the stretch of a patch at a frame",
     )
     max_roughness: float | None = option(
         None,
@@ -123,47 +123,47 @@ class LayerOptions(Options):
         "--max-roughness",
         type=float,
         metavar="X",
-        help="fail, and write nothing, where a patch moves more than X times as roughly as its cache: by the largest "
-        "second difference in time, between the frames that are made, of which none counts as less than a hundredth of "
-        "the patch's mean edge at rest",
+        help="fail, and write nothing, if a patch moves more than X times as roughly as its cache, by the largest "
+        "second difference in time over the frames that are made, where neither counts as less than a hundredth of the "
+        "patch's mean edge at rest",
     )
     share: bool = option(
         False,
         checks.truth,
         "--share",
         action="store_true",
-        help="search at each frame for the least stretch that its pose allows, and report the share of what can be "
-        "removed that sliding removes; slow, seconds a frame for thousands of vertices",
+        help="search at each frame for the least stretch that its pose allows, and report how much of what could be "
+        "removed sliding removes; slow: seconds a frame for thousands of vertices",
     )
     diagnostics: bool = option(
         False,
         checks.truth,
         "--diagnostics",
         action="store_true",
-        help="write primvars beside the points: by vertex primvars:skinSlide:stretch, the RMS of log(length / rest "
-        "length) over the edges of patches, slid; primvars:skinSlide:slide, how far it slid; largestStretch and "
-        "smallestStretch, the principal stretches as lengths by lengths at rest, and areaRatio, their product; by "
-        "corner stretchDirection, that of the largest in st, as the cosine and sine of twice its angle",
+        help="write primvars beside the points. By vertex: primvars:skinSlide:stretch, the RMS of log(length / rest "
+        "length) over its edges after sliding; slide, how far it slid; largestStretch and smallestStretch, the "
+        "principal stretches as lengths over lengths at rest; areaRatio, their product. By corner: stretchDirection, "
+        "that of the largest in st, as the cosine and sine of twice its angle",
     )
 
 
 @dataclass(frozen=True)
 class ChunkOptions(Options):
-    """Of a bake into a file that is one of several."""
+    """How a bake makes one of several files of a shot."""
 
     chunk: Chunk | None = option(
         None,
         or_none(checks.chunk),
         "--chunk",
         metavar="K/N",
-        help="bake the Kth of N parts of the frames, such as 3/8, as a task of a farm does; stitch puts them together",
+        help="bake the Kth of N parts of the frames, such as 3/8, as a task of a farm does; stitch joins them",
     )
     resume: bool = option(
         False,
         checks.truth,
         "--resume",
         action="store_true",
-        help="bake nothing where the output is whole already, of the same frames, set-up, cache and options, by the "
+        help="bake nothing if the output is complete already, from the same frames, set-up, cache and options, by the "
         "same version",
     )
 
@@ -179,15 +179,15 @@ class FarmOptions(Options):
         type=checks.positive_text,
         metavar="N",
         required=True,
-        help="how many frames a task bakes, at most",
+        help="the most frames that a task bakes",
     )
     form: str = option(
         "openjd",
         checks.one_of("format", QUEUES),
         "--format",
         choices=QUEUES,
-        help="openjd: a template of Open Job Description, for openjd run and AWS Deadline Cloud; slurm: a script that "
-        "submits an array and what follows it (default: %(default)s)",
+        help="openjd: an Open Job Description template, for openjd run and AWS Deadline Cloud; slurm: a script that "
+        "submits an array of tasks and what follows it (default: %(default)s)",
     )
 
 
@@ -212,8 +212,8 @@ class PictureOptions(Options):
         "--view",
         action="append",
         choices=VIEWS,
-        help="chequer: on the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
-        "false colours; density: the force density that is painted; slide: how far each point slid, and from where; "
+        help="chequer: by the texture coordinates; stretch: the RMS of log(length / rest length) around each point, in "
+        "false colours; density: the painted force density; slide: how far each point slid, and from where; "
         "texture: the base colour texture of the mesh's material; may be given again (default: chequer and stretch)",
     )
     compare: Names = option(
@@ -222,7 +222,7 @@ class PictureOptions(Options):
         "--compare",
         type=checks.words_text,
         metavar="RULE[,RULE]",
-        help="beside the cache, what each of these rules makes of every patch, in the place of its own",
+        help="show beside the cache what each of these rules makes of every patch, in place of the patch's own rule",
     )
     wire: bool = option(False, checks.truth, "--wire", action="store_true", help="draw the sides of the patch's faces")
     camera: PrimLike | None = option(
@@ -230,33 +230,33 @@ class PictureOptions(Options):
         or_none(checks.prim),
         "--camera",
         metavar="PATH",
-        help="a Camera of the stage (default: one that has the patch in sight all through the shot, standing still, or "
-        "going along where the patch goes far)",
+        help="a Camera of the stage (default: one that sees the patch all through the shot, standing still, or moving "
+        "along if the patch goes far)",
     )
     follow: bool = option(
-        False, checks.truth, "--follow", action="store_true", help="frame the patch anew in each frame"
+        False, checks.truth, "--follow", action="store_true", help="point the camera at the patch anew in each frame"
     )
     size: tuple[int, int] = option(
-        None,  # what it is then, the poses side by side say
+        None,  # then by how many poses are side by side
         or_none(checks.picture_size),
         "--size",
         type=checks.size_text,
         metavar="WxH",
-        help="pixels (default: 960x1080 for each of the poses side by side)",
+        help="pixels of a picture (default: 960x1080 for each of the poses side by side)",
     )
     form: str = option(
         "png",
         checks.one_of("format", FORMATS),
         "--format",
         choices=FORMATS,
-        help="of the pictures; exr is linear light",
+        help="file format of the pictures; exr is in linear light (default: %(default)s)",
     )
     st: str | None = option(
         None,
         or_none(checks.coordinates),
         "--st",
         metavar="NAME",
-        help="the primvar that the chequer follows (default: st, and on a mesh without it places at rest)",
+        help="primvar with the texture coordinates of the chequer (default: st; on a mesh without it, rest points)",
     )
     squares: float | None = option(
         None,
@@ -264,7 +264,7 @@ class PictureOptions(Options):
         "--squares",
         type=float,
         metavar="N",
-        help="of the chequer, for each unit of it (default: 16 across the patch)",
+        help="squares of the chequer for each unit of st, or of length (default: 16 across the patch)",
     )
     most_stretch: float = option(
         0.5,
@@ -272,7 +272,7 @@ class PictureOptions(Options):
         "--most-stretch",
         type=float,
         metavar="X",
-        help="what the end of the scale of colours stands for (default: %(default)s)",
+        help="the stretch at the end of the scale of colours (default: %(default)s)",
     )
 
     def __post_init__(self) -> None:
@@ -309,7 +309,7 @@ class MapOptions(Options):
         "--patch",
         action="append",
         metavar="NAME",
-        help="draw the faces of patch NAME only, though all slide; may be given again (default: every patch)",
+        help="draw only the faces of patch NAME, though all slide; may be given again (default: every patch)",
     )
     size: int = option(
         1024,
@@ -324,17 +324,17 @@ class MapOptions(Options):
         checks.coordinates,
         "--st",
         metavar="NAME",
-        help="the primvar with texture coordinates, in which the maps are drawn and carried on for 4 texels beyond; "
-        "where faces overlap in it, as with mirrored halves, the later in the mesh is seen (default: %(default)s)",
+        help="primvar with the texture coordinates that the maps are drawn in, and 4 texels beyond their borders; "
+        "where faces overlap, as mirrored halves do, the later one in the mesh shows (default: %(default)s)",
     )
     strain: bool = option(
         False,
         checks.truth,
         "--strain",
         action="store_true",
-        help="MESH.strain.FRAME.exr too, of the slid skin, for wrinkles: channels largest and smallest, the principal "
-        "stretches as lengths by lengths at rest, area, their product, and direction.x and direction.y, the cosine and "
-        "sine of twice the angle of the largest from s towards t",
+        help="also write MESH.strain.FRAME.exr, of the slid skin, for wrinkles: channels largest and smallest, the "
+        "principal stretches as lengths over lengths at rest; area, their product; direction.x and direction.y, the "
+        "cosine and sine of twice the angle of the largest from s towards t",
     )
 
 
