@@ -1,11 +1,15 @@
 """skinslide: skin that slides over a deformed mesh instead of sticking to it.
 
-`bake` corrects a stage, `farm` writes a job of chunks that `stitch` puts together, `cache` writes what UsdSkel skins,
-`check` says what would be slid, `preview` draws it before and after, `maps` in texture coordinates, as a bake also does
-for `Pictures` and `Maps`, and `report` makes a page of many shots; `setup` writes a patch, `paint` its edges, `mirror`
-its counterpart on a mesh's other side. `Slider` is the same on numpy arrays, and needs no USD.
+On stages:
+- `setup` writes a patch, `paint` the force density of its edges, `mirror` its counterpart on the mesh's other side.
+- `check` says what would be slid; `bake` slides it, and `cache` writes what UsdSkel skins.
+- `preview` draws skin before and after sliding, `maps` in texture coordinates; a bake does both too, when it is given
+  `Pictures` or `Maps`. `report` makes one page of many shots.
+- `farm` writes a job that bakes chunks of a shot, and `stitch` joins them.
 
-Importing skinslide loads nothing but this: each name brings what it needs when it is first asked for.
+On numpy arrays, without USD: `Slider`.
+
+Importing skinslide loads only this module: each name loads what it needs when it is first used.
 """
 
 from __future__ import annotations
@@ -130,7 +134,7 @@ __all__ = [
     "stitch",
 ]
 
-# The modules that have them; a test holds these to what type checkers are told above.
+# The modules that have these names; a test compares them with what type checkers are told above.
 _HOMES = {
     "arrays.native": ("Controls", "Lookup", "PatchSetup", "Sample", "Subdivision"),
     "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult", "Roughness"),
@@ -196,9 +200,9 @@ def cmake_dir() -> str:
 
 
 def plugin_dir() -> str:
-    """The folder to add to PXR_PLUGINPATH_NAME, for a host with a USD that skinslide was built for with pxr_DIR.
+    """The folder to add to PXR_PLUGINPATH_NAME in a host whose USD skinslide was built for, with pxr_DIR.
 
-    Not with the wheel usd-core, whose library hides its symbols until skinslide is imported: import it first there.
+    This does not do for the wheel usd-core, whose library hides its symbols: import skinslide first there.
     """
     return str(registration.PLUGIN_DIR)
 

@@ -1,7 +1,7 @@
-"""Calls of the library that may take minutes, and a signal that is answered meanwhile.
+"""Calls of the library that may take minutes, with signals handled meanwhile.
 
-Python handles signals on its main thread alone, and not inside of a call. So the call is made on another thread, and
-the main one waits. It cannot be ended: where a signal raises, it goes on apart to its end, and nothing comes of it.
+Python handles signals only on its main thread, and not inside a call of C. So the call is made on another thread, and
+the main thread waits. The call cannot be stopped: where a signal's handler raises, it runs on to its end, unheeded.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from concurrent.futures import Future, wait
 from typing import Any, TypeVar
 
 T = TypeVar("T")
-APART = "skinslide"  # what the names of threads begin with that a signal leaves at work
-ANSWERED = 0.1  # seconds after which a signal is answered at the latest
+APART = "skinslide"  # the beginning of the names of threads that may run on after a signal
+ANSWERED = 0.1  # the most seconds until a signal is handled
 
 
 def apart(make: Callable[..., T], *arguments: Any) -> T:
-    """What `make` gives of the arguments, which are kept for as long as it goes on."""
+    """Calls `make`, and returns what it returns. The arguments are kept alive for as long as it runs."""
     future: Future[T] = Future()
 
     def run() -> None:
@@ -32,6 +32,7 @@ def apart(make: Callable[..., T], *arguments: Any) -> T:
         threading.Thread(target=run, name=APART, daemon=True).start()
     except RuntimeError:  # the machine gives no more threads
         return make(*arguments)
-    while not future.done():  # in turns: a signal that another thread takes, or that comes just before, ends no wait
+    # In short waits, since a signal does not end one where another thread takes it, or where it comes just before.
+    while not future.done():
         wait([future], ANSWERED)
     return future.result()

@@ -26,7 +26,7 @@ from skinslide.problems import SliderError
 
 
 class Viewport(NamedTuple):
-    """Part of a canvas, pixels from its lower left corner."""
+    """Part of a canvas, in pixels from its lower left corner."""
 
     x: int
     y: int
@@ -65,10 +65,10 @@ class Tessellation:
         Args:
             shape: The faces of the mesh.
             rest_points: Of the mesh (V, 3).
-            st: At the mesh's corners (sum of counts, 2); None: chequers are squares in space, at rest.
-            faces: Those outlined (n,).
-            subdivision: Of which the limit surface is drawn; None: the faces are.
-            weld: Of each point that which it is one with (V,): where faces meet there is no outline.
+            st: Texture coordinates of the mesh's corners (sum of counts, 2); None: chequers are cubes at rest.
+            faces: Those to be outlined (n,).
+            subdivision: How the mesh is subdivided: its limit surface is drawn; None: its faces are.
+            weld: The point that each is one with (V,), so that no outline runs along a seam.
         """
         native, out = Arguments(), ffi.new("skinslide_tessellation **")
         mesh = native.mesh(*shape, rest_points, subdivision, weld)
@@ -105,8 +105,8 @@ class Marks(NamedTuple):
 
     wire: bool = False  # the sides of its faces
     pins: np.ndarray | None = None  # (V,) bool: a dot at each
-    ways: np.ndarray | None = None  # (V, 3) by which vertices came to where they are
-    edges: np.ndarray | None = None  # (k, 2): lines of the colours of the scale, along those of the patch
+    ways: np.ndarray | None = None  # (V, 3) how vertices slid: a line to each from where it came
+    edges: np.ndarray | None = None  # (k, 2) vertices: lines in colours of the scale, along those that the patch has
     edge_values: np.ndarray | None = None  # (k,)
 
 
@@ -114,7 +114,7 @@ NO_MARKS = Marks()
 
 
 class Paint(NamedTuple):
-    """What a mesh is painted with: a chequer, false colours, or a texture in the place of the chequer."""
+    """What a mesh is painted with on a layer: a chequer, false colours, or a texture in place of the chequer."""
 
     scale: Scale | None = None
     texture: Mapping[int, np.ndarray] | None = None  # uint8 (height, width, 4) by the number of its tile
@@ -126,7 +126,7 @@ MOST_LAYERS: int = lib.SKINSLIDE_MOST_LAYERS
 class Canvas:
     """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light).
 
-    On as many `layers`, at most MOST_LAYERS, a mesh is drawn at once, each in a paint of its own.
+    It has several `layers`, at most MOST_LAYERS: pictures that a mesh is drawn on at once, each in a paint of its own.
     """
 
     def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None, layers: int = 1):
@@ -141,13 +141,13 @@ class Canvas:
 
     @property
     def device(self) -> DeviceInfo:
-        """What it is drawn with."""
+        """The device that draws."""
         info = new("device_info")
         call(lib.skinslide_canvas_device, self._handle.pointer, info)
         return read(DeviceInfo, info[0])
 
     def clear(self, colour: Sequence[float]) -> None:
-        """Fills it with a colour, linear light."""
+        """Fills all layers with a colour, linear light."""
         native = Arguments()
         call(lib.skinslide_canvas_clear, self._handle.pointer, native.pointer(colour, np.float32, (3,), "colour"))
 
@@ -172,9 +172,9 @@ class Canvas:
     ) -> None:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale.
 
-        A texture is uint8 (height, width, 4) by the number of its tile, in the place of the chequer. With ghosts, what
-        hides the patch is but a shadow. Lines are `line` times as wide as usual. On the layers after the first it is
-        drawn in the paint of others.
+        A texture takes the place of the chequer: tiles of uint8 (height, width, 4) by their numbers. With ghosts, what
+        hides the patch is drawn as a mere shadow. Lines are `line` times as wide as usual. The layers after the first
+        show the mesh in the paint of `others`.
         """
         native, figure = Arguments(), new("figure")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
@@ -200,7 +200,7 @@ class Canvas:
         call(lib.skinslide_canvas_draw, self._handle.pointer, _viewport(viewport), _camera(camera), figure)
 
     def read(self, layer: int = 0) -> np.ndarray:
-        """(height, width, 4), from the top row on."""
+        """The picture on a layer, (height, width, 4), uint8 or float32, from the top row on."""
         pixels = np.empty((self.height, self.width, 4), self._dtype)
         call(lib.skinslide_canvas_read_layer, self._handle.pointer, layer, writable("char[]", pixels))
         return pixels
@@ -251,7 +251,7 @@ def _camera(camera: Camera) -> Any:
 def _paint(
     native: Arguments, out: Any, scale: Scale | None, texture: Mapping[int, np.ndarray] | None, vertex_count: int
 ) -> Any:
-    """Fills a paint, or a figure's own; gives what it points to."""
+    """Fills a skinslide_paint, or the same members of a figure. Returns what must be kept alive for as long."""
     if scale:
         out.values = native.pointer(scale.values, np.float32, (vertex_count,), "values")
         out.lowest, out.highest = scale.lowest, scale.highest

@@ -1,4 +1,4 @@
-"""What painting needs of a mesh's geometry, on numpy arrays: no USD here. The manual is `skinslide.h`."""
+"""What painting needs of a mesh's geometry, on numpy arrays: no USD here. The manual is `paint.h`."""
 
 from __future__ import annotations
 
@@ -100,9 +100,11 @@ def mirror_faces(
 
 
 class Nearest(NamedTuple):
-    face_sources: np.ndarray  # (F,) int32, of each face found that which it is nearest to; -1 for others
-    vertex_sources: np.ndarray  # (V,) int32, of each vertex of those that which is nearest to its mirror image
-    worst: float  # how far a mirror image is from the mesh at most
+    face_sources: np.ndarray  # (F,) int32, of each face found the one of `faces` that it is nearest to; -1 for others
+    vertex_sources: (
+        np.ndarray
+    )  # (V,) int32, of each vertex of a face found that nearest to its mirror image; -1 for others
+    worst: float  # the largest distance of a mirror image from the mesh
 
 
 def mirror_nearest(
@@ -137,8 +139,8 @@ def note_stretch(
 ) -> None:
     """Notes how far sides of faces are from their rest lengths in a pose (V, 3).
 
-    stretch  float32 (sum of counts,): the largest |log(length / rest length)| of the side from each corner, of the
-             poses before, and then of this one too; 0 at first
+    stretch  in, out, float32 (sum of counts,): the largest |log(length / rest length)| in any pose so far of the side
+             from each corner to the next; all 0 before the first pose
     """
     native = Arguments()
     mesh = native.mesh(face_counts, face_indices, rest_points)

@@ -43,8 +43,9 @@ _TYPES = {
     np.dtype(np.float32): lib.SKINSLIDE_VALUE_FLOAT,
     np.dtype(np.float64): lib.SKINSLIDE_VALUE_DOUBLE,
 }
-# How skinslide_stage_when is spelt here.
-FIRST, STILL, DEFAULT_TIME, ANIMATED = range(4)
+# When an input is fetched that is not simply taken at the first time.
+STILL: int = lib.SKINSLIDE_STAGE_STILL
+DEFAULT_TIME: int = lib.SKINSLIDE_STAGE_DEFAULT_TIME
 
 
 class Asset(str):
