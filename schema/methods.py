@@ -1,4 +1,4 @@
-"""Writes what schema.usda declares as classes for Python, as pxr has them: python methods.py [OUTPUT]"""
+"""Writes what schema.usda declares as Python classes, like pxr's for its schemas: python methods.py [OUTPUT]"""
 
 import re
 import subprocess
@@ -10,7 +10,7 @@ from pxr import Sdf
 
 SCHEMA = Path(__file__).parent / "schema.usda"
 OUTPUT = SCHEMA.parent.parent / "plugin" / "python" / "skinslide" / "author" / "api.py"
-HEAD = '''"""The schemas of skinslide, as pxr has those of its own. Made by schema/methods.py of schema/schema.usda."""
+HEAD = '''"""The schemas of skinslide, as classes like pxr's. Made by schema/methods.py from schema/schema.usda."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ ATTRIBUTE = '''
         """{doc}
 
         Returns:
-            The attribute {full}, {kind}; not valid where there is none.
+            The attribute {full}, {kind}; invalid if there is none.
         """
         return self._attribute("{name}")
 
@@ -45,14 +45,14 @@ ATTRIBUTE = '''
         """Authors {full} in the edit target.
 
         Args:
-            defaultValue: What it is at no time, {kind}; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, {kind}; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("{name}", defaultValue, writeSparsely)
 '''
@@ -61,7 +61,7 @@ PRIMVAR = '''
         """{doc}
 
         Returns:
-            The primvar {full}; not valid where there is none.
+            The primvar {full}; invalid if there is none.
         """
         return self._primvar("{name}")
 
@@ -71,14 +71,14 @@ PRIMVAR = '''
         """Authors {full} in the edit target.
 
         Args:
-            interpolation: What each value is of.
-            defaultValue: The values at no time, {kind}, and not indexed; None: none.
+            interpolation: Which elements of the mesh have a value each.
+            defaultValue: Its default value, {kind}, not indexed; None: none is authored.
 
         Returns:
             The primvar.
 
         Raises:
-            UsageError: The values are of another kind.
+            UsageError: The values are of another type.
         """
         return self._create_primvar("{name}", "{type_name}", interpolation, defaultValue)
 '''
@@ -157,7 +157,7 @@ def _doc(text: str, indent: int) -> str:
     first, _, more = text.partition("\n")[0].partition(". ")
     if len(first) >= width:
         first, _, rest = first.partition(": ")
-        more = f"{_capital(rest)}. {more}"
+        more = f"{_capital(rest.rstrip('.'))}. {more}".strip()
     lines = [*([more] if more else []), *text.splitlines()[1:]]
     filled = [
         fill(line, width, subsequent_indent="  " * line.startswith("- "), break_on_hyphens=False) for line in lines

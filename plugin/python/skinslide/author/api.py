@@ -1,4 +1,4 @@
-"""The schemas of skinslide, as pxr has those of its own. Made by schema/methods.py of schema/schema.usda."""
+"""The schemas of skinslide, as classes like pxr's. Made by schema/methods.py from schema/schema.usda."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from skinslide.author.applied import AppliedPatch, AppliedSchema
 
 
 class SkinSlideAPI(AppliedPatch):
-    """Skin of a mesh that slides, so that texture keeps its rest spacing.
+    """Lets the skin of a mesh slide, so that its texture keeps its rest spacing.
 
-    Of a whole character that nobody painted, or a patch that somebody chose..
+    It may be that of a whole character with nothing painted, or a patch that somebody chose.
 
     A character needs nothing painted: skinslide setup --whole applies this once to each mesh, as SkinSlideAPI:skin,
-    to where its edges ever stretch and around that, with the rule even. The instance name is the patch's name:
-    SkinSlideAPI:elbow_L. A mesh may carry many patches, and patches may overlap.
+    to the faces whose edges ever stretch and those around them, with the rule even. The instance name is the patch's
+    name: SkinSlideAPI:elbow_L. A mesh may carry many patches, and patches may overlap.
 
-    What is painted on patch NAME lives in primvars, which the schema of a patch cannot declare:
+    What is painted on patch NAME is in primvars, which the schema of a patch cannot declare:
     - primvars:skinSlide:NAME:patch: the faces. bool[], int[] or numbers; uniform: faces of value above 0; vertex:
       faces whose points are all above 0. Where it is absent, the GeomSubset child called NAME (elementType face)
       gives them. Faces that fall into several pieces are several patches with the same settings.
@@ -31,25 +31,24 @@ class SkinSlideAPI(AppliedPatch):
       float, 0 or more, vertex or constant; may be animated. Absent: no limit.
     - primvars:skinSlide:NAME:forceDensity: how hard edges pull. float above 0; vertex (an edge takes the mean of its
       ends), uniform (the mean of its faces) or constant; may be animated. Only ratios matter. Absent: 1.
-    - primvars:skinSlide:NAME:hold: how much each point keeps to how its neighbours slide, under the rules relaxed
-      and even: low where surplus skin is to come from, high where it must not. float above 0, vertex or constant;
-      far under 0.1 nothing keeps skin from sliding at random; may be animated. Absent: 1.
+    - primvars:skinSlide:NAME:hold: how closely each point follows the slide of its neighbours, under the rules
+      relaxed and even: low where surplus skin is to come from, high where it must not. float above 0, vertex or
+      constant; far under 0.1 nothing keeps skin from sliding at random; may be animated. Absent: 1.
 
-    Numbers are half, float or double; of pairs and colours the one that paintChannel names counts. What is
-    faceVarying counts as its mean over the face corners at each point. Tools that know no namespaces may leave paint
-    as primvars:skinSlide_NAME_weight, with underscores for all colons of the name but the first. check says what it
-    took.
+    Numbers are half, float or double; of pairs and colours, the one that paintChannel names counts. Of faceVarying
+    paint, the mean over the face corners at each point counts. For tools that know no namespaces, paint may also be
+    named primvars:skinSlide_NAME_weight, with underscores for all colons but the first. check says what it took.
 
     A bake with --diagnostics writes what it did to the skin beside the points. By vertex, float:
     primvars:skinSlide:stretch, the RMS of log(length / rest length) over the edges of patches at the point;
     primvars:skinSlide:slide, how far it slid, in the mesh's units; primvars:skinSlide:largestStretch and
-    primvars:skinSlide:smallestStretch, the principal stretches as lengths by lengths at rest, and
+    primvars:skinSlide:smallestStretch, the principal stretches as lengths over lengths at rest, and
     primvars:skinSlide:areaRatio, their product. By corner, float2, on meshes with primvars:st:
     primvars:skinSlide:stretchDirection, that of the largest in st, as the cosine and sine of twice its angle from s
-    towards t, so that values blend. They are read by nothing here.
+    towards t, so that values blend. skinslide reads none of them.
 
-    The rest pose, in which nothing slides, is the mesh's. First found: skinSlide:restPoints (point3f[]),
-    primvars:rest, primvars:pref, primvars:Pref, primvars:__Pref, the default value of points.
+    The rest pose, in which nothing slides, belongs to the mesh. It is the first found of skinSlide:restPoints
+    (point3f[]), primvars:rest, primvars:pref, primvars:Pref, primvars:__Pref and the default value of points.
     """
 
     SCHEMA = "SkinSlideAPI"
@@ -62,7 +61,7 @@ class SkinSlideAPI(AppliedPatch):
         Values outside 0 to 1 are clamped.
 
         Returns:
-            The attribute skinSlide:NAME:envelope, float; not valid where there is none.
+            The attribute skinSlide:NAME:envelope, float; invalid if there is none.
         """
         return self._attribute("envelope")
 
@@ -70,14 +69,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:envelope in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("envelope", defaultValue, writeSparsely)
 
@@ -87,7 +86,7 @@ class SkinSlideAPI(AppliedPatch):
         They go to the corners of the square in which the patch is laid out. Absent: none.
 
         Returns:
-            The attribute skinSlide:NAME:corners, int[], uniform; not valid where there is none.
+            The attribute skinSlide:NAME:corners, int[], uniform; invalid if there is none.
         """
         return self._attribute("corners")
 
@@ -97,25 +96,25 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:corners in the edit target.
 
         Args:
-            defaultValue: What it is at no time, int[], uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, int[], uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("corners", defaultValue, writeSparsely)
 
     def GetBoundaryAttr(self) -> Usd.Attribute:
         """The outline in which the patch is laid out.
 
-        auto: the square where corners are given, else the circle. square without corners: its corners are the
-        sharpest point of the boundary and those nearest to the quarters from there.
+        auto: the square where corners are given, else the circle. square without corners: the sharpest point of the
+        boundary goes to a corner, and so do those nearest to each quarter of the way round from it.
 
         Returns:
-            The attribute skinSlide:NAME:boundary, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:boundary, token, uniform; invalid if there is none.
         """
         return self._attribute("boundary")
 
@@ -125,14 +124,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:boundary in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("boundary", defaultValue, writeSparsely)
 
@@ -143,7 +142,7 @@ class SkinSlideAPI(AppliedPatch):
         freeAll: the outer boundary slides along itself too, under the rules relaxed and even.
 
         Returns:
-            The attribute skinSlide:NAME:holes, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:holes, token, uniform; invalid if there is none.
         """
         return self._attribute("holes")
 
@@ -153,14 +152,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:holes in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("holes", defaultValue, writeSparsely)
 
@@ -168,13 +167,13 @@ class SkinSlideAPI(AppliedPatch):
         """Where skin slides to.
 
         unit and fast balance the pull of edges in a flat layout of the patch; an edge of length l pulls with 1/l, or
-        with the largest l*l of the patch less l*l. relaxed and even go over the rest surface itself, and take a
+        with the largest l*l of the patch less l*l. relaxed and even slide on the rest surface itself, and take a
         patch of any shape, open or closed, as large as a whole character. even: to where stretch is balanced,
         smoothly over time. relaxed: to where every edge is as near its rest length as the deformed surface allows.
-        Under both, force density is how much an edge counts, and corners and boundary count for nothing.
+        Under both, force density says how much an edge counts, and corners and boundary are not read.
 
         Returns:
-            The attribute skinSlide:NAME:forceDensityRule, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:forceDensityRule, token, uniform; invalid if there is none.
         """
         return self._attribute("forceDensityRule")
 
@@ -184,25 +183,25 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:forceDensityRule in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("forceDensityRule", defaultValue, writeSparsely)
 
     def GetGrowAttr(self) -> Usd.Attribute:
-        """How far around the faces that were chosen skin joins the patch, under the rules relaxed and even.
+        """How far the patch grows around the chosen faces, under the rules relaxed and even.
 
-        Faces of which every point is within this distance along the rest surface, in the mesh's units. A wider patch
-        has more skin to give than one that is pinned close by.
+        Faces join it of which every point is within this distance along the rest surface, in the mesh's units. A
+        wider patch has more skin to give than one that is pinned close by.
 
         Returns:
-            The attribute skinSlide:NAME:grow, float, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:grow, float, uniform; invalid if there is none.
         """
         return self._attribute("grow")
 
@@ -210,22 +209,22 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:grow in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("grow", defaultValue, writeSparsely)
 
     def GetStretchResponseAttr(self) -> Usd.Attribute:
-        """How much of stretch the rules relaxed and even take out, 0 to 1.
+        """How much of the stretch the rules relaxed and even take out, 0 to 1.
 
         Returns:
-            The attribute skinSlide:NAME:stretchResponse, float; not valid where there is none.
+            The attribute skinSlide:NAME:stretchResponse, float; invalid if there is none.
         """
         return self._attribute("stretchResponse")
 
@@ -235,22 +234,22 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:stretchResponse in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("stretchResponse", defaultValue, writeSparsely)
 
     def GetCompressionResponseAttr(self) -> Usd.Attribute:
-        """How much of compression the rules relaxed and even take out, 0 to 1.
+        """How much of the compression the rules relaxed and even take out, 0 to 1.
 
         Returns:
-            The attribute skinSlide:NAME:compressionResponse, float; not valid where there is none.
+            The attribute skinSlide:NAME:compressionResponse, float; invalid if there is none.
         """
         return self._attribute("compressionResponse")
 
@@ -260,14 +259,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:compressionResponse in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("compressionResponse", defaultValue, writeSparsely)
 
@@ -279,7 +278,7 @@ class SkinSlideAPI(AppliedPatch):
         surface, else linear.
 
         Returns:
-            The attribute skinSlide:NAME:interpolation, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:interpolation, token, uniform; invalid if there is none.
         """
         return self._attribute("interpolation")
 
@@ -289,14 +288,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:interpolation in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("interpolation", defaultValue, writeSparsely)
 
@@ -306,7 +305,7 @@ class SkinSlideAPI(AppliedPatch):
         Absent: none.
 
         Returns:
-            The attribute skinSlide:NAME:edges, int[], uniform; not valid where there is none.
+            The attribute skinSlide:NAME:edges, int[], uniform; invalid if there is none.
         """
         return self._attribute("edges")
 
@@ -314,14 +313,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:edges in the edit target.
 
         Args:
-            defaultValue: What it is at no time, int[], uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, int[], uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("edges", defaultValue, writeSparsely)
 
@@ -331,7 +330,7 @@ class SkinSlideAPI(AppliedPatch):
         Only ratios matter. Absent: none.
 
         Returns:
-            The attribute skinSlide:NAME:edgeForceDensities, float[]; not valid where there is none.
+            The attribute skinSlide:NAME:edgeForceDensities, float[]; invalid if there is none.
         """
         return self._attribute("edgeForceDensities")
 
@@ -341,14 +340,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:edgeForceDensities in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float[]; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float[]; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("edgeForceDensities", defaultValue, writeSparsely)
 
@@ -359,7 +358,7 @@ class SkinSlideAPI(AppliedPatch):
         over its corners in the patch. Values must be above 0. May be animated. Absent: none.
 
         Returns:
-            The attribute skinSlide:NAME:forceDensityMap, asset; not valid where there is none.
+            The attribute skinSlide:NAME:forceDensityMap, asset; invalid if there is none.
         """
         return self._attribute("forceDensityMap")
 
@@ -369,24 +368,24 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:forceDensityMap in the edit target.
 
         Args:
-            defaultValue: What it is at no time, asset; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, asset; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("forceDensityMap", defaultValue, writeSparsely)
 
     def GetForceDensityMapChannelAttr(self) -> Usd.Attribute:
         """The channel of forceDensityMap to use: its name, or PART.NAME in a file of several parts.
 
-        Absent: R, else Y, else the first but A; in a file of one layer, of that.
+        Absent: R, else Y, else the first that is not A; in a file of one layer, its own.
 
         Returns:
-            The attribute skinSlide:NAME:forceDensityMapChannel, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:forceDensityMapChannel, token, uniform; invalid if there is none.
         """
         return self._attribute("forceDensityMapChannel")
 
@@ -396,14 +395,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:forceDensityMapChannel in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("forceDensityMapChannel", defaultValue, writeSparsely)
 
@@ -413,7 +412,7 @@ class SkinSlideAPI(AppliedPatch):
         Sampled as forceDensityMap is. May be animated. Absent: none.
 
         Returns:
-            The attribute skinSlide:NAME:weightMap, asset; not valid where there is none.
+            The attribute skinSlide:NAME:weightMap, asset; invalid if there is none.
         """
         return self._attribute("weightMap")
 
@@ -423,24 +422,24 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:weightMap in the edit target.
 
         Args:
-            defaultValue: What it is at no time, asset; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, asset; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("weightMap", defaultValue, writeSparsely)
 
     def GetWeightMapChannelAttr(self) -> Usd.Attribute:
         """The channel of weightMap to use: its name, or PART.NAME in a file of several parts.
 
-        Absent: R, else Y, else the first but A; in a file of one layer, of that.
+        Absent: R, else Y, else the first that is not A; in a file of one layer, its own.
 
         Returns:
-            The attribute skinSlide:NAME:weightMapChannel, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:weightMapChannel, token, uniform; invalid if there is none.
         """
         return self._attribute("weightMapChannel")
 
@@ -448,14 +447,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:weightMapChannel in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("weightMapChannel", defaultValue, writeSparsely)
 
@@ -465,7 +464,7 @@ class SkinSlideAPI(AppliedPatch):
         Sampled as forceDensityMap is. Values must be above 0. May be animated. Absent: none.
 
         Returns:
-            The attribute skinSlide:NAME:holdMap, asset; not valid where there is none.
+            The attribute skinSlide:NAME:holdMap, asset; invalid if there is none.
         """
         return self._attribute("holdMap")
 
@@ -475,24 +474,24 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:holdMap in the edit target.
 
         Args:
-            defaultValue: What it is at no time, asset; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, asset; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("holdMap", defaultValue, writeSparsely)
 
     def GetHoldMapChannelAttr(self) -> Usd.Attribute:
         """The channel of holdMap to use: its name, or PART.NAME in a file of several parts.
 
-        Absent: R, else Y, else the first but A.
+        Absent: R, else Y, else the first that is not A; in a file of one layer, its own.
 
         Returns:
-            The attribute skinSlide:NAME:holdMapChannel, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:holdMapChannel, token, uniform; invalid if there is none.
         """
         return self._attribute("holdMapChannel")
 
@@ -500,24 +499,24 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:holdMapChannel in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("holdMapChannel", defaultValue, writeSparsely)
 
     def GetPaintChannelAttr(self) -> Usd.Attribute:
-        """Of paint with several numbers for each point, such as a colour.
+        """Which number counts of paint with several for each point, such as a colour: r is the first, g the second.
 
-        The one that counts, r the first, g the second. none: paint must have one.
+        none: paint must have one number.
 
         Returns:
-            The attribute skinSlide:NAME:paintChannel, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:paintChannel, token, uniform; invalid if there is none.
         """
         return self._attribute("paintChannel")
 
@@ -527,25 +526,25 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:paintChannel in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("paintChannel", defaultValue, writeSparsely)
 
     def GetMapStAttr(self) -> Usd.Attribute:
         """The primvar with the texture coordinates at which all maps are sampled.
 
-        Two floats each; faceVarying, vertex or varying. Beyond 0 to 1 an image goes on as its attribute wrapmodes
-        says, else clamped.
+        Two floats each; faceVarying, vertex or varying. Beyond 0 to 1 an image continues as its attribute wrapmodes
+        says; without that it is clamped.
 
         Returns:
-            The attribute skinSlide:NAME:mapSt, token, uniform; not valid where there is none.
+            The attribute skinSlide:NAME:mapSt, token, uniform; invalid if there is none.
         """
         return self._attribute("mapSt")
 
@@ -553,14 +552,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors skinSlide:NAME:mapSt in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("mapSt", defaultValue, writeSparsely)
 
@@ -572,7 +571,7 @@ class SkinSlideAPI(AppliedPatch):
         pieces are several patches with the same settings.
 
         Returns:
-            The primvar primvars:skinSlide:NAME:patch; not valid where there is none.
+            The primvar primvars:skinSlide:NAME:patch; invalid if there is none.
         """
         return self._primvar("patch")
 
@@ -582,14 +581,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors primvars:skinSlide:NAME:patch in the edit target.
 
         Args:
-            interpolation: What each value is of.
-            defaultValue: The values at no time, bool[], and not indexed; None: none.
+            interpolation: Which elements of the mesh have a value each.
+            defaultValue: Its default value, bool[], not indexed; None: none is authored.
 
         Returns:
             The primvar.
 
         Raises:
-            UsageError: The values are of another kind.
+            UsageError: The values are of another type.
         """
         return self._create_primvar("patch", "bool[]", interpolation, defaultValue)
 
@@ -600,7 +599,7 @@ class SkinSlideAPI(AppliedPatch):
         points: a point of weight 0 still follows its neighbours so that its limit point stays.
 
         Returns:
-            The primvar primvars:skinSlide:NAME:weight; not valid where there is none.
+            The primvar primvars:skinSlide:NAME:weight; invalid if there is none.
         """
         return self._primvar("weight")
 
@@ -610,14 +609,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors primvars:skinSlide:NAME:weight in the edit target.
 
         Args:
-            interpolation: What each value is of.
-            defaultValue: The values at no time, float[], and not indexed; None: none.
+            interpolation: Which elements of the mesh have a value each.
+            defaultValue: Its default value, float[], not indexed; None: none is authored.
 
         Returns:
             The primvar.
 
         Raises:
-            UsageError: The values are of another kind.
+            UsageError: The values are of another type.
         """
         return self._create_primvar("weight", "float[]", interpolation, defaultValue)
 
@@ -627,7 +626,7 @@ class SkinSlideAPI(AppliedPatch):
         float, 0 or more, vertex or constant; may be animated. Absent: no limit.
 
         Returns:
-            The primvar primvars:skinSlide:NAME:maxDistance; not valid where there is none.
+            The primvar primvars:skinSlide:NAME:maxDistance; invalid if there is none.
         """
         return self._primvar("maxDistance")
 
@@ -637,14 +636,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors primvars:skinSlide:NAME:maxDistance in the edit target.
 
         Args:
-            interpolation: What each value is of.
-            defaultValue: The values at no time, float[], and not indexed; None: none.
+            interpolation: Which elements of the mesh have a value each.
+            defaultValue: Its default value, float[], not indexed; None: none is authored.
 
         Returns:
             The primvar.
 
         Raises:
-            UsageError: The values are of another kind.
+            UsageError: The values are of another type.
         """
         return self._create_primvar("maxDistance", "float[]", interpolation, defaultValue)
 
@@ -655,7 +654,7 @@ class SkinSlideAPI(AppliedPatch):
         be animated. Only ratios matter. Absent: 1.
 
         Returns:
-            The primvar primvars:skinSlide:NAME:forceDensity; not valid where there is none.
+            The primvar primvars:skinSlide:NAME:forceDensity; invalid if there is none.
         """
         return self._primvar("forceDensity")
 
@@ -665,25 +664,25 @@ class SkinSlideAPI(AppliedPatch):
         """Authors primvars:skinSlide:NAME:forceDensity in the edit target.
 
         Args:
-            interpolation: What each value is of.
-            defaultValue: The values at no time, float[], and not indexed; None: none.
+            interpolation: Which elements of the mesh have a value each.
+            defaultValue: Its default value, float[], not indexed; None: none is authored.
 
         Returns:
             The primvar.
 
         Raises:
-            UsageError: The values are of another kind.
+            UsageError: The values are of another type.
         """
         return self._create_primvar("forceDensity", "float[]", interpolation, defaultValue)
 
     def GetHoldPrimvar(self) -> UsdGeom.Primvar:
-        """How much each point keeps to how its neighbours slide, under the rules relaxed and even.
+        """How closely each point follows the slide of its neighbours, under the rules relaxed and even.
 
         Low where surplus skin is to come from, high where it must not. float above 0, vertex or constant; far under
         0.1 nothing keeps skin from sliding at random; may be animated. Absent: 1.
 
         Returns:
-            The primvar primvars:skinSlide:NAME:hold; not valid where there is none.
+            The primvar primvars:skinSlide:NAME:hold; invalid if there is none.
         """
         return self._primvar("hold")
 
@@ -693,14 +692,14 @@ class SkinSlideAPI(AppliedPatch):
         """Authors primvars:skinSlide:NAME:hold in the edit target.
 
         Args:
-            interpolation: What each value is of.
-            defaultValue: The values at no time, float[], and not indexed; None: none.
+            interpolation: Which elements of the mesh have a value each.
+            defaultValue: Its default value, float[], not indexed; None: none is authored.
 
         Returns:
             The primvar.
 
         Raises:
-            UsageError: The values are of another kind.
+            UsageError: The values are of another type.
         """
         return self._create_primvar("hold", "float[]", interpolation, defaultValue)
 
@@ -708,7 +707,7 @@ class SkinSlideAPI(AppliedPatch):
 class SkinSlideMeshAPI(AppliedSchema):
     """What all patches of a mesh share.
 
-    It counts on every mesh with patches, whether this is applied or not.
+    Its attributes count on every mesh with patches, whether it is applied or not.
     """
 
     SCHEMA = "SkinSlideMeshAPI"
@@ -722,7 +721,7 @@ class SkinSlideMeshAPI(AppliedSchema):
         of points.
 
         Returns:
-            The attribute skinSlide:restPoints, point3f[], uniform; not valid where there is none.
+            The attribute skinSlide:restPoints, point3f[], uniform; invalid if there is none.
         """
         return self._attribute("restPoints")
 
@@ -732,14 +731,14 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Authors skinSlide:restPoints in the edit target.
 
         Args:
-            defaultValue: What it is at no time, point3f[], uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, point3f[], uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("restPoints", defaultValue, writeSparsely)
 
@@ -747,13 +746,13 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Whether points in one place are one.
 
         Those that coincide at rest and at every sample of points, and whose faces meet there edge to edge, such as
-        both sides of a UV seam. Patches go on across them, each goes where the others go, and what is painted on
-        them counts as its mean. What parts during the shot, or would give an edge more than two faces, is not one,
-        and is named by check. Borders that would slide, since holes is free, stay where another mesh in the same
-        space has points at first, so that nothing cracks.
+        both sides of a UV seam. Patches continue across them, they move together, and of what is painted on them the
+        mean counts. Points that part during the shot, or would give an edge more than two faces, are not one; check
+        names them. Where holes is free, borders stay where another mesh in the same space has points at the first
+        time, so that no crack opens.
 
         Returns:
-            The attribute skinSlide:weld, bool, uniform; not valid where there is none.
+            The attribute skinSlide:weld, bool, uniform; invalid if there is none.
         """
         return self._attribute("weld")
 
@@ -761,24 +760,24 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Authors skinSlide:weld in the edit target.
 
         Args:
-            defaultValue: What it is at no time, bool, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, bool, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("weld", defaultValue, writeSparsely)
 
     def GetWeldToleranceAttr(self) -> Usd.Attribute:
         """The distance within which points are in one place for weld, in the mesh's units.
 
-        0 to a thousandth of its size. 0: where they are exactly that.
+        0 to a thousandth of its size. 0: where their coordinates are equal.
 
         Returns:
-            The attribute skinSlide:weldTolerance, float, uniform; not valid where there is none.
+            The attribute skinSlide:weldTolerance, float, uniform; invalid if there is none.
         """
         return self._attribute("weldTolerance")
 
@@ -786,14 +785,14 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Authors skinSlide:weldTolerance in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("weldTolerance", defaultValue, writeSparsely)
 
@@ -802,11 +801,11 @@ class SkinSlideMeshAPI(AppliedSchema):
 
         At rest and at every frame they are measured as the transforms above the mesh scale it, which matters where a
         scale is not the same in all directions. Distances such as grow of patches stay in the mesh's units, and
-        maxDistance is in the world's. The transforms may turn, move and size the mesh over time, but not scale it
-        ever more one way than another.
+        maxDistance is in the world's. Over time the transforms may rotate, move and scale the mesh, but not change
+        how much more they scale it one way than another.
 
         Returns:
-            The attribute skinSlide:worldSpace, bool, uniform; not valid where there is none.
+            The attribute skinSlide:worldSpace, bool, uniform; invalid if there is none.
         """
         return self._attribute("worldSpace")
 
@@ -814,14 +813,14 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Authors skinSlide:worldSpace in the edit target.
 
         Args:
-            defaultValue: What it is at no time, bool, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, bool, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("worldSpace", defaultValue, writeSparsely)
 
@@ -831,7 +830,7 @@ class SkinSlideMeshAPI(AppliedSchema):
         Some tools write skinslide_elbow_l_weight for skinSlide:elbow_L:weight.
 
         Returns:
-            The attribute skinSlide:foldCase, bool, uniform; not valid where there is none.
+            The attribute skinSlide:foldCase, bool, uniform; invalid if there is none.
         """
         return self._attribute("foldCase")
 
@@ -839,26 +838,26 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Authors skinSlide:foldCase in the edit target.
 
         Args:
-            defaultValue: What it is at no time, bool, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, bool, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("foldCase", defaultValue, writeSparsely)
 
     def GetCompareRestAttr(self) -> Usd.Attribute:
         """Whether rest is compared with the first sample of points, by the lengths of edges.
 
-        Rest of another scale, by more than 2 either way, is taken at the scale of the cache, with a warning. A patch
-        on which rest resembles the cache poorly is warned of, or, as where points are in another order, cannot be
-        slid. Off: rest is taken as it is.
+        Rest whose scale differs by more than a factor of 2 is taken at the scale of the cache, with a warning. There
+        is a warning of a patch on which rest resembles the cache poorly; one on which it hardly does, as when points
+        are in another order, cannot be slid. Off: rest is taken as it is.
 
         Returns:
-            The attribute skinSlide:compareRest, bool, uniform; not valid where there is none.
+            The attribute skinSlide:compareRest, bool, uniform; invalid if there is none.
         """
         return self._attribute("compareRest")
 
@@ -866,14 +865,14 @@ class SkinSlideMeshAPI(AppliedSchema):
         """Authors skinSlide:compareRest in the edit target.
 
         Args:
-            defaultValue: What it is at no time, bool, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, bool, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("compareRest", defaultValue, writeSparsely)
 
@@ -881,7 +880,7 @@ class SkinSlideMeshAPI(AppliedSchema):
 class SkinSlideLiveAPI(AppliedSchema):
     """What a shot sets for all patches of a .skinslide file, on the prim that payloads it.
 
-    It counts on every such prim, whether this is applied or not.
+    Its attributes count on every such prim, whether it is applied or not.
     """
 
     SCHEMA = "SkinSlideLiveAPI"
@@ -892,7 +891,7 @@ class SkinSlideLiveAPI(AppliedSchema):
         """Multiplies the envelope of each patch.
 
         Returns:
-            The attribute skinSlide:live:envelope, float, uniform; not valid where there is none.
+            The attribute skinSlide:live:envelope, float, uniform; invalid if there is none.
         """
         return self._attribute("envelope")
 
@@ -900,24 +899,24 @@ class SkinSlideLiveAPI(AppliedSchema):
         """Authors skinSlide:live:envelope in the edit target.
 
         Args:
-            defaultValue: What it is at no time, float, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, float, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("envelope", defaultValue, writeSparsely)
 
     def GetInterpolationAttr(self) -> Usd.Attribute:
-        """Stands in place of the interpolation of each patch.
+        """Replaces the interpolation of each patch.
 
         Absent: each has its own.
 
         Returns:
-            The attribute skinSlide:live:interpolation, token, uniform; not valid where there is none.
+            The attribute skinSlide:live:interpolation, token, uniform; invalid if there is none.
         """
         return self._attribute("interpolation")
 
@@ -927,24 +926,24 @@ class SkinSlideLiveAPI(AppliedSchema):
         """Authors skinSlide:live:interpolation in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("interpolation", defaultValue, writeSparsely)
 
     def GetLookupAttr(self) -> Usd.Attribute:
-        """How rest points are looked up in the plane; where they are found is the same.
+        """How rest points are looked up in the plane; the result is the same.
 
         auto: egl where there is a graphics device, else exact.
 
         Returns:
-            The attribute skinSlide:live:lookup, token, uniform; not valid where there is none.
+            The attribute skinSlide:live:lookup, token, uniform; invalid if there is none.
         """
         return self._attribute("lookup")
 
@@ -954,13 +953,13 @@ class SkinSlideLiveAPI(AppliedSchema):
         """Authors skinSlide:live:lookup in the edit target.
 
         Args:
-            defaultValue: What it is at no time, token, uniform; None: nothing.
-            writeSparsely: Authors nothing where that is the fallback, and nothing else is authored.
+            defaultValue: Its default value, token, uniform; None: none is authored.
+            writeSparsely: Authors nothing if that is the fallback, and no other value is authored.
 
         Returns:
             The attribute.
 
         Raises:
-            UsageError: The value is of another kind.
+            UsageError: The value is of another type.
         """
         return self._create_attribute("lookup", defaultValue, writeSparsely)
