@@ -101,9 +101,7 @@ def mirror_faces(
 
 class Nearest(NamedTuple):
     face_sources: np.ndarray  # (F,) int32, of each face found the one of `faces` that it is nearest to; -1 for others
-    vertex_sources: (
-        np.ndarray
-    )  # (V,) int32, of each vertex of a face found that nearest to its mirror image; -1 for others
+    vertex_sources: np.ndarray  # (V,) int32, of each vertex of those the one nearest to its mirror image; else -1
     worst: float  # the largest distance of a mirror image from the mesh
 
 

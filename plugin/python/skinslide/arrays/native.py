@@ -1,4 +1,4 @@
-"""Between numpy arrays and the public headers' structs: shapes and types checked, statuses raised, tokens looked up.
+"""From numpy arrays to the structs of the public headers and back: checks types and shapes, raises statuses as errors.
 
 Fields and enums are read from the declarations; only what C cannot see, the lengths of arrays, is checked here.
 """
@@ -36,9 +36,9 @@ class Controls:
         weight: How far each vertex slides (V,), 0 to 1; None: 1.
         envelope: Scales the slide of the whole patch, 0 to 1.
         max_distance: How far each vertex may slide along the surface (V,), in the mesh's units; None: no limit.
-        hold: How much a vertex keeps to its neighbours' slide (V,), above 0; None: 1. Of relaxed and even.
-        stretch_response: How much of stretch is evened out, 0 to 1. Of relaxed and even.
-        compression_response: How much of compression is. Of relaxed and even.
+        hold: How closely a vertex follows its neighbours' slide (V,), above 0; None: 1. For relaxed and even.
+        stretch_response: How much of the stretch is evened out, 0 to 1. For relaxed and even.
+        compression_response: How much of the compression is. For relaxed and even.
     """
 
     vertex_density: np.ndarray | None = None
@@ -60,13 +60,13 @@ class PatchSetup:
     Attributes:
         name: Of the patch, such as elbow_L.
         faces: Of the mesh: indices (n,), in any order, or a bool for each (F,).
-        corners: Vertices (4,) on the outer boundary that go to the corners of the square; None: none.
+        corners: Vertices (4,) on the outer boundary that are laid out at the corners of the square; None: none.
         boundary: auto, square or circle: the outline in which the patch is laid out.
-        holes: pinned, free or freeAll: what happens at the rims of holes, and by the last at the outer boundary too.
+        holes: pinned, free or freeAll: what happens at the rims of holes, and with freeAll at the outer boundary too.
         rule: unit, fast, relaxed or even: where skin slides to.
         interpolation: auto, linear, meanValue or limit: how a place within a face becomes a point.
         controls: What is painted.
-        held: Of each vertex of the mesh (V,) whether it stays where it is on a border, whatever holes says; None: none.
+        held: Whether each vertex of the mesh (V,) stays if it is on a border, whatever holes says; None: none does.
     """
 
     name: str
@@ -109,7 +109,7 @@ class Subdivision:
 
 @dataclass(frozen=True)
 class Lookup:
-    """How rest vertices are looked up in a frame. Where they are found is always the same.
+    """How rest vertices are looked up in a frame. The result is always the same.
 
     Attributes:
         method: auto, egl or exact.
@@ -123,7 +123,7 @@ class Lookup:
 
     @staticmethod
     def of(lookup: str | Lookup) -> Lookup:
-        """A lookup of which the method alone may be given.
+        """Makes a lookup of one, or of its method alone.
 
         Args:
             lookup: A lookup, or its method.
@@ -142,7 +142,7 @@ class Lookup:
 
 
 def new(struct: str) -> Any:
-    """A struct of the headers, as its default has it."""
+    """A struct of the headers, with its default values."""
     made = ffi.new(f"skinslide_{struct} *")
     getattr(lib, f"skinslide_{struct}_default")(made)
     return made
@@ -156,12 +156,12 @@ def new_array(struct: str, count: int) -> Any:
 
 
 def device_number(device: int | None) -> int:
-    """One of EGL's devices as the core has it; SliderError for a number that none can have."""
+    """The core's number for an EGL device; None: any. Raises SliderError for a number that no device can have."""
     return -1 if device is None else _number("device", device)
 
 
 def _number(what: str, number: int) -> int:
-    # The core's structs have no room for others, but for one below 0 that stands for none.
+    # Nothing else fits the core's int32, in which numbers below 0 mean none.
     if not 0 <= whole(number, what) < 2**31:
         raise SliderError("BAD_ARGUMENT", f"no such {what}: {number}")
     return number
@@ -173,14 +173,14 @@ def tokens(setting: str) -> tuple[str, ...]:
 
 
 class Handle:
-    """A handle of the core, which is destroyed when nothing refers to this, before the handles that it needs.
+    """A handle of the core. It is destroyed once nothing refers to this object, and before the handles that it needs.
 
-    Not by ffi.gc: the collector breaks a cycle wherever it likes, and might destroy what is needed first.
+    ffi.gc would not do: the collector breaks a cycle wherever it likes, and might destroy first what is needed.
     """
 
     def __init__(self, pointer: Any, destroy: Callable[[Any], None], *needed: Handle):
         self.pointer = pointer
-        # What is needed lives as long as the finalizer, which is no part of a cycle.
+        # The finalizer, which is part of no cycle, keeps alive what is needed.
         weakref.finalize(self, _destroy, destroy, pointer, needed).atexit = False
 
 
@@ -189,7 +189,7 @@ def _destroy(destroy: Callable[[Any], None], pointer: Any, _needed: tuple[Handle
 
 
 class Sizes(NamedTuple):
-    """Of a mesh."""
+    """How many vertices and faces a mesh has."""
 
     vertices: int
     faces: int
@@ -199,7 +199,7 @@ class Sample(NamedTuple):
     """Points of one time, before and after sliding.
 
     Attributes:
-        seconds: The time; ratios of steps alone count, but for rates.
+        seconds: The time; except for rates, only ratios of steps matter.
         cached: Points before sliding (V, 3).
         slid: Points after it (V, 3).
     """
@@ -351,7 +351,7 @@ def _length(values: Any) -> int:
 
 
 def all_of(what: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
-    """Several of a kind, or SliderError."""
+    """The elements of a sequence. Raises SliderError unless all are of a kind."""
     if isinstance(given, str) or not isinstance(given, Iterable):
         said = f"{what} is of the type {type(given).__name__}; a sequence of {kind.__name__} is wanted"
         raise SliderError("BAD_ARGUMENT", said)
@@ -384,7 +384,7 @@ def whole(value: Any, what: str) -> int:
 
 
 def _indices(chosen: Any, count: int, what: str) -> Any:
-    """Indices: themselves, or of those of which a bool says so."""
+    """Indices as they are, or those at which an array of bools is true."""
     flags = np.asarray(chosen) if isinstance(chosen, np.ndarray | list | tuple) and len(chosen) else None
     if flags is None or flags.dtype != np.bool_ or flags.ndim != 1:
         return chosen
@@ -393,7 +393,7 @@ def _indices(chosen: Any, count: int, what: str) -> Any:
 
 
 def check_count(status: str, what: str, counted: tuple[int, str], of: tuple[int, str]) -> None:
-    """Raises SliderError where there is not one for each: `what` has (1, "values") for (2, "corners")."""
+    """Raises SliderError unless both counts are the same: `what` has (1, "values") for (2, "corners")."""
     if counted[0] != of[0]:
         raise SliderError(status, f"{what}: {counted[0]} {counted[1]} for {of[0]} {of[1]}")
 
@@ -419,7 +419,7 @@ def as_array(values: Any, dtype: type, shape: tuple[int, ...], what: str) -> np.
         raise SliderError("BAD_ARGUMENT", f"{what}: the shape is {got}; it must be {wanted}")
     if source.dtype == dtype and source.flags.c_contiguous:
         return source
-    # Casts of the same kind lose digits at most, but for integers that do not fit.
+    # Casts of the same kind lose no more than digits, except for integers that do not fit.
     fits = source.size == 0 or (
         np.can_cast(source.dtype, dtype, "same_kind") and (source.dtype == np.bool_) == (dtype == np.bool_)
     )
@@ -471,7 +471,7 @@ def read(kind: type[Record], *structs: Any) -> Record:
     for struct in structs:
         names, get, meanings = _fields(kind._fields, ffi.typeof(struct))
         if names == kind._fields and not meanings:
-            return kind._make(get(struct))  # numbers alone, as each patch has them in each frame
+            return kind._make(get(struct))  # the fast way for numbers alone, such as each patch's in each frame
         values.update(zip(names, get(struct), strict=True))
         for name, meaning in meanings.items():
             values[name] = meaning(values[name])
@@ -482,7 +482,7 @@ def read(kind: type[Record], *structs: Any) -> Record:
 def _fields(
     wanted: tuple[str, ...], struct: Any
 ) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]], dict[str, Callable[[Any], str]]]:
-    """Which of the wanted fields a type has, what gets them all, and of those that are no numbers what they mean."""
+    """Which of the wanted fields a type has, a getter of them all, and converters of those that are not numbers."""
     types = {name: field_.type for name, field_ in struct.fields}
     names, meanings = tuple(name for name in wanted if name in types), dict[str, Callable[[Any], str]]()
     for name in names:

@@ -1,6 +1,6 @@
 """The C core on numpy arrays: a slider for a mesh and its patches, and what else a cache holds. No USD here.
 
-The manual is `skinslide.h`. Arrays of other types are converted where that loses no more than digits.
+The manual is `skinslide.h`. Arrays of other types are converted if that loses no more than digits.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ class Frame(NamedTuple):
     Attributes:
         points: float32 (V, 3).
         patches: What happened to each of the slider's patches.
-        embeddings: Of each patch in the plane, float64 (patch vertices, 2), where asked for; else None.
-        turns: How the skin turned under each vertex, float32 (V, 3), where asked for; else None. See `carry`.
+        embeddings: Each patch laid out in the plane, float64 (patch vertices, 2), if asked for; else None.
+        turns: How the skin turned under each vertex, float32 (V, 3), if asked for; else None. See `carry`.
     """
 
     points: np.ndarray
@@ -86,7 +86,7 @@ class Diagnostics(NamedTuple):
 
     Attributes:
         stretch_before: RMS of log(length / rest length) over the edges of patches at the vertex, in the cache.
-        stretch_after: The same, slid.
+        stretch_after: The same after sliding.
         slide: How far it slid, in the mesh's units.
         force_density: The mean multiplier of those edges, as painted.
     """
@@ -105,7 +105,7 @@ def version() -> str:
 class Slider:
     """A mesh with all its patches. Immutable; any number of threads may slide frames at once.
 
-    Faces of a set-up that fall into several connected pieces become several patches. `patches` says of each what it is.
+    Faces of a set-up that fall into several connected pieces become several patches; `patches` describes each.
     """
 
     def __init__(
@@ -128,14 +128,14 @@ class Slider:
             rest_points: The pose in which nothing slides (V, 3).
             patches: The set-ups.
             lookup: How rest vertices are looked up: auto, egl, exact, or a Lookup.
-            subdivision: How the mesh is subdivided, on which the interpolation limit depends; None: it is not.
-            weld: Of each point that which it is one with (V,), itself for most, as `find_weld` has it; None: each is
-                its own.
-            space: Takes points, as rows, to where lengths are taken (3, 3), such as the world, in which a mesh may be
-                scaled more one way than another; None: nothing does.
+            subdivision: How the mesh is subdivided, which the interpolation limit needs; None: not at all.
+            weld: The point that each point is one with (V,), most with themselves, as `find_weld` returns it; None: no
+                points are welded.
+            space: The matrix (3, 3) that takes points, as rows, to where lengths are measured, such as the world, where
+                a mesh may be scaled more one way than another; None: the mesh's own space.
 
         Raises:
-            SliderError: What cannot be slid; the message names patch and element.
+            SliderError: The mesh or a set-up cannot be slid; the message names patch and element.
         """
         native = Arguments()
         mesh = native.mesh(face_counts, face_indices, rest_points, subdivision, weld, space)
@@ -164,15 +164,15 @@ class Slider:
 
         Args:
             points: Of the deformed mesh (V, 3).
-            controls: One a set-up; None: the set-ups' own.
-            embeddings: Whether the frame's embeddings are wanted.
-            turns: Whether it is wanted how the skin turned.
+            controls: One for each set-up; None: the set-ups' own.
+            embeddings: Whether to return the frame's embeddings.
+            turns: Whether to return how the skin turned.
 
         Returns:
             The frame.
 
         Raises:
-            SliderError: Points or controls that cannot be; the message names patch and element.
+            SliderError: The points or controls cannot be slid; the message names patch and element.
         """
         native = Arguments()
         cached = native.points(points, self._sizes.vertices, "points")
@@ -189,7 +189,7 @@ class Slider:
         return Frame(slid, tuple(read(PatchResult, result) for result in results), planes, turned)
 
     def stop(self) -> None:
-        """Has the frames that are being slid, on any thread, fail before long, and all after them.
+        """Makes the frames that are being slid, on any thread, and all later ones fail soon.
 
         They raise a SliderError with the status INTERRUPTED.
         """
@@ -206,19 +206,19 @@ class Slider:
         *,
         chosen: Sequence[bool] | None = None,
     ) -> Diagnostics:
-        """What a slide did.
+        """Measures what a slide did.
 
         Args:
             cached: Points before it (V, 3).
             slid: Points after it (V, 3).
-            controls: One a set-up; None: the set-ups' own.
-            chosen: Of each set-up, whether its patches count; None: all do.
+            controls: One for each set-up; None: the set-ups' own.
+            chosen: For each set-up, whether its patches count; None: all do.
 
         Returns:
             What it did to each vertex.
 
         Raises:
-            SliderError: Points or controls that cannot be.
+            SliderError: The points or controls cannot be used.
         """
         native, count = Arguments(), self._sizes.vertices
         before, after = native.points(cached, count, "cached"), native.points(slid, count, "slid")
@@ -236,16 +236,16 @@ class Slider:
         return result
 
     def least_stretch(self, points: npt.ArrayLike) -> tuple[float, ...]:
-        """The least stretch that a search finds for a pose, from the cache and from where a slide leaves skin: slow.
+        """Searches for the least stretch that a pose allows, from the cache and from where a slide leaves skin: slow.
 
         Args:
             points: Of the deformed mesh (V, 3).
 
         Returns:
-            One a patch: the RMS of log(length / rest length), as `PatchResult` has it.
+            For each patch the RMS of log(length / rest length), as in `PatchResult`.
 
         Raises:
-            SliderError: Points that cannot be; the message names patch and element.
+            SliderError: The points cannot be slid; the message names patch and element.
         """
         least = np.empty(len(self.patches))
         with self._slid(points) as (workspace, cached):
@@ -253,16 +253,16 @@ class Slider:
         return tuple(least.tolist())
 
     def check_points(self, points: npt.ArrayLike) -> str:
-        """Whether a frame can be slid.
+        """Checks whether a frame can be slid.
 
         Args:
             points: Of the deformed mesh (V, 3).
 
         Returns:
-            What to warn of: points that are not finite and stay as they are, since no patch uses them; or nothing.
+            A warning of points that are not finite and stay as they are, since no patch uses them; or "".
 
         Raises:
-            SliderError: Points that cannot be; the message names the element.
+            SliderError: The points cannot be slid; the message names the element.
         """
         native, passed, told = Arguments(), ffi.new("int32_t *"), ffi.new("skinslide_error *")
         given = native.points(points, self._sizes.vertices, "points")
@@ -270,16 +270,16 @@ class Slider:
         return text(told.message) if passed[0] else ""
 
     def roughness(self, samples: Sequence[Sample]) -> tuple[Roughness, ...]:
-        """How roughly each patch moves at the middle of three times.
+        """Measures how roughly each patch moves at the middle of three times.
 
         Args:
             samples: Of the three times, ascending.
 
         Returns:
-            One a patch.
+            One for each patch.
 
         Raises:
-            SliderError: Samples that cannot be.
+            SliderError: The samples cannot be used.
         """
         native, results = Arguments(), new_array("roughness", len(self.patches))
         given = native.samples(samples, 3, self._sizes.vertices, "roughness")
@@ -294,6 +294,9 @@ class Slider:
 
         Returns:
             int32 (patch vertices,), ascending.
+
+        Raises:
+            SliderError: There is no such patch.
         """
         return self._patch_array(lib.skinslide_slider_patch_vertices, patch, "vertex_count", np.int32)
 
@@ -305,13 +308,16 @@ class Slider:
 
         Returns:
             int32 (patch faces,), ascending.
+
+        Raises:
+            SliderError: There is no such patch.
         """
         return self._patch_array(lib.skinslide_slider_patch_faces, patch, "face_count", np.int32)
 
     def neighbours(
         self, patch: int, points: npt.ArrayLike, others: npt.ArrayLike, tolerance: float = 0
     ) -> tuple[int, int]:
-        """How many vertices of a patch have a point of another mesh in their place.
+        """Counts the vertices of a patch that have a point of another mesh in their place.
 
         Args:
             patch: Its index in `patches`.
@@ -320,10 +326,10 @@ class Slider:
             tolerance: The distance within which points are in one place.
 
         Returns:
-            Those that stay, and those that may slide, which the other mesh does not follow.
+            How many of them stay, and how many may slide, away from the other mesh.
 
         Raises:
-            SliderError: There is no such patch, or points that are not finite.
+            SliderError: There is no such patch, or points are not finite.
         """
         self._check_patch(patch)
         native, held, loose = Arguments(), ffi.new("int32_t *"), ffi.new("int32_t *")
@@ -340,6 +346,9 @@ class Slider:
 
         Returns:
             float64 (patch vertices, 2).
+
+        Raises:
+            SliderError: There is no such patch, or its rule has no embedding.
         """
         return self._patch_array(lib.skinslide_slider_embedding, patch, "vertex_count", np.float64, 2)
 
@@ -354,7 +363,7 @@ class Slider:
             uint32 (side, side), rows from v = 0 on: 1 + patch face, 0 for none.
 
         Raises:
-            SliderError: The slider's lookup has no texture.
+            SliderError: There is no such patch, or the slider's lookup or the patch's rule has no texture.
         """
         self._check_patch(patch)
         side = ffi.new("int32_t *")
@@ -366,7 +375,7 @@ class Slider:
 
     @contextmanager
     def _slid(self, points: npt.ArrayLike) -> Iterator[tuple[Handle, Any]]:
-        """A workspace that has slid a frame by the set-ups' own controls, and the points that it was given."""
+        """A workspace that has slid a frame with the set-ups' own controls, and the points that it slid."""
         native = Arguments()
         cached = native.points(points, self._sizes.vertices, "points")
         slid = ffi.new("float[]", 3 * self._sizes.vertices)
@@ -427,14 +436,14 @@ class Slider:
 
 
 def _create(_native: Arguments, mesh: Any, setups: Any, count: int) -> Handle:
-    """A slider of structs that point into memory of arguments."""
+    """Makes a slider. `_native` keeps alive the memory that the structs point into."""
     out = ffi.new("skinslide_slider **")
     call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, count, out)
     return Handle(out[0], lib.skinslide_slider_destroy)
 
 
 def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
-    """What a lookup comes to on this machine, and its device.
+    """Says which lookup, on which device, a choice leads to on this machine.
 
     Args:
         lookup: auto, egl, exact, or a Lookup.
@@ -443,7 +452,7 @@ def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
         The lookup that a slider would have, and why.
 
     Raises:
-        SliderError: It cannot be had.
+        SliderError: That lookup cannot be had here.
     """
     info, device = new("lookup_info"), new("device_info")
     call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info, device)
@@ -460,7 +469,7 @@ def limit_points(
 ) -> np.ndarray:
     """Points of the limit surface of a subdivided mesh.
 
-    A face of n vertices is n quads, one a corner, that meet at its middle.
+    A face of n vertices is n quads, one for each corner, that meet at its middle.
 
     Args:
         face_counts: Vertices of each face (F,).
@@ -499,7 +508,7 @@ def carry(
         interpolation: Which elements have one: vertex, varying, faceVarying or uniform.
 
     Returns:
-        float32 (n, 3); those that do not turn have the bits they had.
+        float32 (n, 3); those that do not turn keep their bits.
     """
     native = Arguments()
     mesh = native.mesh(face_counts, face_indices, turns)

@@ -11,12 +11,12 @@ from skinslide.arrays.native import Arguments, call, new, writable
 
 
 class Strain(NamedTuple):
-    """The principal stretches of a pose: lengths by lengths at rest, 1 where nothing is stretched.
+    """The principal stretches of a pose: lengths over lengths at rest, 1 where nothing is stretched.
 
     Attributes:
         largest: In the direction that is stretched most (V,).
         smallest: Across it (V,).
-        area_ratio: Area by area at rest, the product of both (V,).
+        area_ratio: Area over area at rest, the product of both (V,).
         direction: Of the largest, at each corner of the mesh, in its texture coordinates (sum of face_counts, 2): cos
             2a and sin 2a with a its angle from s towards t; 0 where stretch is the same in all directions. None without
             texture coordinates.
@@ -39,7 +39,7 @@ class Rest(NamedTuple):
 
 
 def measure_strain(rest: Rest, faces: np.ndarray, points: np.ndarray) -> Strain:
-    """Of a pose (V, 3), at the vertices of some faces (n,)."""
+    """Measures a pose (V, 3) at the vertices of some faces (n,)."""
     native, made = Arguments(), new("strain")
     mesh = native.mesh(rest.face_counts, rest.face_indices, rest.points, None, rest.weld)
     count, corners = len(rest.points), len(rest.face_indices)

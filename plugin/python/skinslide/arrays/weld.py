@@ -1,4 +1,4 @@
-"""Which points of a mesh are one: of meshes that are split at seams or corners, for a `Slider`. No USD here."""
+"""Which points of a mesh that is split at seams or corners are one, for a `Slider`. No USD here."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ def find_weld(
         face_counts: Vertices of each face (F,).
         face_indices: Vertices (sum of counts,), face by face.
         rest_points: The pose in which nothing slides (V, 3).
-        patches: The set-ups, of which only faces count.
-        poses: Points of the deformed mesh (V, 3), all that the shot has: points that part in one are not one.
+        patches: The set-ups, of which only the faces are read.
+        poses: Points of the deformed mesh (V, 3) in all poses of the shot: points that part in any are not one.
         tolerance: The distance within which points are in one place, in the mesh's units.
 
     Returns:
-        int32 (V,): of each point that which it is one with, itself for most, as a `Slider` takes it.
+        int32 (V,): the point that each is one with, most with themselves, as a `Slider` takes it.
 
     Raises:
-        SliderError: A mesh, points or a tolerance that cannot be.
+        SliderError: The mesh, the points or the tolerance cannot be used.
     """
     native, out = Arguments(), ffi.new("skinslide_weld **")
     mesh = native.mesh(face_counts, face_indices, rest_points)
