@@ -1,4 +1,4 @@
-"""An applied schema of skinslide's, as pxr has applied schemas: what is the same whatever it declares."""
+"""What skinslide's applied schemas have in common whatever they declare, in the manner of pxr's schema classes."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from skinslide.stage.values import FIRST
 
 @dataclass(frozen=True)
 class CanApplyResult:
-    """Whether a schema can be applied; it is false where it cannot.
+    """Whether a schema can be applied: false if it cannot.
 
     Attributes:
-        whyNot: The reason; empty where it can.
+        whyNot: The reason; empty if it can.
     """
 
     whyNot: str = ""
@@ -111,7 +111,7 @@ class AppliedSchema(_Declared):
             prim: The prim.
 
         Returns:
-            What is true where it can; where it cannot, its whyNot says why.
+            A result that is true if it can; if not, its whyNot says why.
         """
         return CanApplyResult(cls._why_not_to(prim))
 
@@ -186,7 +186,7 @@ class AppliedPatch(_Declared):
             name: The patch's name.
 
         Returns:
-            What is true where it can; where it cannot, its whyNot says why.
+            A result that is true if it can; if not, its whyNot says why.
         """
         return CanApplyResult(_why_no_name(name) or cls._why_not_to(prim))
 
@@ -212,7 +212,7 @@ class AppliedPatch(_Declared):
         return self._name
 
     def SetFaces(self, faces: npt.ArrayLike) -> UsdGeom.Primvar:
-        """Makes the patch of some faces of the mesh. The edit target forgets what it had of them.
+        """Makes the patch of some faces of the mesh, in place of what the edit target said of them before.
 
         Args:
             faces: Their indices (n,), in any order, or a bool for each face of the mesh (F,).
@@ -221,7 +221,7 @@ class AppliedPatch(_Declared):
             The primvar that chooses them, uniform.
 
         Raises:
-            UsageError: Values that are no faces.
+            UsageError: The values are not faces.
             StageProblems: The mesh has no such face.
         """
         mesh = UsdGeom.Mesh(self.GetPrim())
@@ -234,14 +234,14 @@ class AppliedPatch(_Declared):
         return self._create_primvar("patch", "bool[]", UsdGeom.Tokens.uniform, np.isin(np.arange(count), chosen))
 
     def SetEdges(self, edges: npt.ArrayLike, force_densities: npt.ArrayLike) -> None:
-        """Gives edges of the patch force densities. The edit target forgets what it had of them.
+        """Gives edges of the patch force densities, in place of what the edit target said of them before.
 
         Args:
-            edges: Point indices (k, 2), a pair an edge.
+            edges: Point indices (k, 2), a pair for each edge.
             force_densities: A factor above 0 for each edge (k,), which multiplies what is painted.
 
         Raises:
-            UsageError: Values that are no edges or factors.
+            UsageError: The values are not edges or factors.
         """
         pairs = given_array("edges", edges, np.int32, (-1, 2))
         factors = given_array("force_densities", force_densities, np.float32, (len(pairs),))

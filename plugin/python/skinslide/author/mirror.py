@@ -60,9 +60,9 @@ def mirror(
     Faces, corners, paint and settings are copied, with their animation. Maps are sampled and become paint, since the
     other side's texture coordinates may be anywhere. What the new patch had before is replaced.
 
-    Where faces have no counterparts, though the surface is symmetric, such as quads that are cut along other
-    diagonals, those nearest take their place, and paint goes to the nearest points: the report says so, and how far
-    off the farthest is.
+    Where the surface is symmetric, but faces have no counterparts, as when quads are cut along the other diagonal, the
+    nearest faces take their place, and paint goes to the nearest points: the report says so, and how far off the
+    farthest is.
 
     Args:
         stage: The stage.
@@ -78,8 +78,8 @@ def mirror(
         What `check` says of the mesh.
 
     Raises:
-        TypeError: Something else than a stage or a prim.
-        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        TypeError: The stage or the prim is of another type.
+        UsageError: The arguments cannot be used, or the edit target takes no opinions.
         StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is authored
             then.
     """
@@ -122,9 +122,9 @@ def mirror_to_file(
         What `check` says of the mesh.
 
     Raises:
-        TypeError: Something else than a stage or a prim.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or the layer not be written.
+        TypeError: The stage or the prim is of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or the layer cannot be written.
         StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is written
             then.
     """

@@ -1,4 +1,4 @@
-"""Paints force density by edge: what no DCC has a brush for."""
+"""Paints force density by edge, for which no DCC has a brush."""
 
 from __future__ import annotations
 
@@ -115,22 +115,22 @@ def paint(
         prim: The mesh.
         patch: The patch's name.
         value: The factor, above 0; it replaces what an edge was painted by edge before.
-        edges: Point indices (k, 2), a pair an edge of the mesh.
+        edges: Point indices (k, 2), a pair for each edge of the mesh.
         subset: The name of a GeomSubset under the mesh, of elementType edge.
         primvar: The name of a vertex primvar of the mesh: edges with at least `threshold` at both ends.
         threshold: With `primvar`.
-        curve: A BasisCurves prim drawn on the mesh at rest, whose default counts before its samples: edges whose
-            middle is within `distance` of it, and that run in `direction` there.
+        curve: A BasisCurves prim drawn on the mesh at rest; its default points are used if it has any, else its first
+            sample. Chooses edges whose middle is within `distance` of it, and that run in `direction` there.
         distance: With `curve`, in the mesh's units.
         direction: With `curve`: "along", at 45 degrees or less to it; "across", at more; or "any".
-        clear: Forgets what was painted by edge before.
+        clear: First removes what was painted by edge before.
 
     Returns:
         How many edges were painted, and what `check` says of the mesh.
 
     Raises:
-        TypeError: Something else than a stage or a prim.
-        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        TypeError: The stage or the prim is of another type.
+        UsageError: The arguments cannot be used, or the edit target takes no opinions.
         StageProblems: There is no such patch, or nothing to paint. Nothing is authored then.
     """
     what, choose = _choice(edges, subset, primvar, threshold, curve, distance, direction)
@@ -175,9 +175,9 @@ def paint_to_file(
         How many edges were painted, and what `check` says of the mesh.
 
     Raises:
-        TypeError: Something else than a stage or a prim.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or the layer not be written.
+        TypeError: The stage or the prim is of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or the layer cannot be written.
         StageProblems: There is no such patch, or nothing to paint. Nothing is written then.
     """
     report = author_layer(stage, output, force, lambda layered: paint(layered, prim, patch, value, **choice))
@@ -301,7 +301,7 @@ def _how_far(nearest: float, near: _Near) -> str:
 
 
 def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
-    """The curves of a prim as they are at no time, where rest is drawn, or at first where they have samples alone."""
+    """The curves of a prim by their default values, where rest is drawn, or at their first sample without these."""
     prim = mesh.GetStage().GetPrimAtPath(path)
     if not prim or not prim.IsA(UsdGeom.BasisCurves):
         raise Fault(f"there is no BasisCurves prim {path}" + (f", it is a {prim.GetTypeName()}" if prim else ""))

@@ -18,7 +18,7 @@ from skinslide.write.place import asset_path, check_not_input, check_output, giv
 
 
 class PayloadLayer:
-    """What is to be written, once the set-up is there. Raises UsageError for what cannot be."""
+    """What is to be written, once the set-up is there. Raises UsageError for what cannot be used."""
 
     def __init__(self, stage: StageLike, setup: StrPath, output: StrPath, force: bool):
         self._output, live = given_output("payload", output), given_output("output", setup)

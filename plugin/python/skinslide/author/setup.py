@@ -81,40 +81,41 @@ def setup(
     interpolation: str | None = None,
     grow: float | None = None,
 ) -> CheckReport:
-    """Makes a patch of some faces of a mesh, in the stage's edit target; one that is there has other faces then.
+    """Makes a patch of some faces of a mesh in the stage's edit target, or gives an existing patch other faces.
 
-    One of faces, subset, primvar, joint and whole says which faces. What of weight, rule, holes, interpolation and
-    grow is None is not authored, but for the rule of a new patch.
+    One of faces, subset, primvar, joint and whole says which faces. Of weight, rule, holes, interpolation and grow,
+    those that are None are not authored, except for the rule of a new patch.
 
     Args:
         stage: The stage.
-        prim: The mesh. With `whole` it may be any prim, for the meshes at and below it, or None, for all of the stage.
-        patch: The patch's name, such as elbow_L; with `whole` None is skin.
+        prim: The mesh. With `whole` any prim, for the meshes at and below it, or None, for all of the stage.
+        patch: The patch's name, such as elbow_L; with `whole` it may be None: skin.
         faces: Indices (n,), a bool for each face of the mesh (F,), or a spec such as "0-120,140".
         subset: The name of a GeomSubset under the mesh.
         primvar: The name of a primvar of the mesh, read as the primvar of a patch is.
         joint: Joints of the Skeleton that the mesh is bound to, by name: faces whose weights mix one of them with its
             parent or children.
-        reach: How far from a joint, in its length, to its children or, of the last, its parent; None: 0.75.
-        mirror: With `joint`, makes the patch of the other side too, by the names of joints and patch.
-        whole: The faces whose edges ever stretch over 2 %, and so much around them as lets them give. One patch for
-            each mesh that is rendered and has such edges.
-        frames: With `whole`, where stretch is looked for: a spec such as 1001:1024, or numbers; None: every sample.
-        pin: Names of GeomSubsets under the mesh, or of primvars of it, of points that stay, such as lips, lids and
-            nails: their weight is 0. With `whole` those that a mesh has count.
+        reach: How far from a joint, in lengths of the joint: that to its children or, without any, to its parent; None:
+            0.75.
+        mirror: With `joint`, also makes the patch of the other side, found by the names of joints and patch.
+        whole: The faces whose edges ever stretch by over 2 %, and enough around them to give. Each mesh that is
+            rendered and has such edges gets one patch.
+        frames: With `whole`, the frames to look at: a spec such as 1001:1024, or numbers; None: every sample.
+        pin: Points that stay, such as lips, lids and nails, by the names of GeomSubsets under the mesh or primvars on
+            it: their weight is 0. With `whole` each mesh has those that it has.
         weight: How far points slide, 0 to 1: a number, one for each point (V,), or the name of a primvar by point.
         rule: unit, fast, relaxed or even; None: even for a patch that is new.
         holes: pinned, free or freeAll.
         interpolation: auto, linear, meanValue or limit.
-        grow: How far around its faces skin joins the patch, in the mesh's units.
+        grow: How far around its faces the patch grows, in the mesh's units.
 
     Returns:
         What `check` says of the meshes.
 
     Raises:
-        TypeError: Something else than a stage or a prim.
-        UsageError: Arguments that cannot be, or an edit target that takes nothing.
-        FrameProblem: Points that cannot be looked at, with `whole`. Nothing is authored then.
+        TypeError: The stage or the prim is of another type.
+        UsageError: The arguments cannot be used, or the edit target takes no opinions.
+        FrameProblem: With `whole`, the points of a frame cannot be used. Nothing is authored then.
         StageProblems: The patch could not be slid, or nothing stretches. Nothing is authored then.
     """
     if sum(source is not None for source in (faces, subset, primvar, joint)) + whole != 1:
@@ -178,7 +179,7 @@ def _check_pins(meshes: Sequence[Usd.Prim], pins: Sequence[str]) -> None:
 
 
 def _make(mesh: EditedMesh, patch: str, faces: np.ndarray | None, settings: Settings) -> None:
-    """Authors the patch, of these faces or, for None, of those that it finds by itself."""
+    """Authors the patch with these faces or, for None, with those that it finds by itself."""
     is_new = patch not in schema.patch_names(mesh.prim)
     applied = SkinSlideAPI.Apply(mesh.prim, patch)
     if faces is not None:
@@ -219,23 +220,23 @@ def setup_to_file(
 
     Args:
         stage: The stage, or its path; never written.
-        output: The layer: .skinslide, .usda, .usdc or .usd, written whole or not at all. One that sits on the stage
+        output: The layer: .skinslide, .usda, .usdc or .usd, written whole or not at all. One that sublayers the stage
             already gains the patch.
         prim: The mesh, as for `setup`.
         patch: The patch's name, as for `setup`.
-        force: Replaces any layer at `output`, where without it one that does not sit on the stage is an error.
-        payload: A layer to write too, .usda, .usdc or .usd, which payloads the set-up and, where that cannot be opened
-            for want of skinslide, the stage; None: none.
+        force: Replaces any layer at `output`; without it, one that does not sublayer the stage is an error.
+        payload: Another layer to write, .usda, .usdc or .usd, which payloads the set-up and, where that cannot be
+            opened without skinslide, the stage; None: none.
         **choice: As for `setup`.
 
     Returns:
         What `check` says of the meshes.
 
     Raises:
-        TypeError: Something else than a stage or a prim.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or the layer not be written.
-        FrameProblem: Points that cannot be looked at, with `whole`. Nothing is written then.
+        TypeError: The stage or the prim is of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or the layer cannot be written.
+        FrameProblem: With `whole`, the points of a frame cannot be used. Nothing is written then.
         StageProblems: The patch could not be slid, or nothing stretches. Nothing is written then.
     """
     also = None if payload is None else PayloadLayer(stage, output, payload, force)

@@ -141,7 +141,7 @@ class _Subject:
         return np.asarray(np.append(mean, 1) @ pose.to_world)[:3]
 
     def framed(self, poses: Sequence[_Pose], aspect: float) -> Camera:
-        """Raises FrameProblem for a pose that cannot be, and SliderError where no camera sees them."""
+        """Raises FrameProblem for a pose that cannot be drawn, and SliderError where no camera sees them."""
         mesh = self._mesh
         up = (0, 0, 1) if UsdGeom.GetStageUpAxis(mesh.stage) == UsdGeom.Tokens.z else (0, 1, 0)
         shape, points = Shape(mesh.face_counts, mesh.face_indices), [pose.points for pose in poses]

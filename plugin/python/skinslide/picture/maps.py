@@ -55,10 +55,10 @@ def maps(
         What was slid, and the maps.
 
     Raises:
-        TypeError: Something else than a stage or prims.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or a file not be written.
-        StageProblems: The stage cannot be slid, or not be drawn.
+        TypeError: The stage or the prims are of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or a file cannot be written.
+        StageProblems: The stage cannot be slid, or cannot be drawn.
         FrameProblem: A frame cannot be slid.
     """
     wanted = Maps(folder, **maps)
@@ -71,13 +71,13 @@ def maps(
 class Maps(MapOptions):
     """Maps of stretch before and after, slide distance and force density over the faces of patches.
 
-    Each is an OpenEXR file of one channel, Y, but strain, which has several: MESH.KIND.FRAME.exr, or
-    MESH.KIND.TILE.FRAME.exr where the faces reach beyond the first tile of a UDIM; each is written whole or not at all.
-    Force density is that of paint, textures and edges, without what is constant, which changes nothing; painting by
-    such a map gives the same densities again, but for what an edge blurs.
+    Each is an OpenEXR file, MESH.KIND.FRAME.exr, or MESH.KIND.TILE.FRAME.exr where the faces reach beyond the first
+    tile of a UDIM, and has one channel, Y, except strain, which has several. Each is written whole or not at all.
+    Force density is that of paint, textures and edges, without constant paint, which changes nothing; painting with
+    such a map gives the same densities again, except for what edges blur.
 
     Attributes:
-        folder: Where maps go, made where there is none.
+        folder: Where the maps go, made if it is missing.
     """
 
     folder: StrPath
@@ -90,10 +90,10 @@ class Maps(MapOptions):
             options: What is slid.
 
         Returns:
-            What the loop gives the frames to.
+            What the loop hands the frames to.
 
         Raises:
-            UsageError: The folder cannot be.
+            UsageError: The folder cannot be used.
         """
         return _Mapping(self, OutputFolder(self.folder, shot.stage, shot.path))
 

@@ -56,7 +56,7 @@ def preview(
     progress: Progress | None = None,
     **pictures: Unpack[PictureKeywords],
 ) -> PreviewReport:
-    """Draws pictures of every patch into a folder, and a page of them. Each is written whole or not at all.
+    """Draws pictures of every patch into a folder, and a page of them. Each file is written whole or not at all.
 
     Args:
         stage: The stage, or its path; never written.
@@ -73,10 +73,10 @@ def preview(
         What was slid, and the files.
 
     Raises:
-        TypeError: Something else than a stage or prims.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or a file not be written.
-        StageProblems: The stage cannot be slid, or not be drawn.
+        TypeError: The stage or the prims are of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or a file cannot be written.
+        StageProblems: The stage cannot be slid, or cannot be drawn.
         FrameProblem: A frame cannot be slid.
     """
     wanted = Pictures(folder, html, **pictures)
@@ -90,9 +90,9 @@ class Pictures(PictureOptions):
     """Pictures of every patch, before and after side by side, with a contact sheet, and a page of them.
 
     Attributes:
-        folder: Where pictures go, made where there is none; None: nowhere.
-        html: A page of all of them, with curves of what happened at each frame: one file, which loads no other; None:
-            none. One of both is needed.
+        folder: Where the pictures go, made if it is missing; None: they are not kept.
+        html: A page of all of them, with curves of what happened at each frame, in one file that loads no other; None:
+            none. At least one of folder and html is needed.
     """
 
     folder: StrPath | None = None

@@ -115,18 +115,18 @@ class ShotsReport:
 
 
 def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
-    """Writes a page of all shots whose records are in a folder and below it.
+    """Writes one page of all shots whose records are in a folder or below it.
 
     Args:
-        folder: Where what `--json` printed was kept, in files of any name that end in .json. A page of pictures with
-            the name of a record, or called report.html beside it, is led to.
+        folder: The folder. Records are what `--json` printed, in files of any name that end in .json. A page of
+            pictures beside a record, of the same name or called report.html, is linked to.
         output: The page, .html; None: shots.html in the folder.
 
     Returns:
         What is on the page.
 
     Raises:
-        UsageError: No such folder, one without records, or a page that cannot be written.
+        UsageError: There is no such folder, it has no records, or the output cannot be used.
         StageError: The page cannot be written.
     """
     top = given_output("folder", folder)

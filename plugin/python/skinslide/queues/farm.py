@@ -83,16 +83,16 @@ def farm(
     pictures: StrPath | None = None,
     html: StrPath | None = None,
 ) -> FarmReport:
-    """Writes a job that bakes a shot on a farm, to the samples of one bake of all the frames.
+    """Writes a job that bakes a shot on a farm, with the same samples as one bake of all the frames.
 
-    A task that is run again bakes nothing where its chunk is whole, so a job that failed is run again as it is.
+    A task that is run again bakes nothing if its chunk is complete, so a job that failed can be run again as it is.
 
     Args:
-        stage: The path of the stage, which the machines of the farm have too.
-        output: The layer that the job is to make, .usda, .usdc or .usd, beside which the job and its chunks are; or
-            the job, whose layer then has its name.
-        chunk: How many frames a task bakes, at most.
-        form: openjd, a template of Open Job Description; slurm, a script that submits an array and what follows it.
+        stage: The path of the stage, which must be the same on the machines of the farm.
+        output: The layer that the job is to make, .usda, .usdc or .usd; the job and its chunks are written beside it.
+            Or the job; its layer then has the same name.
+        chunk: The most frames that a task bakes.
+        form: openjd, an Open Job Description template; slurm, a script that submits an array of tasks and what follows.
         prims: As for `bake_to_file`.
         frames: As for `bake_to_file`; none may be beyond the samples.
         max_folded: As for `bake_to_file`, of each task.
@@ -101,16 +101,16 @@ def farm(
         max_added_stretch: As for `bake_to_file`, of each task.
         max_roughness: As for `bake_to_file`, of each task.
         diagnostics: As for `bake_to_file`.
-        pictures: A folder for pictures of all frames, which a task draws at the end; None: it draws none.
+        pictures: A folder for pictures of all frames, which one task draws at the end; None: none.
         html: A page of them; None: none.
 
     Returns:
         What the job will do.
 
     Raises:
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or the job not be written.
-        StageProblems: The stage cannot be slid, or does not have a frame.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or the job cannot be written.
+        StageProblems: The stage cannot be slid, or does not have one of the frames.
     """
     sliding, own = SlideOptions.of(prims, frames, "auto", 1), FarmOptions(chunk, form)
     limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)

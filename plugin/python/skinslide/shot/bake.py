@@ -65,42 +65,44 @@ def bake_to_file(
     chunk: str | None = None,
     resume: bool = False,
 ) -> BakeReport:
-    """Bakes a stage into a layer of overs to be sublayered above it.
+    """Bakes a stage into a layer of overs, to sublayer above it.
 
-    Samples are saved as they come, so memory does not grow with frames. What a `.usdc` holds is promised, and not its
-    bytes, which tell when it was saved; those of a `.usda` follow from what it holds.
+    Samples are saved as they come, so memory does not grow with the number of frames. The same bake gives a `.usda` of
+    the same bytes; a `.usdc` holds the same, but its bytes also depend on when it was saved.
 
     Args:
         stage: The stage, or its path; never written.
         output: The layer: .usda, .usdc or .usd, written whole or not at all.
-        prims: Prims, of which the meshes with patches at and below them are baked; None: every mesh with a patch.
-        frames: Stage times, or a spec such as "101:109x2"; None: the samples, and the whole time codes between those
-            more than one apart, where slid points do not go straight; "authored": the samples alone. A mesh without
+        prims: Prims: the meshes with patches at and below them are baked; None: every mesh with a patch.
+        frames: Stage times, or a spec such as "101:109x2"; "authored": the samples; None: the samples and, where they
+            are more than one apart, the whole time codes between, since slid points do not go straight. A mesh without
             samples has one value, written as a default, whatever the frames.
-        lookup: auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where it cannot be had.
-        jobs: Frames slid at once; the result does not depend on it.
-        progress: Called after each frame with the frames done and in all.
-        max_folded: Faces turned over that a patch may have at a frame; None: any number.
-        max_clamped: Vertices looked up outside every face that a patch may have at a frame; None: any number.
-        max_stretch: Stretch that a patch may have at a frame, slid: the RMS of log(length / rest length); None: any.
-        max_added_stretch: By how much a patch may have more of it than in the cache; None: any.
-        max_roughness: How many times as roughly as its cache a patch may move, by the largest second difference in
+        lookup: auto, egl, exact, or a Lookup; the result does not depend on it. egl fails where there is no device.
+        jobs: Frames to slide at once; the result does not depend on it.
+        progress: Called on this thread after each frame, with the number of frames done and of all.
+        max_folded: The most faces of a patch that may be turned over at a frame; None: any number.
+        max_clamped: The most vertices of a patch that may be looked up outside every face at a frame; None: any number.
+        max_stretch: The most stretch that a patch may have after sliding at a frame: the RMS of log(length / rest
+            length); None: any.
+        max_added_stretch: The most stretch that sliding may add to a patch at a frame; None: any.
+        max_roughness: The most times as roughly as its cache that a patch may move, by the largest second difference in
             time; None: any number.
         share: Searches at each frame for the least stretch that its pose allows, for the report. Slow.
-        diagnostics: Writes primvars:skinSlide:stretch and primvars:skinSlide:slide beside the points.
-        also: What else is made of the frames, each of which is slid once: `Pictures`, `Maps`.
-        chunk: One of several parts of the frames, such as "3/8", to be put together by `stitch`; None: all of them.
-        resume: Bakes nothing where the output is whole already, of the same frames, set-up, cache and options.
+        diagnostics: Writes primvars:skinSlide:stretch, slide, largestStretch, smallestStretch, areaRatio and
+            stretchDirection beside the points, as the documentation of SkinSlideAPI describes them.
+        also: What else to make of the frames, each of which is slid once: `Pictures`, `Maps`.
+        chunk: One of several parts of the frames, such as "3/8", which `stitch` joins; None: all of them.
+        resume: Bakes nothing if the output is complete already, from the same frames, set-up, cache and options.
 
     Returns:
         What was done, patch by patch.
 
     Raises:
-        TypeError: Something else than a stage or prims.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or the layer not be written.
+        TypeError: The stage or the prims are of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or the layer cannot be written.
         StageProblems: The stage cannot be slid.
-        FrameProblem: A frame cannot be slid, or has more of something than it may.
+        FrameProblem: A frame cannot be slid, or is above a limit.
     """
     limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)
     given: tuple[Any, ...] = (chunk, resume)
@@ -132,10 +134,10 @@ def bake(
     diagnostics: bool = False,
     also: Sequence[Product] = (),
 ) -> BakeReport:
-    """Bakes a stage into its edit target, once every frame is known.
+    """Bakes a stage into its edit target, once every frame has been slid.
 
-    Memory grows with frames: USD keeps what is authored until the layer is saved. Takes the place of an earlier bake
-    there, of the same prims. Where the layer holds the cache too, the cache's values move to attributes
+    Memory grows with the number of frames: USD keeps what is authored until the layer is saved. An earlier bake of the
+    same prims there is replaced. Where the layer also holds the cache, the cache's values move to attributes
     skinSlide:cached:*, from which the next bake into it starts.
 
     Args:
@@ -158,10 +160,10 @@ def bake(
         What was done, patch by patch.
 
     Raises:
-        TypeError: Something else than a stage or prims.
-        UsageError: Arguments that cannot be, or an edit target that takes nothing.
+        TypeError: The stage or the prims are of another type.
+        UsageError: The arguments cannot be used, or the edit target takes no opinions.
         StageProblems: The stage cannot be slid.
-        FrameProblem: A frame cannot be slid, or has more of something than it may.
+        FrameProblem: A frame cannot be slid, or is above a limit.
     """
     check_target(stage)
     options = SlideOptions.of(prims, frames, lookup, jobs)

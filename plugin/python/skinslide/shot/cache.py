@@ -82,22 +82,22 @@ class CacheReport:
 def cache(
     stage: StageLike, output: StrPath, *, prims: Prims = None, frames: Frames = None, progress: Progress | None = None
 ) -> CacheReport:
-    """Writes the points that UsdSkel makes of meshes into a layer of overs, which ends the skinning of these meshes.
+    """Writes the skinned points of meshes to a layer of overs, in which UsdSkel no longer skins these meshes.
 
     Args:
         stage: The stage, or its path; never written.
-        output: The layer: .usda, .usdc or .usd, written whole or not at all; to be sublayered above the stage.
-        prims: Prims, of which the skinned meshes at and below them are written; None: all of the stage.
-        frames: As for `bake_to_file`; samples are those of all that points follow from.
-        progress: Called after each frame with the frames done and in all.
+        output: The layer: .usda, .usdc or .usd, written whole or not at all; sublayer it above the stage.
+        prims: Prims: the skinned meshes at and below them are written; None: all of the stage.
+        frames: As for `bake_to_file`; samples are those of everything that the points follow from.
+        progress: As for `bake_to_file`.
 
     Returns:
         What was written, mesh by mesh.
 
     Raises:
-        TypeError: Something else than a stage or prims.
-        UsageError: Arguments that cannot be.
-        StageError: The stage cannot be opened, or the layer not be written.
+        TypeError: The stage or the prims are of another type.
+        UsageError: The arguments cannot be used.
+        StageError: The stage cannot be opened, or the layer cannot be written.
         StageProblems: A mesh cannot be skinned, or there is none.
         FrameProblem: A frame cannot be skinned.
     """

@@ -56,7 +56,7 @@ class CheckedPatch:
         faces: Of the piece.
         free: Vertices that may slide.
         holes: Boundary loops but the longest.
-        held: Vertices on borders that stay where another mesh meets them, and would slide else.
+        held: Vertices on borders that would slide, but stay since another mesh meets them.
         zero_length_edges: Of no length at rest.
         collapsed_faces: Of no area in the rest embedding.
         folded_faces: Turned over in the rest embedding.
@@ -281,20 +281,20 @@ def check(
 
     Args:
         stage: The stage, or its path.
-        prims: Prims to look at with everything below them; None: the whole stage.
-        lookup: What a bake would be asked for: auto, egl, exact, or a Lookup.
+        prims: Prims to look at, with everything below them; None: the whole stage.
+        lookup: The lookup that a bake would be given: auto, egl, exact, or a Lookup.
         share: Slides every frame, and searches for the least stretch that its pose allows. Slow.
-        jobs: Frames slid at once for that.
-        progress: Called after each of these frames with the frames done and in all.
+        jobs: Frames to slide at once for that.
+        progress: Called on this thread after each of these frames, with the number of frames done and of all.
 
     Returns:
-        The meshes, and the problems, of which errors would stop a bake.
+        The meshes, and the problems; those that are errors would stop a bake.
 
     Raises:
-        TypeError: Something else than a stage or prims.
+        TypeError: The stage or the prims are of another type.
         UsageError: The lookup cannot be had.
         StageError: The stage cannot be opened.
-        FrameProblem: With share: a frame cannot be slid.
+        FrameProblem: With `share`, a frame cannot be slid.
     """
     try:
         chosen = CheckedLookup.choose(Lookup.of(lookup))

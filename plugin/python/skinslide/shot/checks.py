@@ -32,7 +32,7 @@ def option(default: Any, check: Check, flag: str, **words: Any) -> Any:
 
 @dataclass(frozen=True)
 class Options:
-    """Options, which are checked as they are made. Raises UsageError for what cannot be."""
+    """Options, which are checked as they are made. Raises UsageError for values that cannot be used."""
 
     def __post_init__(self) -> None:
         for each in fields(self):

@@ -75,7 +75,7 @@ class SlideOptions(Options):
 
     @classmethod
     def of(cls, prims: Prims, frames: Frames, lookup: str | Lookup, jobs: int) -> SlideOptions:
-        """Raises TypeError and UsageError for what cannot be."""
+        """Raises TypeError and UsageError for values that cannot be used."""
         given: tuple[Any, ...] = (prims, frames, lookup, jobs)
         return cls(*given)
 

@@ -68,24 +68,24 @@ class StitchReport:
 def stitch(
     chunks: Iterable[StrPath], output: StrPath, *, frames: FramesLike | None = None, clips: bool = False
 ) -> StitchReport:
-    """Writes one layer with the samples of several that were baked from one stage: the layer of one bake.
+    """Writes one layer with the samples of several that were baked from one stage, the same as one bake writes.
 
     Args:
         chunks: The paths of layers that bake wrote, each with other frames.
         output: The layer: .usda, .usdc or .usd, written whole or not at all.
-        frames: Those that the chunks must have, no more and no less; None: those of which they say that they are
-            parts, or else all of the shot from the first to the last that they have.
-        clips: Writes value clips over the chunks, which stay where they are, instead of copying what they hold; and a
-            manifest beside the layer, of its name and .manifest.DIGEST.usda. USD reads the same samples. A manifest of
-            other content stays, since layers elsewhere may name it, as copies of the earlier layer do.
+        frames: The frames that the chunks must have, no more and no fewer; None: those that `chunk` split, which the
+            chunks know, or else all of the shot from the first to the last that they have.
+        clips: Instead of copying samples, writes value clips of the chunks, which must stay where they are, and a
+            manifest beside the layer, with .manifest.DIGEST.usda behind its name. USD reads the same samples. Manifests
+            of other content stay, since layers elsewhere, such as copies of an earlier layer, may name them.
 
     Returns:
         What the layer holds.
 
     Raises:
-        UsageError: Arguments that cannot be, or a layer that no bake wrote.
-        StageError: A chunk cannot be opened, or the layer not be written.
-        StageProblems: A chunk is not whole, the chunks do not fit together, or leave a frame out.
+        UsageError: The arguments cannot be used, or a chunk was not written by bake.
+        StageError: A chunk cannot be opened, or the layer cannot be written.
+        StageProblems: A chunk is incomplete, or the chunks do not fit together or leave a frame out.
     """
     files, stitched = _given_chunks(chunks), given_output("output", output)
     asked = None if frames is None else checked_frames(frames)

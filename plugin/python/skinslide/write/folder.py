@@ -33,7 +33,7 @@ class OutputFolder:
     """Where files of meshes are written. Nothing of it is made before the first is."""
 
     def __init__(self, folder: StrPath, stage: Usd.Stage, stage_path: StrPath | None):
-        """Raises UsageError for a folder that cannot be."""
+        """Raises UsageError for a folder that cannot be used."""
         self.folder, prims = given_output("folder", folder), patched_prims(stage)
         # A resolver may find maps where their names alone do not lead.
         maps = [file for prim in prims for patch in schema.patch_names(prim) for file in texture_files(prim, patch)]

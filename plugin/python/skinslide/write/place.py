@@ -33,7 +33,7 @@ _OF_USD = 7  # bytes by which a name is longer that USD writes under before it h
 
 
 def check_output(output: Path, extensions: Sequence[str], made: Path | None = None) -> None:
-    """Raises UsageError for an output that cannot be, before any work is done.
+    """Raises UsageError for an output that cannot be used, before any work is done.
 
     `made` is a folder that will be made, where it is missing, before the output is written.
     """
