@@ -1,6 +1,6 @@
-/* What pictures are drawn on: two framebuffers of a context of our own, one of four samples a pixel that is drawn to, on all
- * layers at once, one of a single sample that is read. Bytes hold sRGB, which the programs that draw make of linear light: the
- * device would do it once a sample, which software rasterisers are slow at. */
+/* What pictures are drawn on: two framebuffers of a context of our own. One has four samples a pixel and all layers, and is
+ * drawn to; one has a single sample, and is read. Bytes hold sRGB, into which the shaders encode linear light: the device would
+ * encode each sample, which is slow on software rasterisers. */
 #include "canvas.h"
 
 #include <math.h>
@@ -174,12 +174,12 @@ skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float co
     ss_draw_on_layers(canvas, 0, canvas->layers);
     for (int32_t layer = 0; layer < canvas->layers; layer++)
         gl->glClearBufferfv(GL_COLOR, layer, all);
-    gl->glClearBufferfi(GL_DEPTH_STENCIL, 0, 1, 0); /* at once: each alone is slow */
+    gl->glClearBufferfi(GL_DEPTH_STENCIL, 0, 1, 0); /* both at once: one alone is slow */
     canvas->marks = 0;
     return ss_gl_leave(canvas->egl, &before, "clearing a canvas", error);
 }
 
-/* OpenGL has the lowest row first. */
+/* OpenGL's first row is the lowest, ours the highest. */
 static void turn_over(const uint8_t *rows, int32_t height, size_t row_size, uint8_t *out) {
     for (int32_t y = 0; y < height; y++)
         memcpy(out + (size_t)y * row_size, rows + (size_t)(height - 1 - y) * row_size, row_size);

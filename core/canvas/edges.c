@@ -1,4 +1,4 @@
-/* Edges that values are painted on: which of a mesh's they are, and how strongly. */
+/* Edges that are painted: finds the edge of the mesh that each pair of vertices is, and its value. */
 #include "canvas.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static skinslide_status check(const skinslide_figure *figure, skinslide_error *e
     return status;
 }
 
-/* The vertices of edges, lower first: in the order of their numbers they are in order, too. */
+/* The ends of each edge, lower first. Edges are numbered in the order of their ends, so the list is sorted. */
 static void list_ends(const ss_faces *skin, int32_t (*ends)[2]) {
     for (int32_t c = 0; c < skin->corner_count; c++) {
         int32_t a = skin->corner_vertex[c], b = skin->corner_vertex[ss_next_corner(skin, c)],
@@ -23,7 +23,7 @@ static void list_ends(const ss_faces *skin, int32_t (*ends)[2]) {
     }
 }
 
-/* -1: there is none. */
+/* The edge between two vertices; -1 where there is none. */
 static int32_t find(const ss_faces *skin, int32_t (*const ends)[2], int32_t a, int32_t b) {
     int32_t low = 0, high = skin->edge_count, from = a < b ? a : b, to = a < b ? b : a;
     while (low < high) {
@@ -34,7 +34,7 @@ static int32_t find(const ss_faces *skin, int32_t (*const ends)[2], int32_t a, i
     return low < skin->edge_count && ends[low][0] == from && ends[low][1] == to ? low : -1;
 }
 
-/* skin_vertex [mesh_vertex_count]: -1 where no face is. */
+/* skin_vertex [mesh_vertex_count]: -1 where no face has the vertex. */
 static void take(ss_drawing *drawn, const int32_t *skin_vertex, int32_t (*const ends)[2]) {
     const skinslide_figure *figure = drawn->figure;
     for (int32_t i = 0; i < figure->edge_count; i++) {

@@ -1,4 +1,4 @@
-/* Draws figures: what of one is in sight is posed and listed, then drawn. */
+/* Draws a figure: poses and lists what of it is in sight, then draws that. */
 #include "canvas.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 /* ---- What is in sight ---- */
 
-enum { LEEWAY = 20 }; /* percent: surfaces that OpenSubdiv fits may leave the hull of the vertices that make them */
+enum { LEEWAY = 20 }; /* percent: OpenSubdiv's surfaces may leave the hull of their control points */
 
 /* A bit for each side of the view that a vertex is beyond. */
 static uint8_t beyond(const ss_drawing *drawn, int32_t vertex) {
@@ -24,7 +24,8 @@ static uint8_t beyond(const ss_drawing *drawn, int32_t vertex) {
     return (uint8_t)sides;
 }
 
-/* False where all vertices that make it are beyond the same side of the view. What has the outline always is. */
+/* False where all vertices that its surface depends on are beyond the same side of the view. Faces of the patch, which have the
+ * outline, always count as in sight. */
 static bool in_sight(const ss_drawing *drawn, const ss_grid *grid, const uint8_t *sides) {
     const skinslide_tessellation *mesh = drawn->mesh;
     const int32_t *vertices = mesh->corner_vertex + mesh->face_start[grid->face];
@@ -44,8 +45,8 @@ static int32_t piece_of(const skinslide_tessellation *mesh, int32_t vertex) {
     return low;
 }
 
-/* Close to a patch, most of a mesh is out of sight. It is not posed, but where what is in sight has places of it. sides is
- * scratch [mesh_vertex_count]. */
+/* Close to a patch, most of a mesh is out of sight and need not be posed, except grids from which those in sight take places of
+ * vertices. sides is scratch [mesh_vertex_count]. */
 static void skip_out_of_sight(ss_drawing *drawn, uint8_t *sides) {
     const skinslide_tessellation *mesh = drawn->mesh;
     for (int32_t v = 0; v < mesh->mesh_vertex_count; v++)
@@ -109,7 +110,7 @@ static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camer
     return ss_list_seen(drawn) && ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 
-/* A mark that no figure has left. */
+/* A value that no figure has left in the stencil. */
 static GLint new_mark(skinslide_canvas *canvas) {
     const GLint none = 0;
     if (canvas->marks == UINT8_MAX) {

@@ -1,4 +1,4 @@
-/* What a figure is painted with, layer by layer: taken and checked. */
+/* Takes and checks what a figure is painted with, layer by layer. */
 #include "canvas.h"
 
 #include "paint.h"

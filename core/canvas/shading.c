@@ -1,4 +1,4 @@
-/* How figures look: the scale of false colours, the programs that draw surfaces and strokes, and what they are fed from. */
+/* How figures look: the scale of false colours, the programs that draw surfaces and strokes, and the buffers that feed them. */
 #include "canvas.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 enum { COLOURS = 5 };
 
-/* From little to much, linear light; as many as the shader has. */
+/* From lowest to highest, linear light; as many as `colours` in the shader has. */
 static const float scale_colours[COLOURS][3] = {{0.024f, 0.042f, 0.137f},
                                                 {0.023f, 0.275f, 0.381f},
                                                 {0.270f, 0.617f, 0.102f},
@@ -42,7 +42,8 @@ static const char surface_vertex[] = "#version 300 es\n"
                                      "    gl_Position = to_clip * vec4(place, 1.0);\n"
                                      "}\n";
 
-/* Light from beside the camera, in which what faces the camera, and what has no normal, has its own colour: base. */
+/* Light from beside the camera, scaled so that a surface that faces the camera, or has no normal, shows its own colour:
+ * base. */
 static const char surface_fragment[] =
     "#version 300 es\n"
     "precision highp float;\n"
@@ -88,15 +89,15 @@ static const char surface_fragment[] =
     "    return found;\n"
     "}\n";
 
-/* As many outputs as there may be layers; those of layers that are not drawn on go nowhere. */
+/* One output for each layer that there may be; outputs for layers that are not drawn on are dropped. */
 static const char tile_main[] = "layout(location = 0) out vec4 colour[4];\n"
                                 "void main() {\n"
                                 "    vec4 found = lit(tile(scale[0]));\n"
                                 "    colour[0] = found, colour[1] = found, colour[2] = found, colour[3] = found;\n"
                                 "}\n";
 
-/* Each segment is a strip as wide as the line, square at its ends. What of it is behind the near plane is cut off first: places
- * on the picture, on which its width is, have no meaning there. */
+/* Each segment is a strip as wide as the line, with square ends. What is behind the near plane is cut off first, since it has
+ * no place on the picture, where the width is measured. */
 static const char stroke_vertex[] = "#version 300 es\n"
                                     "uniform mat4 to_clip;\n"
                                     "uniform vec3 pen;\n"
@@ -184,7 +185,7 @@ static skinslide_status make_surface_program(const ss_egl_api *gl, const char *r
     return SKINSLIDE_OK;
 }
 
-/* What draws on so many layers, each as the bits say. */
+/* The fragment shader's main for a number of layers, each as its bit says. */
 static void write_painted_main(int32_t layers, unsigned false_colours, char text[MOST_TEXT]) {
     int length = snprintf(text, MOST_TEXT, "layout(location = 0) out vec4 colour[%d];\nvoid main() {\n", layers);
     for (int32_t k = 0; k < layers; k++)

@@ -1,6 +1,6 @@
-/* What is drawn of a figure: the triangles that face the camera and reach into the picture, and their vertices. The patch's come
- * first, then what hides none of it, then what may, which alone is drawn again as shadows: what is nearer than the patch in some
- * cell of the picture in which both are. In doubt the device decides. */
+/* What is drawn of a figure: the triangles that face the camera and reach into the picture, and their vertices. The patch's
+ * come first, then those that hide none of it, then those that may, which are drawn as shadows: they are nearer than the patch
+ * in some cell of the picture in which both are. What is doubtful is kept, and the device decides. */
 #include "canvas.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ typedef enum part { INSIDE, OUTSIDE, HIDING, UNSEEN } part;
 /* A vertex on the screen: x, y and depth from -1 to 1 in the picture. */
 typedef struct place {
     float at[3];
-    bool ahead; /* of the camera; else it may be anywhere */
+    bool ahead; /* in front of the camera; if not, `at` means nothing */
 } place;
 
 typedef struct box {
@@ -76,7 +76,8 @@ static float turned(const sight *own, const uint32_t triangle[3]) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Its vertices turn the other way, and still would where each was moved by a 128th of a pixel: devices round by half that. */
+/* Whether it is turned away from the camera, and still would be if each vertex moved by a 128th of a pixel: devices round by
+ * half of that. */
 static bool faces_away(const sight *own, const uint32_t triangle[3], const box *around) {
     float x = own->pixel[0] / 128, y = own->pixel[1] / 128, area = turned(own, triangle);
     float wide = around->high[0] - around->low[0] + x, tall = around->high[1] - around->low[1] + y;
@@ -127,7 +128,7 @@ static bool may_hide(const sight *own, const box *around) {
 
 /* ---- Parts ---- */
 
-/* Of the triangles of the patch, or of all others, of which those come first. */
+/* Of the triangles of the patch, or of all others. Call it for the patch first. */
 static void find_parts(const sight *own, bool inside) {
     const ss_drawing *drawn = own->drawn;
     for (int32_t p = 0, first = 0; p < drawn->mesh->grid_count; p++) {

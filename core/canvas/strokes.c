@@ -1,11 +1,11 @@
-/* What is drawn on a surface with a pen: the sides of a patch's faces, its outline, edges that are painted, the ways by which its
- * vertices came, and dots at pins. All are hidden by what is nearer. */
+/* Lines and dots on a surface: the sides of a patch's faces, its outline, painted edges, the ways that its vertices slid, and
+ * pins. What is nearer hides them. */
 #include "canvas.h"
 
 #include <math.h>
 #include <string.h>
 
-/* How each kind looks, but for its lines. */
+/* How each kind looks; segments are added to a copy. */
 static const ss_stroke kinds[SS_STROKES] = {
     [SS_WIRE] = {.width = 0.4f, .light = {0.02f, 0.02f, 0.025f}},
     [SS_OUTLINE] = {.width = 1, .light = {0.90f, 0.22f, 0.02f}},
@@ -32,7 +32,7 @@ static void list_segments(const ss_drawing *drawn, uint32_t (*const segments)[2]
         add_side(drawn, stroke, segments[i]);
 }
 
-/* Each of its own colour, and on a border by which it is told from what is beside it. */
+/* Each in its own colour, with a dark border that sets it off from the surface. */
 static void list_edges(ss_drawing *drawn) {
     const skinslide_figure *figure = drawn->figure;
     ss_stroke *edges = &drawn->strokes[SS_EDGES];
@@ -47,7 +47,7 @@ static void list_edges(ss_drawing *drawn) {
     }
 }
 
-/* The ends of a way are where its vertex is on the surface, and as far from there as it came. */
+/* A way begins where its vertex came from, and ends where it is on the surface. */
 static void list_ways(ss_drawing *drawn) {
     ss_stroke *ways = &drawn->strokes[SS_WAYS], *ends = &drawn->strokes[SS_ENDS_OF_WAYS];
     for (int32_t i = 0; drawn->figure->ways && i < drawn->outline->corner_count; i++) {

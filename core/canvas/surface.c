@@ -1,15 +1,15 @@
-/* Draws a figure's surface: chequered, in false colours, or with the tiles of its texture over the chequer. What hides the patch
- * may be left out there, but for a shadow: the patch is drawn first, and the stencil remembers where.
+/* Draws a figure's surface: chequered, in false colours, or with the tiles of its texture over the chequer. With ghosts, what
+ * hides the patch is drawn as a mere shadow. In order, with a mark in the stencil where the patch is:
  *
- *     the patch          marks
+ *     the patch          leaves its mark
  *     all else           where there is no mark
  *     strokes
- *     what may hide it   where there is one: its depth, then its colour, thinly, of the nearest alone */
+ *     what may hide it   where there is a mark: first its depth, then the colour of the nearest alone, thinly */
 #include "canvas.h"
 
 #include "paint.h"
 
-static const float shadow = 0.16f; /* of the colour of what hides */
+static const float shadow = 0.16f; /* how much of the colour of what hides shows */
 
 static void fill(const ss_egl_api *gl, GLenum target, GLuint buffer, const void *data, int64_t count, size_t size) {
     gl->glBindBuffer(target, buffer);
@@ -47,7 +47,7 @@ static void draw_tiles(const ss_drawing *drawn, const ss_layer_paint *paint, int
     }
 }
 
-/* Triangles [first, first + count), as the figure has them painted. */
+/* Triangles [first, first + count), in the figure's paints. */
 static void draw_painted(const ss_drawing *drawn, int32_t first, int32_t count) {
     float scales[SKINSLIDE_MOST_LAYERS][3] = {{0}};
     for (int32_t i = 0; i < drawn->paint_count; i++) {
@@ -112,11 +112,11 @@ static void draw_shadows(const ss_drawing *drawn) {
     gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-/* For all that is drawn of the surface itself. */
+/* State for drawing the surface itself; `end` undoes it. */
 static void begin(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
     gl->glBindVertexArray(drawn->canvas->objects.surface_array);
-    gl->glEnable(GL_POLYGON_OFFSET_FILL); /* behind its outline, however it slopes along the width of the line */
+    gl->glEnable(GL_POLYGON_OFFSET_FILL); /* pushed behind the lines on it, however the surface slopes across their width */
     gl->glPolygonOffset(drawn->line, 4);
     (drawn->figure->double_sided ? gl->glDisable : gl->glEnable)(GL_CULL_FACE);
     gl->glFrontFace(drawn->view.mirrored == (drawn->figure->left_handed != 0) ? GL_CCW : GL_CW);

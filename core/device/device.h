@@ -28,11 +28,11 @@ skinslide_status ss_idbuffer_create(const ss_device_request *request, const ss_i
                                     int32_t resolution, ss_idbuffer **out, skinslide_error *error);
 void ss_idbuffer_destroy(ss_idbuffer *buffer);
 const skinslide_device_info *ss_idbuffer_device(const ss_idbuffer *buffer);
-/* How it failed last; "" where it did not. */
+/* How it failed last; "" if it never did. */
 const char *ss_idbuffer_reason(const ss_idbuffer *buffer);
 int32_t ss_idbuffer_side(const ss_idbuffer *buffer, int32_t patch);
-/* Starts drawing the faces of uv and gathering the candidates of the queries [query_count][2], and does not wait. A failure
- * shows in the next call. */
+/* Starts to draw the faces of uv and to gather the candidates of the queries [query_count][2], without waiting for the device.
+ * A failure shows in the next call. */
 void ss_idbuffer_draw(ss_idbuffer *buffer, int32_t patch, const double (*uv)[2], const double (*queries)[2]);
 /* The candidates of what was drawn last of the patch: [query_count]. False where the device failed. */
 bool ss_idbuffer_candidates(ss_idbuffer *buffer, int32_t patch, ss_candidates *candidates);

@@ -29,15 +29,15 @@ typedef struct drawing {
     int32_t side;
     GLuint arrays[2];  /* of the two passes */
     GLuint buffers[4]; /* place and number of each vertex; queries; answers */
-    bool drawn;        /* and not failed since */
+    bool drawn;        /* drawn, and the device has not failed since */
 } drawing;
 
 struct ss_idbuffer {
     ss_memory memory;
     ss_device_request request;
     ss_egl *egl; /* NULL once lost, until it is made again */
-    bool gone;   /* it is not made again */
-    int losses;  /* since it last answered */
+    bool gone;   /* lost too often: it is not made again */
+    int losses;  /* how many since it last answered */
     skinslide_device_info info;
     char reason[480];  /* how it failed last */
     drawing *drawings; /* [drawing_count] */
@@ -152,7 +152,7 @@ static skinslide_status make_targets(ss_idbuffer *buffer, skinslide_error *error
                    side, state);
 }
 
-/* Numbers of the faces, one a vertex of their fans: the same for every frame. */
+/* The number of its face at each vertex of the fans: the same for every frame. */
 static void make_numbers(const drawing *drawn, uint32_t *numbers) {
     int32_t n = 0;
     for (int32_t f = 0; f < drawn->faces->face_count; f++)
@@ -232,7 +232,7 @@ static void leave(ss_idbuffer *buffer, const ss_egl_before *before, const char *
         lose(buffer, what, good ? "its answers cannot be mapped" : failure);
 }
 
-/* Every side within the device's limit: a fixed one must be, a suitable one gives way. */
+/* Fits the sides of all textures to the device's limit: a fixed resolution above it is an error, others are reduced. */
 static skinslide_status settle_sides(ss_idbuffer *buffer, skinslide_error *error) {
     int32_t most = buffer->info.largest_resolution;
     if (buffer->resolution > most)
@@ -267,7 +267,7 @@ static skinslide_status open_context(ss_idbuffer *buffer, skinslide_error *error
     return status;
 }
 
-/* Enters the context, or where it was lost another one. */
+/* Enters the context, or a new one if it was lost. */
 static bool enter_anew(ss_idbuffer *buffer, ss_egl_before *before) {
     skinslide_error error;
     if (enter(buffer, before))
@@ -353,7 +353,7 @@ static void draw_faces(ss_idbuffer *buffer, const drawing *drawn, const double (
         }
     gl->glBindFramebuffer(GL_FRAMEBUFFER, buffer->framebuffer);
     gl->glViewport(0, 0, drawn->side, drawn->side);
-    gl->glScissor(0, 0, drawn->side, drawn->side); /* what is cleared, of a texture for the largest drawing */
+    gl->glScissor(0, 0, drawn->side, drawn->side); /* clear only this part: the texture is as large as the largest drawing */
     gl->glClearBufferuiv(GL_COLOR, 0, nothing);
     gl->glUseProgram(buffer->draw_program);
     gl->glBindVertexArray(drawn->arrays[0]);
@@ -394,7 +394,7 @@ void ss_idbuffer_draw(ss_idbuffer *buffer, int32_t patch, const double (*uv)[2],
     leave(buffer, &before, "drawing faces", true);
 }
 
-/* Numbers as faces. One that is no face of the patch, from a device that failed without a word, is taken for none. */
+/* Turns numbers into faces. One that is no face of the patch, as a device that fails silently may give, counts as none. */
 static void copy_answers(const drawing *drawn, const uint32_t *answers, ss_candidates *candidates) {
     for (int32_t i = 0; i < drawn->query_count; i++)
         for (int32_t k = 0; k < SS_CANDIDATES; k++) {

@@ -80,7 +80,7 @@ bool ss_egl_load(ss_egl_api *api, char *why, size_t size) {
 #undef EXPORTED
 #undef EXTENSION
 #undef ADDRESSED
-    dlclose(library); /* which stays: see above */
+    dlclose(library); /* the library stays loaded, by RTLD_NODELETE */
     if (missing)
         snprintf(why, size, "libEGL.so.1 has no %s", missing);
     return !missing;
@@ -189,7 +189,7 @@ static bool open_display(ss_egl *egl, const choice *made, account *tried) {
     return api->eglInitialize(egl->display, NULL, NULL) || report(api, tried, "eglInitialize");
 }
 
-/* Robust where that is to be had: a reset of the device then loses the context and tells, and does not end the process. */
+/* Robust if possible: a reset of the device is then reported as a lost context, and does not end the process. */
 static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions, account *tried) {
     const ss_egl_api *api = &egl->api;
     const EGLint robust[] = {EGL_CONTEXT_CLIENT_VERSION,
@@ -292,7 +292,8 @@ static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, acco
 
 /* ---- All of them ---- */
 
-/* Devices of successive numbers that failed alike are told as one, and those for which there is no room by their number. */
+/* What was tried, for the message. Consecutive devices that failed alike are named together; those for which there is no room
+ * are counted. */
 typedef struct attempts {
     account told;
     account failure; /* not told yet, of first and the devices behind it */
@@ -300,7 +301,7 @@ typedef struct attempts {
     int32_t count, untold;
 } attempts;
 
-enum { ROOM_FOR_OTHERS = 180 }; /* than devices, which are tried last */
+enum { ROOM_FOR_OTHERS = 180 }; /* bytes for what is tried after the devices */
 
 static void tell(attempts *tried) {
     char name[96];
@@ -390,7 +391,7 @@ void ss_egl_close(ss_egl *egl) {
     free(egl);
 }
 
-/* The thread's context: EGL tells it only to whom has the context's own API bound, which a host need not have left so. */
+/* The thread's current context: EGL tells it only while the context's API is bound, and a host need not have left it bound. */
 static void save(const ss_egl_api *api, ss_egl_before *before) {
     const EGLenum apis[] = {api->eglQueryAPI(), EGL_OPENGL_ES_API, EGL_OPENGL_API};
     before->api = apis[0];
@@ -409,7 +410,7 @@ bool ss_egl_enter(const ss_egl *egl, ss_egl_before *before) {
     egl->api.eglBindAPI(EGL_OPENGL_ES_API);
     if (egl->api.eglMakeCurrent(egl->display, egl->surface, egl->surface, egl->context))
         return true;
-    before->failure = egl->api.eglGetError(); /* which the next call forgets */
+    before->failure = egl->api.eglGetError(); /* before the next call overwrites it */
     egl->api.eglBindAPI(before->api);
     return false;
 }

@@ -32,7 +32,7 @@ extern "C" {
     X(PFNEGLQUERYAPIPROC, eglQueryAPI)                                                                                         \
     X(PFNEGLQUERYSTRINGPROC, eglQueryString)
 
-/* NULL where the client extensions do not have them. */
+/* NULL if the client extensions do not include them. */
 #define SS_EGL_EXTENSIONS(X)                                                                                                   \
     X(PFNEGLGETPLATFORMDISPLAYEXTPROC, eglGetPlatformDisplayEXT)                                                               \
     X(PFNEGLQUERYDEVICESEXTPROC, eglQueryDevicesEXT)                                                                           \
@@ -160,17 +160,17 @@ bool ss_egl_enter(const ss_egl *egl, ss_egl_before *before);
 void ss_egl_leave(const ss_egl *egl, const ss_egl_before *before);
 /* "EGL_BAD_ALLOC"; "an unknown error" for a number that EGL does not have. */
 const char *ss_egl_error_name(EGLint code);
-/* Whether the device did all that it was asked for since the context was entered; else says what it did not. */
+/* Whether no OpenGL call has failed since the context was entered; else says what failed. */
 bool ss_gl_did(const ss_egl_api *gl, char *failure, size_t size);
 /* ss_egl_enter; DEVICE_FAILED where it fails. */
 skinslide_status ss_gl_enter(const ss_egl *egl, ss_egl_before *before, skinslide_error *error);
-/* What was current is again. DEVICE_FAILED where the device did not do all since the enter: what begins the message. */
+/* Makes current again what was current before. DEVICE_FAILED if a call failed since the enter; `what` begins the message. */
 skinslide_status ss_gl_leave(const ss_egl *egl, const ss_egl_before *before, const char *what, skinslide_error *error);
 /* Whether the context, which is current, has an extension. */
 bool ss_gl_has(const ss_egl_api *gl, const char *extension);
 enum { SS_BAND_ROWS = 16 };
-/* Reads texels [low, high) of whole numbers, the lowest row first, by bands of rows, in the one format that every device reads
- * them in: four numbers a texel. band is scratch [SS_BAND_ROWS * width]. */
+/* Reads texels [low, high) of integers, the lowest row first, in bands of rows, in the only format that every device must
+ * support: four numbers for each texel. band is scratch [SS_BAND_ROWS * width]. */
 void ss_gl_read_numbers(const ss_egl_api *gl, const int32_t low[2], const int32_t high[2], uint32_t (*band)[4],
                         uint32_t *texels);
 /* Links a program, capturing the outputs [captured_count] of its vertex shader where there are any. */

@@ -1,4 +1,4 @@
-/* What all that draw ask of OpenGL ES: programs, texels of whole numbers, and what a device says of its failures. */
+/* What all users of OpenGL ES share: programs, reading texels of integers, and how failures are reported. */
 #include "egl.h"
 
 #include <stdio.h>
@@ -39,7 +39,7 @@ static void attach_shader(const ss_egl_api *gl, GLuint program, GLenum kind, con
     gl->glShaderSource(shader, 1, &source, NULL);
     gl->glCompileShader(shader);
     gl->glAttachShader(program, shader);
-    gl->glDeleteShader(shader); /* lives on in the program */
+    gl->glDeleteShader(shader); /* the program keeps it alive */
 }
 
 skinslide_status ss_gl_program(const ss_egl_api *gl, const char *vertex, const char *fragment, const char *const *captured,

@@ -8,7 +8,7 @@
 
 #include <float.h>
 
-/* 1 + cosine of the rotation, under which there is none that is the least. */
+/* 1 + cosine of the rotation: below this the normals are opposite, and no rotation is the least. */
 static const double least_turn = 1e-9;
 
 void ss_least_turn(const double from[3], const double to[3], double turn[3]) {
@@ -48,7 +48,7 @@ static element element_at(const skinslide_mesh *mesh, skinslide_normals_layout l
     return (element){layout == SKINSLIDE_NORMALS_VERTEX ? e : mesh->face_indices[e], NULL, 1};
 }
 
-/* False where nothing of it turns. */
+/* The mean turn of an element's vertices. False where none of them turns. */
 static bool find_turn(const element *of, const float *turns, double turn[3]) {
     bool turns_at_all = false;
     turn[0] = turn[1] = turn[2] = 0;
@@ -68,7 +68,7 @@ static double part(ss_vectors vectors, int64_t e, int k) {
     return vectors.doubles ? vectors.doubles[3 * e + k] : (double)vectors.floats[3 * e + k];
 }
 
-/* Turned, each part may become as large as all three together. */
+/* Turning may make each component as large as the length of the vector. */
 skinslide_status ss_check_vector(const double vector[3], bool is_double, int64_t number, skinslide_error *error) {
     double most = is_double ? DBL_MAX / 8 : (double)FLT_MAX / 2;
     for (int k = 0; k < 3; k++)
@@ -88,7 +88,7 @@ static void turn_element(ss_vectors vectors, int64_t e, const double turn[3]) {
             vectors.floats[3 * e + k] = (float)vector[k];
 }
 
-/* Turns the elements or, before that, looks whether all can be. */
+/* Turns the elements, or only checks that all can be turned. */
 static skinslide_status go_through(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout,
                                    ss_vectors vectors, bool turning, skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;

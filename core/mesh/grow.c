@@ -1,10 +1,10 @@
-/* How far it is over a mesh at rest, and which faces are near others. Ways go straight from corner to corner of a face, and over
- * points in one place, such as those of a seam, as over one point. */
+/* Distances over a mesh at rest, and the faces that are near others. Ways go straight from corner to corner of a face, and
+ * treat points in one place, such as those of a seam, as one point. */
 #include "mesh.h"
 
 #include <math.h>
 
-/* A mesh by its places: the faces at each. */
+/* The faces at each place of a mesh. */
 typedef struct star {
     int32_t *place;       /* [vertex_count] the lowest vertex in the same place */
     int32_t *face_start;  /* [face_count + 1] */
@@ -58,7 +58,7 @@ static int32_t pop(queue *q) {
     return place;
 }
 
-/* Goes on from a place to all others of its faces. */
+/* Continues the ways at a place to all other corners of its faces. */
 static void go_on(const skinslide_mesh *mesh, const star *stars, int32_t from, double *left, queue *q) {
     for (int32_t i = stars->place_start[from]; i < stars->place_start[from + 1]; i++)
         for (int32_t c = stars->face_start[stars->face[i]]; c < stars->face_start[stars->face[i] + 1]; c++) {

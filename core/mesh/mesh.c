@@ -36,7 +36,7 @@ skinslide_status ss_check_points(const float *points, int32_t vertex_count, cons
     return SKINSLIDE_OK;
 }
 
-/* What vertices are one with must be one with itself. */
+/* A vertex that others are one with must be one with itself. */
 static skinslide_status check_weld(const skinslide_mesh *mesh, skinslide_error *error) {
     for (int32_t v = 0; mesh->weld && v < mesh->vertex_count; v++) {
         int32_t one = mesh->weld[v];
@@ -126,7 +126,7 @@ static void list_sides(const ss_faces *faces, ss_side *sides) {
     qsort(sides, (size_t)faces->corner_count, sizeof *sides, by_ends);
 }
 
-/* Whether the sides of an edge are one, or two that go opposite ways. */
+/* Whether an edge has one side, or two that go opposite ways. */
 static bool is_sound(const ss_faces *faces, const ss_side *sides, int32_t count) {
     return count == 1 || (count == 2 && faces->corner_vertex[sides[0].corner] != faces->corner_vertex[sides[1].corner]);
 }
@@ -167,7 +167,7 @@ bool ss_number_edges(ss_faces *faces) {
 
 /* ---- The faces of a patch ---- */
 
-/* Of face number own, which is the mesh's face. sorted is scratch of its size. */
+/* Checks face `own` of the patch, which is `face` of the mesh. sorted is scratch of its size. */
 static skinslide_status check_face(const ss_faces *faces, int32_t own, int32_t face, int32_t *sorted, const char *label,
                                    skinslide_error *error) {
     int32_t count = faces->face_start[own + 1] - faces->face_start[own];

@@ -42,20 +42,20 @@ typedef struct ss_taken_mesh {
     skinslide_mesh mesh;
     skinslide_subdivision subdivision;
 } ss_taken_mesh;
-/* Puts what it takes in the place of the caller's mesh, and checks that. */
+/* Takes the caller's mesh, makes *mesh point to that, and checks it. */
 skinslide_status ss_take_mesh(const skinslide_mesh **mesh, ss_taken_mesh *own, skinslide_error *error);
-/* Counts, indices and rest points of the whole mesh. */
+/* Checks counts, indices and rest points of the whole mesh. */
 skinslide_status ss_check_mesh(const skinslide_mesh *mesh, skinslide_error *error);
-/* Names the first face of fewer vertices than none. */
+/* Names the first face with a negative count. */
 skinslide_status ss_check_face_counts(const int32_t *counts, int32_t face_count, skinslide_error *error);
-/* Names the first index that is not one of a mesh's, of which there are `end`; what begins the message, such as "face ". */
+/* Names the first index that is not in [0, end). `what` begins the message, such as "face ". */
 skinslide_status ss_check_members(const int32_t *indices, int32_t count, int32_t end, const char *what, skinslide_status status,
                                   skinslide_error *error);
-/* The same of some faces of a mesh, which may be NULL where they are none. Fails with BAD_ARGUMENT. */
+/* The same for faces of a mesh; faces may be NULL if face_count is 0. Fails with BAD_ARGUMENT. */
 skinslide_status ss_check_faces(int32_t mesh_face_count, const int32_t *faces, int32_t face_count, skinslide_error *error);
-/* That what a caller lists once, such as "face 3", is there again. */
+/* Says that an element which must be listed once, such as "face 3", is there again. */
 skinslide_status ss_refuse_repeated(const char *label, const char *element, skinslide_status status, skinslide_error *error);
-/* That what belongs to a vertex, one number or three, is not finite. */
+/* Says that what a vertex has, one number or three, is not finite. */
 skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float *numbers, int width, skinslide_status status,
                                   skinslide_error *error);
 /* Names the first vertex that is not finite. */
@@ -64,7 +64,7 @@ skinslide_status ss_check_points(const float *points, int32_t vertex_count, cons
  * is found. label begins messages. */
 skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
                                const char *label, ss_memory *memory, ss_faces *faces, skinslide_error *error);
-/* Fills corner_edge and edge_count of any faces at all, several at an edge or none like it. False where memory is short. */
+/* Fills corner_edge and edge_count; any number of faces may share an edge. False where memory is short. */
 bool ss_number_edges(ss_faces *faces);
 /* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
  */
@@ -83,16 +83,18 @@ typedef struct ss_spot {
     float at[3];
     int32_t place, vertex;
 } ss_spot;
-/* Splits places by a pose: of vertices that share one, by its lowest vertex, those stay together that are linked by distances of
- * no more than tolerance. vertices [count] are those to look at; spots is scratch [count]. */
+/* Splits places by a pose: of the vertices that share a place, those that are linked by distances of no more than tolerance
+ * still do. place [vertex_count] is the lowest vertex in the place of each. vertices [count] are those to look at; spots is
+ * scratch [count]. */
 void ss_split_places(const float *points, double tolerance, const int32_t *vertices, int32_t count, ss_spot *spots,
                      int32_t *place);
 /* The places of all points [count] of a pose: place [count] is the lowest point of each. False where memory is short. */
 bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place);
-/* Which of points [count] have one of others [other_count] in their place: met [count] is 1, else 0. What is not finite is nowhere.
- * False where memory is short. */
+/* Which of points [count] have one of others [other_count] in their place: met [count] is 1, else 0. Points that are not finite
+ * meet none. False where memory is short. */
 bool ss_find_met(const float *points, int32_t count, const float *others, int32_t other_count, double tolerance, uint8_t *met);
-/* The root of a vertex in a forest, whose roots are their own parents; joins two trees under the lower root. */
+/* ss_root: the root of a vertex in a forest, whose roots are their own parents. ss_join: joins two trees under the lower
+ * root. */
 int32_t ss_root(int32_t *parent, int32_t vertex);
 void ss_join(int32_t *parent, int32_t a, int32_t b);
 
@@ -102,7 +104,7 @@ void ss_join(int32_t *parent, int32_t a, int32_t b);
 typedef struct ss_side {
     int32_t low, high, corner;
 } ss_side;
-/* Says what is wrong with an edge that has these sides. Renumbers the edges. */
+/* Says what is wrong with an edge that has these sides. Leaves the edges numbered anew. */
 skinslide_status ss_refuse_edge(ss_faces *faces, const ss_side *sides, int32_t count, const int32_t *mesh_face,
                                 const char *label, skinslide_error *error);
 
@@ -154,7 +156,7 @@ void ss_smooth_normals(const ss_around *around, const float *points, int32_t ver
 
 /* ---- carry.c: what lives on the skin turns with it ---- */
 
-/* The turn from one unit normal to another; none, which is 0, where they are opposite, or one is 0. See skinslide_workspace_turns. */
+/* The turn from one unit normal to another; 0 where they are opposite, or one is 0. See skinslide_workspace_turns. */
 void ss_least_turn(const double from[3], const double to[3], double turn[3]);
 /* How many elements of a mesh carry a vector. */
 int32_t ss_element_count(const skinslide_mesh *mesh, skinslide_normals_layout layout);
@@ -163,7 +165,7 @@ typedef struct ss_vectors {
     float *floats;
     double *doubles;
 } ss_vectors;
-/* Names a vector, by its number, that might not stay finite where it turned. */
+/* Fails for a vector, named by its number, that might not stay finite when it is turned. */
 skinslide_status ss_check_vector(const double vector[3], bool is_double, int64_t number, skinslide_error *error);
 /* skinslide_carry. The mesh is checked. */
 skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout, ss_vectors vectors,
@@ -171,14 +173,14 @@ skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinsl
 
 /* ---- grow.c: what is near on the mesh at rest ---- */
 
-/* How much is left at each vertex of the ways that begin where left [vertex_count] is not below 0, with so much to go: the most of
- * any way, below 0 where none comes. False where memory is short. */
+/* Spreads ways from the vertices where left [vertex_count] is 0 or more: that is how far a way may still go there. Afterwards
+ * left is the most that any way has left at each vertex, or below 0 where none comes. False where memory is short. */
 bool ss_spread(const skinslide_mesh *mesh, double *left);
-/* left [vertex_count] for ways that begin at the faces inside [face_count]. */
+/* Fills left [vertex_count] for ways of that length that begin at the faces inside [face_count]. */
 void ss_start_at(const skinslide_mesh *mesh, const uint8_t *inside, double way, double *left);
-/* Adds the faces that ways come to all vertices of. */
+/* Adds the faces of which ways come to all vertices. */
 void ss_add_reached(const skinslide_mesh *mesh, const double *left, uint8_t *inside);
-/* Adds the faces that are, as a whole, within that way of those inside. False where memory is short. */
+/* Adds the faces that are wholly within that way of those inside. False where memory is short. */
 bool ss_add_near_faces(const skinslide_mesh *mesh, double way, uint8_t *inside);
 
 /* ---- patch.c: one connected patch ---- */
@@ -201,23 +203,21 @@ typedef struct ss_patch {
     int32_t vertex_count, free_count, loop_count;
     int32_t held_count;   /* on loops, fixed by the set-up alone */
     ss_faces faces;       /* corners hold patch vertices */
-    int32_t *mesh_vertex; /* [vertex_count], ascending; the same for those that one was split into */
-    uint8_t *split;       /* [vertex_count] one of several of its mesh vertex */
+    int32_t *mesh_vertex; /* [vertex_count], ascending; the parts of a split vertex have the same */
+    uint8_t *split;       /* [vertex_count] whether it is a part of a split vertex */
     int32_t *copy_start;  /* [vertex_count + 1] */
-    int32_t *copy;        /* the mesh vertices of its faces that are one with each, ascending: most have one */
+    int32_t *copy;        /* the mesh vertices that are each patch vertex, ascending: one, but for welded ones */
     int32_t *mesh_face;   /* [face_count], ascending */
     const int32_t *weld;  /* the mesh's, [mesh_vertex_count]; or NULL */
     int32_t mesh_vertex_count;
     int32_t *vertex_corner;    /* [vertex_count] a corner at the vertex; on the boundary the one whose side leaves along it */
     int32_t (*edge_vertex)[2]; /* [edge_count], lower first */
-    double *rest_length;       /* [edge_count] clamped to shortest */
+    double *rest_length;       /* [edge_count] not under `shortest` */
     double mean_edge;          /* at rest */
     double shortest;           /* 1e-6 of that */
     int32_t zero_length_edges;
-    int32_t *
-        loop_start; /* [loop_count + 1]; loop 0 is the outer boundary, the others holes, as faces go round them; none where it is
-                            closed */
-    int32_t *loop_vertex;
+    int32_t *loop_start;  /* [loop_count + 1] loop 0 is the outer boundary, the others holes; a closed patch has none */
+    int32_t *loop_vertex; /* in the direction in which faces go along each loop */
     uint8_t *fixed;       /* [vertex_count] */
     int32_t *free_vertex; /* [free_count] in an order in which each has a neighbour before it */
     int32_t *free_before; /* [free_count] the place in free_vertex of that neighbour, -1 for a first */
@@ -240,13 +240,13 @@ void ss_patch_destroy(ss_patch *patch);
 skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error);
 /* "patch elbow", or "patch elbow (piece 2 of 2)". */
 void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size);
-/* The patch vertex, the first of several, that a mesh vertex is, or is one with; or -1. */
+/* The patch vertex that a mesh vertex is, or is one with; the first of several; -1 where there is none. */
 int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex);
 /* The edge between two patch vertices, or -1. */
 int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b);
 /* The edge between two mesh vertices, or -1. */
 int32_t ss_patch_mesh_edge(const ss_patch *patch, int32_t a, int32_t b);
-/* The length of every edge, none under patch->shortest; returns how many were. points is the whole mesh's. */
+/* The length of every edge, raised to patch->shortest. Returns how many were shorter. points is the whole mesh's. */
 int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths);
 /* The points [vertex_count][3] of the patch, of the whole mesh's. */
 void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
@@ -258,7 +258,7 @@ bool ss_split_vertices(ss_patch *patch);
 
 /* ---- triangles.c ---- */
 
-/* Fills patch->triangles, all else being there. False where memory is short. */
+/* Fills patch->triangles, once all else is there. False where memory is short. */
 bool ss_list_triangles(ss_patch *patch);
 /* The triangle that has the side which begins at a corner. */
 int32_t ss_triangle_of_side(const ss_patch *patch, int32_t corner);

@@ -8,7 +8,7 @@
 
 /* ---- Vertices ---- */
 
-/* What a mesh vertex is one with; one that is none stays as it is. */
+/* The vertex that a mesh vertex is one with; a number that is no vertex stays as it is. */
 static int32_t welded(const ss_patch *patch, int32_t mesh_vertex) {
     bool known = patch->weld && mesh_vertex >= 0 && mesh_vertex < patch->mesh_vertex_count;
     return known ? patch->weld[mesh_vertex] : mesh_vertex;
@@ -23,7 +23,7 @@ int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex) {
     return found ? (int32_t)(found - patch->mesh_vertex) : -1;
 }
 
-/* Of the rules, those of the plane need a surface whose vertices have each one fan of faces. */
+/* The rules of the plane refuse a vertex with several fans of faces; the others split it. */
 static bool splits_vertices(const ss_patch *patch) {
     return !ss_has_plane(patch->setup->rule);
 }
@@ -46,7 +46,7 @@ static bool number_vertices(ss_patch *patch, ss_memory *scratch) {
     return !splits_vertices(patch) || ss_split_vertices(patch);
 }
 
-/* Keeps as much of what is by vertex as there are of those. False where memory is short. */
+/* Copies the vertices from scratch memory to arrays of the size that they came to. False where memory is short. */
 static bool keep_vertices(ss_patch *patch) {
     int32_t *mesh_vertex = SS_NEW(&patch->memory, int32_t, patch->vertex_count);
     uint8_t *split = SS_NEW(&patch->memory, uint8_t, patch->vertex_count);
@@ -82,7 +82,7 @@ static bool list_copies(ss_patch *patch, int32_t (*pairs)[2]) {
     return patch->copy != NULL;
 }
 
-/* Vertices on loops, of each of which one side is on the boundary, as soon as their faces are checked. */
+/* How many vertices are on loops: as many as there are sides on the boundary, once check_fans has passed. */
 static int32_t count_boundary(const ss_faces *faces) {
     int32_t count = 0;
     for (int32_t c = 0; c < faces->corner_count; c++)
@@ -226,7 +226,8 @@ int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *leng
     return clamped;
 }
 
-/* Not moved to the patch's centre: so differences are those of edge lengths, to the bit, and rest has no stretch at all. */
+/* Not relative to the patch's centre: so differences of points are those from which edge lengths are taken, to the bit, and
+ * rest has no stretch at all. */
 void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]) {
     for (int32_t v = 0; v < patch->vertex_count; v++)
         for (int k = 0; k < 3; k++)
@@ -300,13 +301,13 @@ static void hold_vertices(ss_patch *patch) {
 /* ---- Creation ---- */
 
 void ss_label(const skinslide_patch_setup *setup, int32_t piece, int32_t piece_count, char *label, size_t size) {
-    enum { MOST = 96 }; /* bytes of a name: what follows it in a message must stay */
+    enum { MOST = 96 }; /* bytes of a name, which leaves room for what follows it in a message */
     size_t shown = strlen(setup->name);
     const char *dots = "";
     if (shown > MOST) {
         dots = "...";
         for (shown = MOST; shown > 0 && ((unsigned char)setup->name[shown] & 0xC0) == 0x80;)
-            shown--; /* not in the middle of a character of UTF-8 */
+            shown--; /* not to end in the middle of a UTF-8 character */
     }
     if (piece_count == 1)
         snprintf(label, size, "patch %.*s%s", (int)shown, setup->name, dots);

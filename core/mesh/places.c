@@ -1,5 +1,5 @@
-/* Points in one place. Points are sorted along a line that no sheet is likely to stand square on, so that those within a tolerance
- * of each other are near each other in that order: |u.(p - q)| <= |p - q| for a unit u. */
+/* Points in one place. They are sorted along a line that is unlikely to be square to any flat part of a mesh, so that points
+ * within a tolerance of each other are near each other in that order: |u.(p - q)| <= |p - q| for a unit u. */
 #include "mesh.h"
 
 #include <math.h>
@@ -97,7 +97,7 @@ bool ss_find_places(const float *points, double tolerance, int32_t count, int32_
 
 /* ---- Two sets of points ---- */
 
-/* What is beyond it by more than a tolerance is in no place that any of its points is in. */
+/* Around some points: what is outside it by more than the tolerance shares no place with them. */
 typedef struct box {
     float low[3], high[3];
     double margin;
@@ -120,7 +120,7 @@ static bool is_at(const box *b, const float *point) {
     return near;
 }
 
-/* Appends the points that are near; vertex, which may be NULL, says which they are. Returns how many there are then. */
+/* Appends the points that are near the box; vertex, if not NULL, gives their numbers. Returns how many spots there are then. */
 static int32_t add_near(const box *b, const float *points, int32_t count, int32_t *vertex, float *out, int32_t have) {
     for (int32_t v = 0; v < count; v++) {
         if (!is_at(b, points + 3 * (int64_t)v))

@@ -1,10 +1,11 @@
-/* Vertices at which faces meet in a point alone, such as the middle of a bow tie: of the faces there, those that follow each other
- * over shared edges are a fan, and each fan gets a patch vertex of its own. They are one point of the mesh, and so slide nowhere. */
+/* Splits vertices at which faces meet only in a point, such as the middle of a bow tie: faces there that follow each other
+ * over shared edges are a fan, and each fan gets a patch vertex of its own. As these are one point of the mesh, they do not
+ * slide. */
 #include "mesh.h"
 
 typedef struct fans {
     ss_memory memory;
-    int32_t *fan;   /* [corner_count] of the corner, among those at its vertex; -1 before it is known */
+    int32_t *fan;   /* [corner_count] the number of the corner's fan at its vertex; -1 before it is known */
     int32_t *count; /* [vertex_count] fans at the vertex */
     int32_t *first; /* [vertex_count] its first copy */
 } fans;
@@ -38,7 +39,7 @@ static int32_t number_fans(const ss_patch *patch, fans *own) {
     return copies;
 }
 
-/* From the last down, as copies never come before what they are of. */
+/* From the last vertex down, since a copy is never in front of its original. */
 static void copy_vertices(ss_patch *patch, const fans *own, int32_t copies) {
     for (int32_t v = patch->vertex_count; v-- > 0;)
         for (int32_t k = own->count[v]; k-- > 0;) {

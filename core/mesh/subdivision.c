@@ -1,5 +1,5 @@
-/* Checks the subdivision of a mesh, so that OpenSubdiv meets only what it takes: its own complaints go to stderr and name no
- * element. */
+/* Checks the subdivision of a mesh, so that OpenSubdiv is given only what it accepts: its own complaints go to stderr and name
+ * no element. */
 #include "mesh.h"
 
 #include <stdio.h>

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A corner of a face of a patch, and the next: of the two points one at least shares its place at rest. */
+/* A corner of a face of a patch, and the next: at least one of the two points shares its place at rest. */
 typedef struct seam_corner {
     int32_t face, vertex, next;
 } seam_corner;
@@ -22,7 +22,7 @@ struct skinslide_weld {
     int32_t vertex_count;
     double tolerance;
     int32_t *place;     /* [vertex_count] the lowest vertex in the same place, in all poses so far */
-    int32_t *rest_weld; /* [vertex_count] what would be welded were there rest alone */
+    int32_t *rest_weld; /* [vertex_count] the weld by the rest points alone */
     uint8_t *in_patch;  /* [vertex_count] a face of a patch has it */
     int32_t shared_count;
     int32_t *shared; /* [shared_count] vertices that share a place at rest with one of a patch, ascending */
@@ -67,7 +67,7 @@ static void refuse(sewing *s, int32_t place, const char *format, ...) {
     s->refused[place] = 1;
 }
 
-/* A face that has two corners in one place would have an edge, or itself, folded up. */
+/* Refuses places in which a face has two corners: welding would collapse an edge, or fold the face. */
 static void refuse_folded_faces(sewing *s) {
     const skinslide_weld *weld = s->weld;
     for (int32_t c = 0; c < weld->corner_count; c++) {
@@ -107,7 +107,8 @@ static int32_t end_of_sides(const sewing *s, int32_t first) {
     return end;
 }
 
-/* Sides of more than two faces, as where a sheet is doubled, say not which of them go together; nor do faces wound alike. */
+/* Refuses places between which more than two faces have sides, as in a doubled sheet, since nothing says which belong together;
+ * and those between which faces are wound alike. */
 static void refuse_sides(sewing *s) {
     for (int32_t i = 0, end; i < s->side_count; i = end) {
         const seam_side *first = &s->sides[i], *second = first + 1;
@@ -134,7 +135,7 @@ static void join_sides(sewing *s) {
     }
 }
 
-/* Points off the patches go with those of the patches, where these are one. */
+/* Points off the patches join those of the patches in their place, if these are one. */
 static void join_followers(sewing *s) {
     const skinslide_weld *weld = s->weld;
     for (int32_t v = 0; v < weld->vertex_count; v++)
@@ -170,7 +171,7 @@ static skinslide_status sew(sewing *s, const skinslide_weld *weld, skinslide_err
     return SKINSLIDE_OK;
 }
 
-/* Each set by its lowest vertex of a patch. Takes s->vertex. */
+/* The vertex that stands for each set: its lowest vertex of a patch. Uses s->vertex as scratch. */
 static void write_weld(sewing *s, int32_t *out) {
     const skinslide_weld *weld = s->weld;
     for (int32_t v = 0; v < weld->vertex_count; v++)
@@ -203,7 +204,7 @@ static skinslide_status check_tolerance(const skinslide_mesh *mesh, double toler
                    "weld: the tolerance is %g; it must be 0 to %g, a thousandth of the size of the mesh", tolerance, most);
 }
 
-/* The mesh without its weld, which is what is to be found. */
+/* The mesh without its weld, which is to be found here. */
 static skinslide_status take_bare(const skinslide_mesh **mesh, ss_taken_mesh *taken, skinslide_error *error) {
     skinslide_mesh bare = SKINSLIDE_MESH_DEFAULT;
     skinslide_status status = ss_take(*mesh, "skinslide_mesh", &bare, sizeof bare, error);
@@ -215,7 +216,7 @@ static skinslide_status take_bare(const skinslide_mesh **mesh, ss_taken_mesh *ta
     return status;
 }
 
-/* Faces that are not the mesh's are passed over: the slider names them. */
+/* Faces that the mesh does not have are ignored here: the slider names them. */
 static void mark_faces(const skinslide_mesh *mesh, const skinslide_patch_setup *setups, int32_t setup_count, uint8_t *chosen) {
     for (int32_t i = 0; i < setup_count; i++)
         for (int32_t k = 0; k < setups[i].face_count && setups[i].faces; k++)
@@ -230,7 +231,8 @@ static void mark_vertices(skinslide_weld *weld, const skinslide_mesh *mesh, cons
                 weld->in_patch[mesh->face_indices[c]] = 1;
 }
 
-/* Keeps the vertices in places that several share, and one of a patch among them. share is scratch [vertex_count], of zeros. */
+/* Lists the vertices in places that several vertices share, one of a patch among them. share is scratch [vertex_count], of
+ * zeros. */
 static void list_shared(skinslide_weld *weld, uint8_t *share) {
     enum { ONE = 1, SEVERAL = 2, PATCH = 4 };
     for (int32_t v = 0; v < weld->vertex_count; v++)
@@ -343,12 +345,12 @@ skinslide_bool skinslide_weld_wants_poses(const skinslide_weld *weld) {
     return weld && weld->shared_count > 0;
 }
 
-/* Whether a vertex that rest alone would weld has left that which it would be one with. */
+/* Whether a pose has parted a vertex from the one that rest alone would weld it to. */
 static bool has_parted(const skinslide_weld *weld, int32_t vertex) {
     return weld->place[vertex] != weld->place[weld->rest_weld[vertex]];
 }
 
-/* Other points tell it nothing. */
+/* Only points that share places are looked at, so only they must be finite. */
 static skinslide_status check_shared(const skinslide_weld *weld, const float *points, skinslide_error *error) {
     if (!points)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no points");

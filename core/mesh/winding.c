@@ -1,5 +1,6 @@
-/* What is wrong with an edge. On a surface it has two faces at most, which go along it opposite ways. Where two go the same way they
- * are one face twice, or one of them is to be turned over, or however faces are turned two such remain, as on a Moebius strip. */
+/* What is wrong with an edge. On a surface it has at most two faces, which go along it in opposite directions. Where two go the
+ * same way, they are the same face twice, or one of them must be turned over, or no choice of turning helps, as on a Moebius
+ * strip. */
 #include "mesh.h"
 
 #include <stdlib.h>
@@ -21,14 +22,15 @@ static bool same_face(const ss_faces *faces, int32_t first, int32_t second) {
     return true;
 }
 
-/* Faces joined over edges that two of them have, and whether each is to be turned over to be wound as the first of them is. */
+/* Faces joined over edges that two of them share, and whether each must be turned over to be wound like the first of its
+ * piece. */
 typedef struct joined {
     int32_t *parent;    /* [face_count] itself for the first of a piece */
-    uint8_t *turned;    /* [face_count] against the parent */
-    uint8_t *one_sided; /* [face_count] of the first of a piece: no choice of turns will do */
+    uint8_t *turned;    /* [face_count] whether it is wound against its parent */
+    uint8_t *one_sided; /* [face_count] of the first of a piece: no choice of turning will do */
 } joined;
 
-/* The first of the face's piece; *turned: whether the face is to be turned over. Shortens the way there. */
+/* The first face of a face's piece; *turned: whether the face must be turned over. Compresses the path. */
 static int32_t root_of(joined *j, int32_t face, uint8_t *turned) {
     int32_t root = face;
     uint8_t all = 0;
@@ -106,7 +108,7 @@ static skinslide_status refuse_winding(ss_faces *faces, const ss_side *sides, co
 
 skinslide_status ss_refuse_edge(ss_faces *faces, const ss_side *sides, int32_t count, const int32_t *mesh_face,
                                 const char *label, skinslide_error *error) {
-    enum { COMPARED = 4 }; /* two faces twice */
+    enum { COMPARED = 4 }; /* enough to tell two faces, each of them twice */
     for (int32_t i = 0; i < count && i < COMPARED; i++)
         for (int32_t k = 0; k < i; k++)
             if (same_face(faces, sides[k].corner, sides[i].corner))

@@ -1,5 +1,5 @@
-/* The outline of a patch on a tessellated mesh: the sides of its faces with no other face of it beyond. Any faces will do. And
- * all of their sides and corners, which may be drawn on it. */
+/* The outline of some faces on a tessellated mesh: their sides with none of the faces beyond. Also all of their sides and
+ * corners, on which lines and dots are drawn. */
 #include "picture.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@ typedef struct segments {
     uint32_t (*ends)[2];
     int32_t *edge; /* of each; NULL: it is not wanted */
     int32_t count;
-    int32_t of; /* the edge of those that are added */
+    int32_t of; /* the edge of the segments that are added next */
 } segments;
 
 static void add_segment(segments *to, uint32_t begin, uint32_t end) {
@@ -87,7 +87,7 @@ static void find_border(const skinslide_outline *own, int32_t *count, uint8_t *b
                     faces->corner_vertex[c] != faces->corner_vertex[ss_next_corner(faces, c)];
 }
 
-/* Of each edge of faces inside one side, of its first face. used is scratch [edge_count], of zeros. */
+/* Chooses one side for each edge of faces inside: that of its first face. used is scratch [edge_count], of zeros. */
 static void choose_each_once(const skinslide_outline *own, uint8_t *used, uint8_t *once) {
     const ss_faces *faces = &own->tessellation->skin;
     for (int32_t c = 0; c < faces->corner_count; c++) {

@@ -17,18 +17,18 @@ typedef struct ss_grid {
     int32_t surface; /* of the tessellation's surfaces, -1 for a fan */
     int32_t corner;  /* of the face whose quad it is; -1: all of the face */
     int32_t side;
-    uint8_t coarse; /* bit k: along its side k there may be a face of 2 by 2 cells */
+    uint8_t coarse; /* bit k: beyond its side k there may be a face of only 2 by 2 cells */
     int32_t first_vertex;
 } ss_grid;
 
-/* What of a vertex never changes. */
+/* What of a vertex is the same in every pose. */
 typedef struct ss_fixed_vertex {
     float coordinates[3]; /* st, or the place at rest */
 } ss_fixed_vertex;
 
-/* What does. */
+/* What depends on the pose. */
 typedef struct ss_posed_vertex {
-    float place[3]; /* less the origin */
+    float place[3]; /* relative to the origin */
     float normal[3];
     float values[SKINSLIDE_MOST_LAYERS];
 } ss_posed_vertex;
@@ -86,11 +86,12 @@ static inline int32_t ss_grid_triangles(const skinslide_tessellation *tessellati
     return grid->side ? 2 * grid->side * grid->side : ss_face_size(tessellation, grid->face) - 2;
 }
 
-/* The vertex on side k of a grid, step cells on: the sides go round it as those of a face do, from its first corner on. */
+/* The vertex on side `side` of a grid, `step` cells along it: the sides go round the grid as those of a face do, from its first
+ * corner on. */
 uint32_t ss_on_side(const ss_grid *grid, int side, int32_t step);
 /* Fills same_as. False where memory is short. */
 bool ss_join_seams(skinslide_tessellation *tessellation);
-/* Of faces that are the mesh's. */
+/* skinslide_outline_create, of faces that are checked. */
 skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces, int32_t face_count,
                                    skinslide_outline **out, skinslide_error *error);
 /* Blends values [width] at the corners of a grid's face linearly at one of its vertices: values are of the mesh's vertices, or
@@ -98,24 +99,24 @@ skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, c
 void ss_blend(const skinslide_tessellation *tessellation, const ss_grid *grid, int32_t vertex, const float *values,
               int32_t width, bool by_corner, double *weights, float *out);
 
-/* The middle of the box of the vertices that faces have, to be taken off places before they are rounded to float. */
+/* The middle of the box around all vertices of faces. Places are made relative to it before they are rounded to float. */
 void ss_find_middle(const skinslide_tessellation *tessellation, const float *points, double middle[3]);
-/* What a vertex has to show must be finite. */
+/* Fails with BAD_POINTS unless a value is finite; names the vertex. */
 skinslide_status ss_check_value(int32_t mesh_vertex, float value, skinslide_error *error);
 bool ss_tessellation_work_allocate(const skinslide_tessellation *tessellation, ss_tessellation_work *work);
-/* The mesh in a pose, less the origin: work->vertices, whose values are 0. */
+/* Poses the mesh, relative to the origin: fills work->vertices, with values of 0. */
 void ss_tessellate(const skinslide_tessellation *tessellation, const float *points, const double origin[3],
                    ss_tessellation_work *work);
-/* Sets one of the values of each of them. */
+/* Sets value number `place` of each of these vertices. */
 void ss_tessellate_values(const skinslide_tessellation *tessellation, const float *values, int32_t place,
                           ss_tessellation_work *work);
 
 /* ---- view.cpp: the only file that knows cameras ---- */
 
-/* For columns, as OpenGL has them, and for places less an origin of the mesh. */
+/* Matrices by columns, as OpenGL has them, for places relative to an origin of the mesh. */
 typedef struct ss_view {
     float to_clip[16];
-    float turn_normal[9]; /* from the mesh's space to the camera's, up to its length */
+    float turn_normal[9]; /* takes normals from the mesh's space to the camera's, up to their length */
     bool mirrored;        /* what turns left in the mesh's space turns right in the camera's */
 } ss_view;
 

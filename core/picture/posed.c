@@ -79,7 +79,7 @@ uint32_t ss_on_side(const ss_grid *grid, int side, int32_t step) {
     return (uint32_t)(grid->first_vertex + place);
 }
 
-/* Puts a vertex at a share of the way between two others, as a coarse neighbour has it. */
+/* Puts a vertex on the straight line between two others, where a coarser neighbour has its edge. */
 static void put_between(ss_posed_vertex *vertex, const ss_posed_vertex *a, const ss_posed_vertex *b, float share) {
     for (int i = 0; i < 3; i++) {
         vertex->place[i] = a->place[i] + share * (b->place[i] - a->place[i]);
@@ -87,7 +87,8 @@ static void put_between(ss_posed_vertex *vertex, const ss_posed_vertex *a, const
     }
 }
 
-/* Leaves no gap along a side where the face beyond may have fewer cells. What has its place of another has it joined. */
+/* Closes the gap along a side beyond which a face may have fewer cells. Vertices that take their place from another are already
+ * joined. */
 static void join_side(const skinslide_tessellation *own, const ss_grid *grid, int side, ss_posed_vertex *vertices) {
     int32_t stride = grid->corner < 0 ? grid->side / 2 : grid->side;
     for (int32_t step = 0; step < grid->side; step++) {

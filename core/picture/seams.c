@@ -1,6 +1,6 @@
-/* Where the grids of a tessellation meet. Each has vertices of its own along the sides that it shares, and OpenSubdiv's surfaces
- * of faces with creases meet their neighbours' only to some hundredths of the mesh: so one of the vertices at a place has its
- * place taken by all, or a picture would have cracks. */
+/* Where the grids of a tessellation meet. Each has its own vertices along the sides that it shares, and OpenSubdiv's surfaces
+ * of faces with creases meet their neighbours' only to some hundredths of the mesh's size. So that pictures have no cracks, all
+ * vertices that should coincide take the place of one of them. */
 #include "picture.h"
 
 /* ---- Vertices that are one ---- */
@@ -55,7 +55,8 @@ static int32_t size_of(const ss_faces *faces, int32_t face) {
     return faces->face_start[face + 1] - faces->face_start[face];
 }
 
-/* The side that begins at a corner with the first at the same edge. A side from a vertex to itself has no direction. */
+/* Joins the side that begins at a corner to the first side at the same edge. A side from a vertex to itself has no
+ * direction. */
 static void join_side(const meeting *all, int32_t corner, uint32_t *same_as) {
     const ss_faces *faces = all->faces;
     int32_t other = all->first_corner[faces->corner_edge[corner]], face = faces->corner_face[corner];

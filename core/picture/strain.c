@@ -17,10 +17,10 @@
 
 #include <math.h>
 
-static const double alike = 1e-5;   /* principal stretches whose squares differ by less, as a share, have no direction */
-static const double no_area = 1e-9; /* of its sides' product: the corner is a line */
+static const double alike = 1e-5;   /* relative: principal stretches whose squares differ by less have no direction */
+static const double no_area = 1e-9; /* relative to the product of its sides: a corner of less is a line */
 
-/* Symmetric, 2 by 2: in a, in both, in b. */
+/* Symmetric, 2 by 2: aa, ab, bb. */
 typedef struct tensor {
     double a, ab, b;
 } tensor;
@@ -34,10 +34,10 @@ typedef struct tally {
 typedef struct strain {
     const skinslide_mesh *mesh;
     const float *points, *st;
-    tally *at; /* [vertex_count] of what is welded the first has it */
+    tally *at; /* [vertex_count] of welded vertices, the one that the others are one with has it */
 } strain;
 
-/* One of a face: the mesh's corners before, here and after. */
+/* A corner of a face, with those before and after it, as corners of the mesh. */
 typedef struct corner {
     int32_t before, here, after;
 } corner;

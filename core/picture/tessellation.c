@@ -1,6 +1,6 @@
-/* Makes a mesh into triangles to be drawn: fans of its faces, or grids on its limit surface. Each face has vertices of its own,
- * so that what differs from face to face at a mesh vertex, such as st at a seam, can; places and normals of neighbouring faces
- * meet all the same. Grids are fine in the patch and around it, where a picture looks, and coarse elsewhere. */
+/* Makes a mesh into triangles to be drawn: fans of its faces, or grids on its limit surface. Each face has its own vertices,
+ * since st and the like may differ from face to face at a mesh vertex; places and normals of neighbouring faces meet all the
+ * same. Grids are fine in the patch and around it, where the camera looks, and coarse elsewhere. */
 #include "picture.h"
 
 #include "paint.h"
@@ -12,7 +12,7 @@ enum { MOST_CELLS = 32768, MOST_STEPS = 8 }; /* of fine grids in all; along half
 enum { MOST_CORNERS = 100000000 };
 enum { RINGS = 2 }; /* of faces around the patch that are fine */
 
-/* What is to become of each face, while the tessellation is built. */
+/* How each face is to be drawn, while the tessellation is built. */
 typedef struct blueprint {
     ss_face_surface *kinds; /* [face_count] */
     int32_t *surface_of;    /* [face_count] its surface, or -1 */
@@ -91,8 +91,9 @@ static bool all_marked(const skinslide_tessellation *own, int32_t face, const ui
     return all;
 }
 
-/* Which faces are fine; and which of their sides may have a coarse one beyond: a vertex of a coarse face at an end. Only what
- * both faces at a side see decides, so they agree. marked and other are scratch [mesh_vertex_count]. */
+/* Chooses the faces that are fine, and of these the sides that may have a coarse face beyond: those with a vertex of a
+ * coarse face at an end. Both faces at a side see the same vertices, so they agree. marked and other are scratch
+ * [mesh_vertex_count]. */
 static void choose_fine(const skinslide_tessellation *own, blueprint *plan, uint8_t *marked, uint8_t *other) {
     for (int32_t f = 0; f < own->mesh_face_count; f++)
         if (plan->inside[f])

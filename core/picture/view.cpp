@@ -1,5 +1,5 @@
-/* Where pictures are seen from: matrices for drawing, and a camera that has faces in sight. Behind C functions, and nothing here
- * throws. */
+/* Where pictures are seen from: the matrices for drawing, and a camera that has faces in sight. C++ behind C functions; nothing
+ * here throws. */
 #include "picture.h"
 
 #include <algorithm>
@@ -16,13 +16,13 @@ using glm::dmat4;
 using glm::dvec3;
 
 const double field_of_view = 0.5;  /* radians, up and down */
-const double margin = 1.12;        /* round what is framed */
-const double least_distance = 0.5; /* of its diagonal */
-const double cancelled = 0.25;     /* of the area: normals that sum to less say nothing */
-const double much_less = 0.5;      /* of what a pose could be turned to the camera */
-const double no_area = 1e-14;      /* of the diagonal squared: faces of less are lines */
+const double margin = 1.12;        /* how much wider than what is framed the view is */
+const double least_distance = 0.5; /* of the nearest point, in diagonals of the box */
+const double cancelled = 0.25;     /* as a share of the area: normals whose sum is less cancel out */
+const double much_less = 0.5;      /* as a share of how far a pose could be turned to the camera */
+const double no_area = 1e-14;      /* in diagonals squared: faces of less are lines */
 
-/* USD's rows of points as rows are the columns of points as columns. */
+/* USD's matrices are for points as rows, GLM's for points as columns: the rows of one are the columns of the other. */
 dmat4 matrix_of(const double *rows) {
     return rows ? glm::make_mat4(rows) : dmat4(1);
 }
@@ -60,13 +60,13 @@ template <typename Body> void each_face_of(const Subject &subject, int32_t pose,
         body(own.mesh->face_indices + subject.start[own.faces[i]], own.mesh->face_counts[own.faces[i]], place, turn);
 }
 
-/* And in each pose. */
+/* The same in each pose. */
 template <typename Body> void each_face(const Subject &subject, Body body) {
     for (int32_t pose = 0; pose < subject.own.pose_count; pose++)
         each_face_of(subject, pose, body);
 }
 
-/* Half the sum of the cross products of a fan: as long as its area is large, and outwards where it turns left. */
+/* Half the sum of the cross products of a fan: its length is the area, and it points outwards where the fan turns left. */
 template <typename Place> dvec3 area_of(const int32_t *v, int32_t n, Place place) {
     dvec3 sum(0);
     for (int32_t k = 1; k + 1 < n; k++)
@@ -93,7 +93,7 @@ struct Shape {
     Box box;
     dvec3 normal{0}; /* the sum of area vectors, outwards */
     double area = 0;
-    dmat3 spread{0}; /* the sum of area vectors' squares: least along the direction in which the faces are seen least */
+    dmat3 spread{0}; /* the sum of squares of area vectors: small along directions in which little of the faces is seen */
     dvec3 first{NAN}, farthest{NAN}; /* corners: the first, and the one farthest from it */
 
     explicit Shape(const Subject &subject) {
@@ -142,8 +142,8 @@ struct Shape {
 
 /* ---- From where ---- */
 
-/* How a pose is turned: the sum of the faces' area vectors as a share of their area; 0 where they cancel out, as round a limb, of
- * which some is seen from anywhere. */
+/* The direction that a pose faces: the sum of the faces' area vectors as a share of their area; 0 where they cancel out, as
+ * round a limb, of which some is seen from any side. */
 dvec3 turn_of(const Subject &subject, int32_t pose) {
     dvec3 sum(0);
     double area = 0;
@@ -163,8 +163,8 @@ double least_turned(const Subject &subject, dvec3 direction) {
     return least;
 }
 
-/* The direction of all poses together; unless one that is halfway between two of them is much better for the pose that is
- * turned away most, as where a character walks round. */
+/* The direction of all poses together; but if a direction halfway between two poses is much better for the pose that is turned
+ * away most, as when a character turns round, that one. */
 dvec3 choose_direction(const Subject &subject, const Shape &shape, dvec3 up) {
     int32_t count = subject.own.pose_count;
     for (int32_t pose = 0; pose < count; pose++)
@@ -224,7 +224,8 @@ skinslide_camera look(const Subject &subject, const Shape &shape, dvec3 directio
             seen.add(dvec3(turned * glm::dvec4(place(v[k]), 1)));
     });
     turned = glm::translate(dmat4(1), -seen.middle()) * turned;
-    double size = seen.size(); /* which turns with the subject and the camera, as the box in the world does not */
+    double size = seen.size(); /* of the box in the camera's axes, which turns with subject and camera, as the world's does
+                                  not */
     Distance away = draw_back(subject, turned, aspect, size);
     dmat4 to_camera = glm::translate(dmat4(1), dvec3(0, 0, -away.back)) * turned;
     dmat4 to_screen =

@@ -28,7 +28,7 @@ static void apply_controls(const ss_part *part, ss_patch_work *work, const skins
         frame->paint = work->own_paint;
 }
 
-/* What a frame begins with, and what of the slide may go on while other patches start. */
+/* Begins a frame of a patch, as far as its rule can before other patches have begun: a device may go on meanwhile. */
 static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, const float *points,
                                     const skinslide_controls *controls, skinslide_error *error) {
     const ss_part *part = &workspace->slider->parts[p];
@@ -52,7 +52,7 @@ static void add_displacement(const ss_patch *patch, const ss_patch_work *work, d
     }
 }
 
-/* Where each vertex belongs, and so on the deformed mesh. */
+/* Finds where each vertex slides to, and its displacement on the deformed mesh. */
 static skinslide_status slide_patch(skinslide_workspace *workspace, int32_t p, skinslide_error *error) {
     const ss_part *part = &workspace->slider->parts[p];
     ss_patch_work *work = &workspace->patches[p];
@@ -94,7 +94,7 @@ static bool moves(const double displacement[3]) {
     return displacement[0] != 0 || displacement[1] != 0 || displacement[2] != 0;
 }
 
-/* Where a vertex goes: as that goes which it is one with. */
+/* Where a vertex goes; a welded one goes with the vertex that it is one with. */
 static void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
     const double *slid = workspace->sum[ss_welded(workspace->slider, vertex)], *displacement = slid;
     double own[3];
@@ -128,7 +128,7 @@ static skinslide_status check_landings(const skinslide_workspace *workspace, con
     return status;
 }
 
-/* Names the first vertex of a patch that lands where a float cannot. */
+/* Names the first vertex of a patch that lands beyond what a float can hold. */
 static skinslide_status refuse_landing(const skinslide_workspace *workspace, const float *points, skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t p = 0; p < workspace->slider->part_count && !status; p++)
@@ -136,7 +136,7 @@ static skinslide_status refuse_landing(const skinslide_workspace *workspace, con
     return status;
 }
 
-/* All of them or, where a float cannot hold one, none. */
+/* Writes all points or, where a float cannot hold one, none. */
 static skinslide_status write_points(const skinslide_workspace *workspace, const float *points, float *slid,
                                      skinslide_error *error) {
     const ss_list *own = &workspace->slider->own;
@@ -167,7 +167,8 @@ static void measure_slide(const ss_patch *patch, const double (*displacement)[4]
     result->largest_slide = sqrt(largest);
 }
 
-/* RMS over edges of log(length / rest length), of the cache and slid: side by side, since each sum waits for its last term. */
+/* RMS over edges of log(length / rest length), in the cache and slid. Both sums in one loop, since each addition to a sum has
+ * to wait for the one before. */
 static void measure_stretch(const ss_patch *patch, const double *cached, const double *slid, skinslide_patch_result *result) {
     enum { AT_ONCE = 256 };
     double before[AT_ONCE], after[AT_ONCE], sum[2] = {0, 0};
@@ -194,7 +195,7 @@ skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status statu
     return ss_fail(error, SKINSLIDE_INTERRUPTED, "the frame was interrupted");
 }
 
-/* Points where lengths are taken, which must be finite there too. */
+/* Takes points to where lengths are measured; they must be finite there too. */
 static skinslide_status enter(const skinslide_slider *slider, const float **points, float *room, skinslide_error *error) {
     ss_bring(slider, points, room);
     return slider->space ? ss_check_reads(slider, *points, "points where lengths are taken", error) : SKINSLIDE_OK;
