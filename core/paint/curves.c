@@ -37,7 +37,8 @@ static int32_t segment_count(const skinslide_curves *curves, int32_t n) {
     }
 }
 
-/* Control point i of a curve, in the mesh's space. Pinned curves have one more at each end, on the line through the two there. */
+/* Control point i of a curve, in the mesh's space. Pinned curves have one more at each end, on the line through the last
+ * two. */
 static void control_point(const skinslide_curves *curves, int32_t first, int32_t n, int32_t i, double out[3]) {
     if (curves->wrap == SKINSLIDE_CURVE_WRAP_PINNED && (i < 0 || i >= n)) {
         double end[3], next[3];
@@ -162,7 +163,7 @@ static bool is_along(const piece *p, const double edge[3]) {
     return both != 0 && 2 * both * both >= ss_dot(edge, edge) * ss_dot(curve, curve);
 }
 
-/* Pieces of no length have no direction, and leave none out: their neighbours end where they are. */
+/* Leaves out pieces of no length: they have no direction, and their neighbours end in the same place. */
 static void flatten(const skinslide_curves *curves, pieces *out) {
     for (int32_t c = 0, first = 0; c < curves->curve_count; first += curves->vertex_counts[c++])
         for (int32_t s = 0; s < segment_count(curves, curves->vertex_counts[c]); s++)
@@ -174,7 +175,8 @@ static void flatten(const skinslide_curves *curves, pieces *out) {
     out->count = kept;
 }
 
-/* The distance of an edge's middle from the curves, as far as a limit, where it runs in that direction; INFINITY else. */
+/* The distance of an edge's middle from the curves, if that is within a limit and the edge runs in that direction; else
+ * INFINITY. */
 static double distance_of(const float *a, const float *b, const pieces *all, double limit, skinslide_direction direction) {
     double middle[3], edge[3];
     for (int k = 0; k < 3; k++)
@@ -185,7 +187,7 @@ static double distance_of(const float *a, const float *b, const pieces *all, dou
     return nearest && counts ? distance_to_piece(nearest, middle) : INFINITY;
 }
 
-/* Checks all but the distance, and makes the pieces of the curves. */
+/* Checks all arguments but the distance, and makes the pieces of the curves. */
 static skinslide_status prepare(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
                                 const skinslide_curves *curves, skinslide_direction direction, ss_memory *memory, pieces *out,
                                 skinslide_error *error) {

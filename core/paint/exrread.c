@@ -17,12 +17,12 @@
 #define LARGEST_HEADER ((int64_t)1 << 26)
 #define MOST_CHUNKS    (1 << 22)
 
-/* What OpenEXR reads, and the first thing it says when it fails. It would print to stderr by itself. */
+/* What OpenEXR reads from, and the first error that it reports, which it would otherwise print to stderr. */
 typedef struct source {
-    const uint8_t *bytes; /* NULL: of the descriptor, from offset on */
+    const uint8_t *bytes; /* NULL: the descriptor is read, from offset on */
     int32_t descriptor;
     int64_t offset, size;
-    int64_t readable; /* as much of it as may be read by now */
+    int64_t readable; /* how much of it may be read so far */
     bool out_of_memory;
     char said[256];
 } source;
@@ -39,7 +39,7 @@ typedef struct window {
 } window;
 
 typedef struct owned_image {
-    skinslide_image image; /* first, so that the one's address is the other's */
+    skinslide_image image; /* the first member, so that a pointer to it is one to the whole */
     ss_memory memory;
 } owned_image;
 
@@ -72,7 +72,7 @@ static uint64_t read_open(const source *from, uint8_t *buffer, uint64_t count, u
     return done;
 }
 
-/* Hands out no more than there is, as pread does. */
+/* Gives no more bytes than there are, as pread does. */
 static int64_t read_bytes(exr_const_context_t context, void *data, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t fail) {
     const source *from = data;
@@ -93,7 +93,7 @@ static int64_t tell_size(exr_const_context_t context, void *data) {
     return ((const source *)data)->size;
 }
 
-/* Zeros, so that a chunk that decompresses to fewer bytes than it should gives the same texels every time. */
+/* Memory of zeros, so that a chunk that decompresses to too few bytes gives the same texels every time. */
 static void *allocate(size_t size) {
     return calloc(1, size ? size : 1);
 }
@@ -124,7 +124,7 @@ static const char *own_name(const exr_attr_chlist_t *channels, int32_t channel) 
     return dot ? dot + 1 : name;
 }
 
-/* The layer of all channels: the length of its name, 0 where they have none, or are of several. */
+/* The length of the name of the layer that all channels are of; 0 where they are of none, or of several. */
 static size_t layer_length(const exr_attr_chlist_t *channels) {
     const char *first = channels->entries[0].name.str;
     size_t length = (size_t)(own_name(channels, 0) - first);
@@ -136,7 +136,7 @@ static size_t layer_length(const exr_attr_chlist_t *channels) {
     return length;
 }
 
-/* R, else Y, else the first but A. Where all are of one layer, so are these. */
+/* R, else Y, else the first that is not A: of the layer, where all channels are of one. */
 static int32_t default_channel(const exr_attr_chlist_t *channels) {
     static const char *const preferred[] = {"R", "Y"};
     size_t layer = channels->num_channels ? layer_length(channels) : 0;
@@ -150,7 +150,7 @@ static int32_t default_channel(const exr_attr_chlist_t *channels) {
     return channels->num_channels - 1;
 }
 
-/* The channel of a part that is meant by a name: its own, or where dotted, the part's and its own. */
+/* The channel of a part that has a name: CHANNEL, or PART.CHANNEL. */
 static int32_t channel_of_part(exr_const_context_t file, int part, const exr_attr_chlist_t *channels, const char *wanted,
                                bool dotted) {
     if (!wanted[0])
@@ -206,7 +206,7 @@ static skinslide_status choose_channel(exr_const_context_t file, const char *wan
     return no_channel(file, chosen->part_count, all_deep, wanted, error);
 }
 
-/* OpenEXR 3.1.5 has no DWA in C, and takes a chunk of B44 that is as large as its texels for one that is not packed. */
+/* OpenEXR 3.1.5 cannot read DWA in C, and takes a chunk of B44 that is as large as its texels for an uncompressed one. */
 static skinslide_status check_compression(exr_const_context_t file, const selection *chosen, skinslide_error *error) {
     static const char *const lossy[] = {"B44", "B44A", "DWAA", "DWAB"};
     exr_compression_t compression = EXR_COMPRESSION_LAST_TYPE;
@@ -316,7 +316,7 @@ static void read_wraps(exr_const_context_t file, int part, skinslide_image *imag
 
 /* ---- Texels ---- */
 
-/* Where the texels of chunks go: to the display window's. */
+/* Where the texels of chunks are written: to those of the display window. */
 typedef struct target {
     window data, display;
     float *pixels; /* of the display window */
@@ -393,8 +393,8 @@ static bool decode_chunk(exr_const_context_t file, const exr_chunk_info_t *chunk
     return good;
 }
 
-/* OpenEXR takes a chunk of no bytes for one that is decompressed already, and fills up with zeros one that is not compressed and
- * too small, or goes past the end of the file. */
+/* OpenEXR takes a chunk of no bytes for one that is decompressed already; and it fills an uncompressed chunk that is too small,
+ * or reaches past the end of the file, with zeros. */
 static bool chunk_fits(const exr_chunk_info_t *chunk, const target *to) {
     bool packed = chunk->compression != EXR_COMPRESSION_NONE;
     uint64_t size = (uint64_t)to->from->size;

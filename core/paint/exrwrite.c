@@ -9,7 +9,7 @@
 #define LARGEST_SIDE 16384
 #define LONGEST_NAME 31 /* of a channel, in files that every reader knows */
 
-/* What OpenEXR writes to, and how it failed first. */
+/* What OpenEXR writes to, and its first error. */
 typedef struct sink {
     uint8_t *bytes;
     size_t size, capacity;
@@ -23,7 +23,8 @@ static bool succeeds(sink *to, exr_result_t result) {
     return result == EXR_ERR_SUCCESS;
 }
 
-/* Silent. It cannot ask for the user's data: that waits for a lock which OpenEXR 3.1.5 holds while it reports. */
+/* Keeps OpenEXR from printing. The error cannot be kept here: asking for the user's data waits for a lock that OpenEXR 3.1.5
+ * holds while it reports. */
 static void hear(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)context, (void)code, (void)message;
 }
@@ -99,7 +100,8 @@ static const float *pixels_of(const skinslide_channel *channels, const char *nam
     return channels->pixels;
 }
 
-/* A chunk that compresses to as many bytes as it had is read as not compressed, which OpenEXR 3.1.5 forgets when it writes one. */
+/* Readers take a chunk that compressed to no fewer bytes for an uncompressed one, which OpenEXR 3.1.5 forgets when it writes:
+ * such a chunk is stored uncompressed. */
 static exr_result_t compress(exr_encode_pipeline_t *encode) {
     sink *to = encode->encoding_user_data;
     exr_result_t result = to->compress(encode);
@@ -150,7 +152,7 @@ static bool write_file(sink *to, const skinslide_channel *channels, int32_t coun
     return (succeeds(to, exr_finish(&file))) && good;
 }
 
-/* Of channels that were taken. */
+/* skinslide_exr_encode, once the channels are taken. */
 static skinslide_status encode(const skinslide_channel *channels, int32_t channel_count, int32_t width, int32_t height,
                                skinslide_wrap wrap, skinslide_bytes **out, skinslide_error *error) {
     skinslide_status status = check_channels(channels, channel_count, width, height, error);

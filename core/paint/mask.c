@@ -1,4 +1,5 @@
-/* A set-up that nobody painted: where the edges of a mesh stretch over a shot, and the faces that a patch needs to give there. */
+/* A patch that nobody painted: notes where the edges of a mesh stretch over a shot, and chooses the faces that a patch needs so
+ * that skin can give there. */
 #include "paint.h"
 
 #include <math.h>
@@ -74,7 +75,7 @@ static void touch_ends(masking *m, const float *stretch, double least) {
                     1;
 }
 
-/* Marks the faces that have a corner which is touched; of fewer than three no face can slide. */
+/* Marks the faces that have a touched corner; those of fewer than three vertices cannot slide. */
 static void mark_touched(const masking *m, uint8_t *faces) {
     for (int32_t f = 0; f < m->mesh->face_count; f++)
         for (int32_t c = m->face_start[f]; c < m->face_start[f + 1]; c++)

@@ -45,7 +45,7 @@ static void measure(const skinslide_mesh *mesh, double size[3]) {
     }
 }
 
-/* The axis of the plane along which the mesh is longest has the fewest vertices at one coordinate. */
+/* Sorts along the axis of the plane in which the mesh is longest, since the fewest vertices share a coordinate there. */
 static void choose_scale(mirror *m) {
     double size[3];
     measure(m->mesh, size);
@@ -110,7 +110,7 @@ static void list_corners(mirror *m) {
         m->vertex_start[mesh->face_indices[c] + 1]++;
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         m->vertex_start[v + 1] += m->vertex_start[v];
-    for (int32_t c = mesh->index_count - 1; c >= 0; c--) /* from the last, so that starts end up where they began */
+    for (int32_t c = mesh->index_count - 1; c >= 0; c--) /* backwards, so that vertex_start ends where it began */
         m->corner[--m->vertex_start[mesh->face_indices[c] + 1]] = c;
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         m->vertex_start[v] = m->vertex_start[v + 1];
@@ -125,8 +125,8 @@ static int32_t vertex_from(const mirror *m, int32_t corner, int32_t n, int turn)
     return m->mesh->face_indices[start + (corner - start + turn * n + count) % count];
 }
 
-/* How far a face is from mirroring another whose first corner corresponds to a corner of it: the sum of distances; INFINITY where
- * it does not. */
+/* How far a face is from mirroring another, if the other's first corner corresponds to a corner of it: the sum of distances of
+ * their corners; INFINITY where it mirrors it not at all. */
 static double misfit(const mirror *m, int32_t face, int32_t corner, int turn) {
     int32_t start = m->face_start[face], count = m->face_start[face + 1] - start, other = m->corner_face[corner];
     if (m->face_start[other + 1] - m->face_start[other] != count || m->taken[other])
@@ -142,8 +142,8 @@ static double misfit(const mirror *m, int32_t face, int32_t corner, int turn) {
     return sum;
 }
 
-/* The corner that mirrors the first of a face, and which way round; -1 where there is none. Mirrored faces run the other way, so
- * that is preferred: a flat sheet with a back has faces of both ways in one place. */
+/* The corner that mirrors the first of a face, and which way round; -1 where there is none. Mirrored faces run the other way
+ * round, which is preferred: a flat sheet with a back has faces of both ways in one place. */
 static int32_t find_corner(const mirror *m, int32_t face, int *turn) {
     int32_t vertex = m->mesh->face_indices[m->face_start[face]], best = -1;
     for (*turn = -1; *turn <= 1; *turn += 2) {

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A face by where its middle is. */
+/* A face, by the place of its middle. */
 typedef struct spot {
     double along;
     int32_t face;
@@ -51,7 +51,7 @@ static double to_side(const double at[3], const double a[3], const double b[3]) 
     return ss_length(off);
 }
 
-/* In the plane of the triangle where that is inside it, else to its sides. */
+/* The distance to a triangle: along its normal where that meets the triangle, else to its sides. */
 static double to_triangle(const double at[3], double corners[3][3]) {
     double a[3], b[3], off[3], normal[3], inside[3];
     ss_subtract(corners[1], corners[0], a), ss_subtract(corners[2], corners[0], b), ss_subtract(at, corners[0], off);
@@ -68,7 +68,7 @@ static double to_triangle(const double at[3], double corners[3][3]) {
     return least;
 }
 
-/* To the fan of a face. */
+/* The distance to the fan of a face. */
 static double to_face(const search *s, const double at[3], int32_t face) {
     double corners[3][3], least = INFINITY;
     int32_t start = s->face_start[face], end = s->face_start[face + 1];
@@ -97,7 +97,7 @@ static int by_place(const void *a, const void *b) {
     return ss_ascending(&x->face, &y->face);
 }
 
-/* The axis of the plane along which the mesh is longest tells most faces apart. */
+/* Sorts along the axis of the plane in which the mesh is longest, since that tells most faces apart. */
 static void choose_along(search *s) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int64_t i = 0; i < 3 * (int64_t)s->mesh->vertex_count; i++) {
@@ -179,7 +179,8 @@ static void find_faces(search *s, int32_t *sources) {
     }
 }
 
-/* The points of the faces of a side have their mirror images on the mesh. sources [vertex_count], or NULL. */
+/* Finds the mirror images of the points of one side's faces on the mesh, and fails where one is too far from it. sources
+ * [vertex_count], or NULL. */
 static skinslide_status find_points(search *s, const uint8_t *side, int32_t *sources, skinslide_error *error) {
     for (int32_t f = 0; f < s->mesh->face_count; f++)
         for (int32_t c = s->face_start[f]; side[f] && c < s->face_start[f + 1]; c++) {

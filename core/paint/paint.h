@@ -25,7 +25,7 @@ typedef struct ss_taken_layout {
     skinslide_texture_layout layout;
     ss_taken_mesh mesh;
 } ss_taken_layout;
-/* Puts what it takes in the place of the caller's layout, and checks that. */
+/* Takes the caller's layout, makes *layout point to that, and checks it. */
 skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_taken_layout *own, skinslide_error *error);
 /* Texture coordinates of a corner of a face must be finite. */
 skinslide_status ss_check_st(const float st[2], int32_t face, skinslide_error *error);

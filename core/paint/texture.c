@@ -1,4 +1,4 @@
-/* Textures painted in a mesh's texture coordinates: bilinear samples at the corners of faces, as one value a vertex. */
+/* Textures painted in a mesh's texture coordinates: bilinear samples at the corners of faces, as one value for each vertex. */
 #include "paint.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static skinslide_status list_corners(const skinslide_texture_layout *layout, ss_
 
 /* ---- Tiles ---- */
 
-/* The whole number of a coordinate; on a border, the one on the side of the middle. */
+/* The tile that a coordinate is in, as a whole number; on a border, the one on the side of the middle. */
 static double tile_of(double coordinate, double middle) {
     double whole = floor(coordinate);
     return whole == coordinate && middle < whole ? whole - 1 : whole;
@@ -114,7 +114,7 @@ static double texels_about(double coordinate, int32_t count, skinslide_wrap wrap
     return place - first;
 }
 
-/* A texel with no share does not count, even where it is not a number. */
+/* A texel of weight 0 does not count, even if it is NaN. */
 static double sample(const skinslide_image *image, double s, double t) {
     double columns[2], rows[2], sum = 0;
     double share_s = texels_about(s, image->width, image->wrap_s, columns);
@@ -193,7 +193,7 @@ static skinslide_status take_tiles(const skinslide_texture_tile *tiles, int32_t 
     return status;
 }
 
-/* Of tiles that were taken. */
+/* skinslide_texture_sample, once the tiles are taken. */
 static skinslide_status sample_all(const skinslide_texture_layout *layout, const skinslide_texture_tile *tiles,
                                    int32_t tile_count, float *values, ss_memory *memory, skinslide_error *error) {
     corners c;

@@ -7,7 +7,8 @@
 
 typedef enum layout { LAYOUT_NONE, LAYOUT_VERTEX, LAYOUT_FACE, LAYOUT_EDGE } layout;
 
-/* What one input came to. Values are of this or of the base; its own memory is kept from frame to frame. */
+/* What an input's values have become. They are in memory of these controls, which is kept from frame to frame, or of the
+ * base. */
 typedef struct control {
     double number;
     layout layout; /* of values */
@@ -19,7 +20,7 @@ typedef struct control {
     const ss_texture *texture;
     const ss_texture *base_texture; /* that of the base, until another is taken */
     ss_texture *own_texture;
-    bool unplaced; /* own_texture has to find its tiles: its asset or the coordinates are new */
+    bool unplaced; /* own_texture must find its tiles anew, since its asset or the coordinates are new */
     bool refused;
 } control;
 
@@ -29,9 +30,9 @@ struct skinslide_stage_controls {
     control controls[SS_CONTROL_ROWS];
     const float *st; /* [index_count][2] of this or of the base; NULL: none was taken */
     float *own_st;
-    skinslide_status st_status; /* why there is no st, should a map need it */
+    skinslide_status st_status; /* why there is no st, for when a map needs it */
     skinslide_error st_error;
-    skinslide_controls given; /* what it gave last */
+    skinslide_controls given; /* what skinslide_stage_controls_get gave last */
 };
 
 static const ss_input *inputs(void) {
@@ -109,7 +110,7 @@ static skinslide_status check_count(const skinslide_stage_patch *patch, const ss
     return SKINSLIDE_OK;
 }
 
-/* Memory for the values of an input, whichever its layout; kept from frame to frame. */
+/* Memory for the values of an input in any layout, kept from frame to frame. */
 static float *own_values(skinslide_stage_controls *controls, int32_t row) {
     const skinslide_stage_mesh *mesh = controls->patch->mesh;
     int32_t faces = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
@@ -137,12 +138,12 @@ static skinslide_status bad_number(const ss_input *input, const ss_record *recor
                    (long long)i, ss_number(record, i, 0), input->wanted);
 }
 
-/* What becomes of a number: a double may be too large for a float, or too near 0. */
+/* A number as a float: a double may be too large for one, or too near 0. */
 static double as_float(const ss_record *record, int64_t i) {
     return (double)(float)ss_number(record, i, 0);
 }
 
-/* Expands what is inside the patch; NULL: all is. */
+/* Expands the values inside the patch; NULL: of all elements. */
 static skinslide_status expand(const ss_input *input, const ss_record *record, const ss_array *inside, float *values,
                                skinslide_error *error) {
     int64_t count = inside ? inside->count : record->length;
@@ -209,7 +210,7 @@ static skinslide_status take_factors(skinslide_stage_controls *controls, int32_t
     own->values = NULL, own->layout = LAYOUT_NONE;
     ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_EDGES, controls->patch->name, edges_name);
     skinslide_status status = ss_check_floats(record, SKINSLIDE_BAD_CONTROL, error);
-    if (controls->patch->taken[SS_ROW_EDGES].refused) /* which was said */
+    if (controls->patch->taken[SS_ROW_EDGES].refused) /* its error was reported when it was taken */
         return status;
     if (!status && record->length != edges->count / 2)
         status = ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED " has %lld values, but %s has %d pairs", SS_NAME(name),
@@ -294,7 +295,7 @@ static skinslide_status copy_coordinates(skinslide_stage_controls *controls, con
     return status ? status : skinslide_stage_coordinates(mesh, value, controls->own_st, error);
 }
 
-/* Gives a map up. */
+/* Marks a map as unusable. */
 static void refuse(control *own) {
     ss_texture_drop(own->own_texture);
     own->refused = true;
@@ -314,7 +315,7 @@ static skinslide_status move_map(skinslide_stage_controls *controls, int32_t row
     return status;
 }
 
-/* What is wrong with them matters where there is a map, which a later time may bring. */
+/* An error in them is kept, and reported only once a map needs them, perhaps at a later time. */
 static skinslide_status take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
                                          skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
@@ -425,7 +426,7 @@ static skinslide_status check_complete(const skinslide_stage_controls *controls,
     return SKINSLIDE_OK;
 }
 
-/* Paint by vertex times a map, into the paint's product. */
+/* Multiplies paint by vertex by a map, into the paint's product. */
 static skinslide_status multiply(skinslide_stage_controls *controls, int32_t map_row, skinslide_error *error) {
     int32_t row = inputs()[map_row].multiplies, count = controls->patch->mesh->vertex_count;
     const ss_texture *texture = controls->controls[map_row].texture;

@@ -19,7 +19,7 @@ typedef struct derivation {
     struct derivation *next;
 } derivation;
 
-/* A primvar that is an input like those of the table. */
+/* A primvar that was offered, and is an input like those of the table. */
 typedef struct offer {
     ss_input input;
     struct offer *next;
@@ -35,7 +35,7 @@ struct skinslide_stage_derived {
     const skinslide_stage_mesh *mesh;
     double *point_times; /* [point_time_count] as authored; merged they are fewer */
     int64_t point_time_count;
-    double *merged; /* and, once filled, the frames between */
+    double *merged; /* point_times merged and, once filled, with the frames between */
     int64_t merged_count;
     double rate;
     bool primvar_counts;       /* primvars:normals win over normals */
@@ -44,7 +44,7 @@ struct skinslide_stage_derived {
     warning *warnings, **last_warning;
 };
 
-/* Of the table. */
+/* The input in a row of the table. */
 static const ss_input *input_of_row(int32_t row) {
     int32_t count;
     return &ss_inputs(SKINSLIDE_STAGE_DERIVED, &count)[row];
@@ -54,7 +54,7 @@ static bool is_row(const ss_input *input, int32_t row) {
     return input == input_of_row(row);
 }
 
-/* Of the table, or a primvar that was offered; NULL for any other. */
+/* An input of the table, or a primvar that was offered; NULL for any other. */
 static const ss_input *find_input(const skinslide_stage_derived *derived, const skinslide_stage_input *shown) {
     int32_t row = ss_row_of(SKINSLIDE_STAGE_DERIVED, shown);
     if (row >= 0)
@@ -136,7 +136,7 @@ void skinslide_stage_derived_destroy(skinslide_stage_derived *derived) {
 
 /* ---- Vectors by element ---- */
 
-/* Which elements carry one. Constant ones do not follow from points. */
+/* Which elements have a vector each. Constant vectors do not follow from points. */
 static skinslide_status choose_layout(const ss_record *record, const char *interpolation, skinslide_normals_layout *layout,
                                       skinslide_error *error) {
     if (ss_is_by_vertex(interpolation))
@@ -161,12 +161,12 @@ static skinslide_status check_shape(const skinslide_stage_mesh *mesh, const ss_r
                   : ss_check_length(record, length_of_mesh(mesh, layout), element_of(layout), SKINSLIDE_BAD_POINTS, error);
 }
 
-/* A primvar keeps the type that it has; of the others USD says which. */
+/* A primvar keeps its type; the types of attributes are USD's. */
 static bool is_written_double(const ss_input *input, const ss_record *record) {
     return input->shown.is_primvar && record->value.type == SKINSLIDE_VALUE_DOUBLE;
 }
 
-/* Those that are too long block an output at all times, whatever slides where they are. */
+/* Vectors that are too long block an output at all times, whether or not the skin under them slides. */
 static skinslide_status check_lengths(const ss_input *input, const ss_record *record, skinslide_error *error) {
     skinslide_status status = SKINSLIDE_OK;
     bool is_double = is_written_double(input, record);
@@ -222,7 +222,7 @@ static void warn(skinslide_stage_derived *derived, const char *text) {
     *derived->last_warning = made, derived->last_warning = &made->next;
 }
 
-/* Of one pose on points of many. */
+/* Warns of vectors of one pose on points that move. */
 static void warn_of_static(skinslide_stage_derived *derived, const char *name) {
     skinslide_error said;
     ss_fail(&said, SKINSLIDE_BAD_POINTS,
@@ -247,7 +247,7 @@ static const char *property_name(skinslide_stage_derived *derived, const skinsli
     return name;
 }
 
-/* One more, of nothing yet: NULL where memory is short. */
+/* Appends an output, still empty: NULL where memory is short. */
 static derivation *append(skinslide_stage_derived *derived, const ss_input *input) {
     derivation *made = SS_NEW(&derived->memory, derivation, 1);
     if (!made)
@@ -275,7 +275,7 @@ static void add(skinslide_stage_derived *derived, const ss_input *input, const s
     };
 }
 
-/* What is blocked because something else is written, or blocked, in its place. */
+/* Blocks an attribute in whose place another is written, or blocked. */
 static void block(skinslide_stage_derived *derived, const ss_input *input, const char *suffix, const char *type_name) {
     derivation *made = append(derived, input);
     if (!made)
@@ -292,7 +292,7 @@ static skinslide_status judge(const skinslide_stage_derived *derived, const ss_i
     return status ? status : check_value(derived->mesh, input, record, *layout, error);
 }
 
-/* Normals that the primvar hides are read again where it has to be blocked. */
+/* Blocks normals that the primvar hides too, where it is blocked, since they would be read again. */
 static void block_hidden(skinslide_stage_derived *derived) {
     const ss_input *normals = input_of_row(SS_ROW_NORMALS);
     block(derived, normals, "", normals->shown.type_name);
@@ -442,7 +442,7 @@ static void copy(const ss_record *record, ss_vectors out) {
         out.doubles[i] = ss_number(record, i / 3, (int32_t)(i % 3));
 }
 
-/* The output, of the cache's vectors. */
+/* Computes the value of an output from the cache's vectors. */
 static skinslide_status compute(const skinslide_stage_derived *derived, const derivation *own,
                                 const skinslide_stage_pose *poses, ss_vectors out, skinslide_error *error) {
     skinslide_mesh mesh = ss_faces_of(derived->mesh);

@@ -1,4 +1,4 @@
-/* Which patches a prim carries, why they cannot be slid, and what of its names is not as it was meant. */
+/* Which patches a prim carries, why they cannot be slid, and which of its properties seem misnamed. */
 #include "stage.h"
 
 #include "schema.inc"
@@ -12,21 +12,21 @@ static const char schema_prefix[] = SS_SCHEMA ":";
 static const char *const spaces[] = {SS_NAMESPACE, SS_PRIMVARS SS_NAMESPACE};
 enum { SPACES = 2 };
 
-/* A patch, by its place in the order in which they are applied. */
+/* A patch, and its number in the order in which they are applied. */
 typedef struct patch_name {
     const char *name;
     int32_t patch;
 } patch_name;
 
 typedef struct search {
-    skinslide_stage_finding finding; /* the first member: what is given out */
+    skinslide_stage_finding finding; /* the first member, which is what callers get */
     ss_memory memory;
     skinslide_stage_prim prim;
     const char **patches;
     patch_name *by_name; /* [patch_count] */
     ss_paint_names paint;
     const skinslide_stage_problem **problems;
-    int32_t room; /* for problems, before there must be more */
+    int32_t room; /* how many problems there is room for */
 } search;
 
 /* ---- Saying ---- */
@@ -76,7 +76,7 @@ static int by_name(const void *a, const void *b) {
     return order ? order : x->patch - y->patch;
 }
 
-/* False where memory is short. */
+/* Sorts the patches by name. False where memory is short. */
 static bool sort_patches(search *own) {
     int32_t count = own->finding.patch_count;
     own->by_name = SS_NEW(&own->memory, patch_name, count);
@@ -88,7 +88,7 @@ static bool sort_patches(search *own) {
     return true;
 }
 
-/* Returns whether each application of the schema names one. */
+/* Lists the patches. Returns whether each application of the schema names one. */
 static bool list_patches(search *own) {
     bool nameless = false;
     for (int32_t i = 0; i < own->prim.schema_count; i++) {
@@ -133,13 +133,13 @@ static place place_of(const char *property) {
     return (place){0};
 }
 
-/* As strcmp, of the first letters of a text with a name. */
+/* Like strcmp, of the first `length` letters of a text and a name. */
 static int compare(const char *text, size_t length, const char *name) {
     int order = strncmp(text, name, length);
     return order ? order : -(name[length] != 0);
 }
 
-/* Where by_name has the patches of a name, of the first letters of a text: from *first to before what is returned. */
+/* The patches in by_name whose name is the first `length` letters of a text: from *first to before the number returned. */
 static int32_t find_named(const search *own, const char *text, size_t length, int32_t *first) {
     int32_t low = 0, high = own->finding.patch_count;
     while (low < high) {
@@ -200,7 +200,7 @@ static void say_unapplied(search *own) {
                 "has properties, but %s:%s is not applied to the prim, so it does not slide", SS_SCHEMA, names[i]);
 }
 
-/* A property that lies in the namespace of a patch, be it deeper than its settings are, and is none. */
+/* A property in the namespace of a patch, at any depth, that is none of its settings. */
 typedef struct stray {
     int32_t patch, space, property;
 } stray;
@@ -210,15 +210,15 @@ static int by_patch(const void *a, const void *b) {
     return x->patch != y->patch ? x->patch - y->patch : x->space != y->space ? x->space - y->space : x->property - y->property;
 }
 
-/* Without what follows the last colon of a name: how long that is. */
+/* The length of a name without its last colon and what follows it. */
 static size_t outer(const char *name, size_t length) {
     while (length > 0 && name[length - 1] != ':')
         length--;
     return length > 0 ? length - 1 : 0;
 }
 
-/* Lists what a property is to each patch that it lies in, if it is stray there; out may be NULL. Returns how many. A patch's own it is
- * not to those that the patch lies in. */
+/* Lists the patches in whose namespaces a property is stray; out may be NULL. Returns how many. A setting of a patch is not
+ * stray in the namespaces that the patch itself lies in. */
 static int32_t list_strays(const search *own, int32_t property, stray *out) {
     place at = place_of(own->prim.properties[property]);
     bool applied = at.patch_length && is_applied(own, &at);
@@ -252,7 +252,7 @@ static void say_unknown(search *own) {
 
 /* ---- Paint under names that are none ---- */
 
-/* Whether the mesh says if case counts. */
+/* Whether the mesh has an opinion on foldCase. */
 static bool says_case(const skinslide_stage_prim *prim) {
     int32_t count;
     const skinslide_stage_input *input = &ss_inputs(SKINSLIDE_STAGE_MESH, &count)[SS_ROW_FOLD_CASE].shown;
@@ -265,7 +265,8 @@ static bool says_case(const skinslide_stage_prim *prim) {
     return found;
 }
 
-/* Whether a name that is like those of paint has a patch in it, and an input: what a bake tells of the skin has one part. */
+/* Whether a name like those of paint has two parts, a patch and an input: the primvars that a bake writes of the skin have
+ * one. */
 static bool has_parts(const char *name) {
     const char *patch = name + sizeof SS_PRIMVARS SS_NAMESPACE - 1;
     size_t length = strcspn(patch, ":_");
@@ -277,7 +278,7 @@ static void say_misnamed(search *own) {
     for (int32_t i = 0; i < own->paint.count; i++) {
         const char *name = own->paint.names[i], *patch = own->paint.patches[i];
         if (name[without_indices(name)])
-            continue; /* said of what they index */
+            continue; /* the warning is of the primvar that they index */
         if (patch && own->paint.in_another_case[i] && !case_is_said)
             say(own, SKINSLIDE_SEVERITY_WARNING, patch,
                 "%s is paint in another case, and counts for nothing unless " SS_NAMESPACE "foldCase is on", name);
@@ -293,7 +294,7 @@ static bool has_influences(const skinslide_stage_prim *prim) {
     return prim->has_joint_indices || prim->blend_shape_count;
 }
 
-/* Why UsdSkel leaves a mesh alone that has influences; NULL: it moves its points. */
+/* Why UsdSkel does not skin a mesh that has influences; NULL: it does. */
 static const char *why_not_skinned(const skinslide_stage_prim *prim) {
     return !prim->skel_root                                       ? "there is no SkelRoot above it"
            : !prim->skeleton                                      ? "no Skeleton is bound to it below the SkelRoot"
@@ -312,7 +313,7 @@ static void warn_of_skinning(search *own) {
 
 /* ---- Why not ---- */
 
-/* Returns whether there is no reason. */
+/* Says why the patches cannot be slid. Returns whether nothing was said. */
 static bool say_why_not(search *own) {
     const skinslide_stage_prim *prim = &own->prim;
     const char *type = ss_type_of(prim->type_name);

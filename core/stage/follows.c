@@ -1,5 +1,6 @@
-/* Which primvars of a mesh follow its skin. By name: tangents and normals in the names that are in use, and rates of points. By
- * role: whatever is of normals or vectors. What seems to by its name, but is of a kind that cannot be carried, is told. */
+/* Which primvars of a mesh follow its skin. By name: tangents and normals under the names in use, and rates of points. By role:
+ * all normals and vectors. There is a warning for those that seem to follow by their names, but are of a kind that cannot be
+ * carried. */
 #include "stage.h"
 
 #include "schema.inc"
@@ -7,7 +8,7 @@
 #include <string.h>
 
 static const struct {
-    const char *name; /* in lower case, as the last part of what the primvar is called */
+    const char *name; /* the last part of the primvar's name, in lower case */
     ss_kind kind;
     int32_t pose_count;
 } known[] = {
@@ -39,7 +40,7 @@ static bool ends(const char *text, const char *with) {
 
 /* ---- Types ---- */
 
-/* normal3f[], vector3h[]: of a role that turns with what it lies on. */
+/* normal3f[], vector3h[]: whether a type has a role that turns with the surface. */
 static bool has_role(const char *type) {
     return begins(type, "normal3") || begins(type, "vector3");
 }
@@ -48,7 +49,7 @@ static bool is_triple(const char *type) {
     return has_role(type) || begins(type, "float3") || begins(type, "half3") || begins(type, "double3");
 }
 
-/* What a direction or a frame could be told as. */
+/* Whether a type could hold directions or frames. */
 static bool is_directional(const char *type) {
     return ends(type, "[]") && (is_triple(type) || begins(type, "float4") || begins(type, "half4") || begins(type, "double4") ||
                                 begins(type, "quat"));
@@ -58,7 +59,7 @@ static bool is_directional(const char *type) {
 
 enum { LONGEST = 64 };
 
-/* Not tolower, for which I has no lower case where a host speaks Turkish. */
+/* Not tolower, which depends on the host's locale: in Turkish, i is not the lower case of I. */
 static char lower(char c) {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
@@ -72,7 +73,7 @@ static void read_name(const char *primvar, char name[LONGEST]) {
     name[length] = 0;
 }
 
-/* Those that are inputs of a table, ours, or UsdSkel's. */
+/* Whether a primvar is an input of a table, or skinslide's or UsdSkel's own. */
 static bool is_elsewhere(const char *primvar) {
     static const char *const spaces[] = {SS_PRIMVARS SS_NAMESPACE, SS_PRIMVARS "skel:"};
     bool found = !begins(primvar, SS_PRIMVARS) || strcmp(primvar, SS_PRIMVARS "normals") == 0;
@@ -81,7 +82,7 @@ static bool is_elsewhere(const char *primvar) {
     return found;
 }
 
-/* Nref, restNormals, __Nref: of the pose in which nothing slides. */
+/* Nref, restNormals, __Nref: whether a name says that the values are of the rest pose. */
 static bool is_of_rest(const char *name) {
     name += strspn(name, "_");
     return begins(name, "rest") || begins(name, "reference") || ends(name, "ref") || ends(name, "_rest");

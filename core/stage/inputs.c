@@ -1,5 +1,5 @@
-/* All that is read, in one table: what SkinSlideAPI declares, what is painted, and what USD has of a mesh. To add an attribute
- * is to add it to the schema and a row here, and to let skinslide_controls or skinslide_patch_setup have its place. */
+/* All that is read, in one table: what SkinSlideAPI declares, what is painted, and what USD has of a mesh. To add an attribute,
+ * add it to the schema, add a row here, and give it a member of skinslide_controls or skinslide_patch_setup. */
 #include "stage.h"
 
 #include "schema.inc"
@@ -64,8 +64,8 @@ static const ss_input subdivision_inputs[SS_SUBDIVISION_ROWS] = {
 
 /* ---- A patch ---- */
 
-/* What is painted the schema cannot declare: a declared attribute has one type and a name that begins with the schema's
- * namespace, and paint is of several types, and under primvars:. */
+/* The schema cannot declare what is painted: a declared attribute has one type and a name in the schema's namespace, while
+ * paint may have several types, and is in primvars:. */
 #define PRIMVAR(name, type, group, when, inherited)                                                                            \
     .shown = {name, type, NULL, NULL, group, SS_PRIMVARS SS_NAMESPACE, when, 1, inherited}
 #define SETTING(declared) .shown = {declared, SKINSLIDE_STAGE_PATCH, SS_NAMESPACE, SKINSLIDE_STAGE_FIRST, 0, 0}
@@ -190,8 +190,8 @@ const char *skinslide_stage_schema(void) {
 
 /* ---- Names and ranges ---- */
 
-/* What is declared of meshes; live:envelope and its like; and cached, where a bake into the layer of the cache keeps the cache's
- * values. */
+/* Names that no patch may have: attributes of the mesh, live as in live:envelope, and cached, under which a bake into the
+ * cache's own layer keeps the cache's values. */
 bool ss_is_reserved(const char *name, size_t length) {
     static const char *const reserved[] = {"live", "cached"};
     bool found = false;

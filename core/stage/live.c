@@ -1,4 +1,4 @@
-/* What a shot sets from outside for every patch of a file: arguments that scale or replace what each patch has of its own. */
+/* What a shot sets for every patch of a file: arguments that scale or replace each patch's own settings. */
 #include "stage.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
-/* Where other meshes meet a patch: points of theirs in the place of its own, at first. Borders stay there, so that nothing cracks. */
+/* Where other meshes meet a patch: where they have points in the same places at the first time. Borders stay there, so that no
+ * crack opens. */
 #include "mesh.h"
 #include "stage.h"
 
@@ -8,8 +9,8 @@ skinslide_bool skinslide_stage_patch_wants_neighbours(const skinslide_stage_patc
     return patch && patch->mesh->weld != 0 && patch->faces.count && patch->taken[SS_ROW_HOLES].choice != SKINSLIDE_HOLES_PINNED;
 }
 
-/* points and met are [vertices.count] of the patch. One that has a point at each of them is a copy of it, such as a proxy, and holds
- * nothing. */
+/* points and met are [vertices.count] of the patch. A mesh that meets all of them is a copy of it, such as a proxy, and holds
+ * none. */
 static void hold(const skinslide_stage_patch *patch, const float *points, const uint8_t *met, uint8_t *held) {
     bool all = true;
     for (int32_t i = 0; i < patch->vertices.count; i++)

@@ -12,11 +12,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Rest is of another scale beyond this, either way; an inch has 2.54 cm. A character that grows by less only stretches. */
+/* Rest is of another scale beyond this factor, either way: an inch has 2.54 cm, and a character that grows by less only
+ * stretches. */
 static const double other_scale = 2;
-/* As factors: the spread from which rest is poor and says no scale, and how far apart sliding is then senseless. */
+/* As factors: the spread from which rest resembles the cache poorly and its scale means nothing, and how far apart the two are
+ * when sliding is senseless. */
 static const double poor = 1.4, senseless = 2;
-/* What one edge counts for in the spread at most: a stray point is none of another order. */
+/* The most that one edge adds to the spread: one stray point does not mean that points are in another order. */
 static const double most_of_one = 4;
 
 typedef struct ratios {
@@ -25,7 +27,7 @@ typedef struct ratios {
     int64_t count;
 } ratios;
 
-/* Sides of no length in either pose tell nothing, and points that are not finite are told where they are slid. */
+/* Sides of no length in either pose say nothing; points that are not finite are reported when they are slid. */
 static void add_face(ratios *own, int32_t face) {
     const skinslide_stage_mesh *mesh = own->mesh;
     const int32_t *indices = mesh->taken[SS_ROW_FACE_INDICES].array.values;
@@ -42,8 +44,8 @@ typedef struct likeness {
     double median, spread, apart; /* factors */
 } likeness;
 
-/* The value that k others would come before, were all in order: found by their bytes, from the highest on, of which positive
- * numbers have the order. */
+/* The value at place k if all were sorted, found byte by byte from the highest on: positive doubles are in the order of their
+ * bits. */
 static double ranked(const double *values, int64_t count, int64_t k) {
     uint64_t found = 0, bits;
     for (int shift = 56; shift >= 0; shift -= 8) {
@@ -79,7 +81,7 @@ static bool can_compare(const skinslide_stage_mesh *mesh) {
     return mesh->has_faces && mesh->rest && mesh->first && mesh->compare_rest != 0;
 }
 
-/* Multiplies rest, so that lengths and what is made of them are the cache's. */
+/* Scales the rest points, so that lengths and what follows from them are on the cache's scale. */
 static skinslide_status take_scale(skinslide_stage_mesh *mesh, double scale, skinslide_error *error) {
     char *warning = SS_NEW(&mesh->memory, char, 128);
     if (!warning)
@@ -113,7 +115,7 @@ static skinslide_status compare_faces(const skinslide_stage_mesh *mesh, const ss
     return SKINSLIDE_OK;
 }
 
-/* A scale that edges do not agree on is none. */
+/* Edges that do not agree give no scale. */
 skinslide_status ss_compare_mesh(skinslide_stage_mesh *mesh, skinslide_error *error) {
     likeness own;
     mesh->warning = NULL;

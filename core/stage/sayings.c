@@ -1,4 +1,4 @@
-/* Words that are said here and by readers alike. */
+/* Words that both the core and its readers say. */
 #include "stage.h"
 
 const char *skinslide_stage_say(skinslide_saying saying) {

@@ -1,17 +1,18 @@
-/* How the transforms above a mesh scale it: what lengths are in the world, A being the way there and its points rows.
+/* How the transforms above a mesh scale it: the lengths that its points, as rows, have in the world by the matrix A that takes
+ * them there.
  *
  *     |p A|^2 = p G p^T,   G = A A^T = L L^T,   so p L has the lengths that p has in the world
  *
- * L is lower triangular, and knows nothing of how the mesh is turned or where it is: those may change from frame to frame. */
+ * L is lower triangular, and does not depend on how the mesh is rotated or where it is, which may change from frame to frame. */
 #include "stage.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* As many times as much one way as another that a scale counts as even. */
+/* A scale counts as even if it is at most this many times as much one way as another. */
 static const double even = 1.01;
-/* How much of G may change over time: what the transforms of a rig that turns leave. */
+/* How much G may change over time, relative to it: the rounding that rotating transforms of a rig leave. */
 static const double still = 1e-4;
 
 typedef struct gram {
@@ -32,7 +33,7 @@ static double trace(const gram *g) {
     return g->of[0][0] + g->of[1][1] + g->of[2][2];
 }
 
-/* One turn of Jacobi's: makes the entry between two axes 0. */
+/* One rotation of Jacobi's method: makes the entry between two axes 0. */
 static void turn(gram *g, int p, int q) {
     double between = g->of[p][q];
     if (between == 0)
@@ -49,9 +50,10 @@ static void turn(gram *g, int p, int q) {
     }
 }
 
-/* The largest scale over the smallest: the root of that of the eigenvalues. 1 where all is in one point; no more than 1e6. */
+/* The largest scale over the smallest: the square root of the ratio of eigenvalues. 1 where all is in one point; at most
+ * 1e6. */
 static double unevenness(gram g) {
-    enum { SWEEPS = 12 }; /* of which a few do */
+    enum { SWEEPS = 12 }; /* more than enough: a few converge */
     for (int sweep = 0; sweep < SWEEPS; sweep++)
         for (int p = 0; p < 2; p++)
             for (int q = p + 1; q < 3; q++)
@@ -60,7 +62,8 @@ static double unevenness(gram g) {
     return most > 0 ? sqrt(most / fmax(least, 1e-12 * most)) : 1;
 }
 
-/* Cholesky's factor, in floats, so that what turns the mesh leaves no noise in it. False where G is not positive. */
+/* Cholesky's factor, rounded to floats, so that rotations of the mesh leave no noise in it. False where G is not positive
+ * definite. */
 static bool factor(const gram *g, double out[9]) {
     memset(out, 0, 9 * sizeof *out);
     for (int i = 0; i < 3; i++)
@@ -100,13 +103,13 @@ static skinslide_status warn(skinslide_stage_mesh *mesh, double ratio, double fr
     return SKINSLIDE_OK;
 }
 
-/* What is not even is warned of where it is most so. */
+/* Warns of a scale that is not even, for the frame at which it is least so. */
 static skinslide_status look(skinslide_stage_mesh *mesh, const gram *g, double frame, bool is_first, skinslide_error *error) {
     double ratio = unevenness(*g);
     return ratio > even * fmax(1, mesh->unevenness) ? warn(mesh, ratio, frame, is_first, error) : SKINSLIDE_OK;
 }
 
-/* Where lengths are taken, which must stay the same but for size. */
+/* Takes the space in which lengths are measured, which may change over time in size only. */
 static skinslide_status take(skinslide_stage_mesh *mesh, const gram *g, double frame, bool is_first, skinslide_error *error) {
     char name[64], number[32];
     double size = trace(g), before = 0;

@@ -1,5 +1,5 @@
-/* How a mesh is subdivided when it is rendered: scheme, rules, creases, corners and holes. How its arrays fit each other and
- * the mesh the core asks when it builds limit surfaces. */
+/* How a mesh is subdivided when it is rendered: scheme, rules, creases, corners and holes. Whether its arrays fit each other
+ * and the mesh is checked when limit surfaces are built. */
 #include "stage.h"
 
 static const ss_input *inputs(void) {
@@ -32,7 +32,7 @@ static void fill(skinslide_stage_mesh *mesh) {
     };
 }
 
-/* The one pair of arrays whose counts skinslide_subdivision has no place for both of. */
+/* The only arrays that share one count in skinslide_subdivision, so that they must be compared here. */
 static skinslide_status check_corners(const skinslide_stage_mesh *mesh, skinslide_error *error) {
     int32_t corners = mesh->subdivision[SS_ROW_CORNER_INDICES].array.count;
     int32_t sharpnesses = mesh->subdivision[SS_ROW_CORNER_SHARPNESSES].array.count;
