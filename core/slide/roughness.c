@@ -28,37 +28,47 @@ static motion motion_of(const skinslide_sample *samples, bool slid) {
     return made;
 }
 
-static double second_difference(const motion *m, int32_t v) {
+/* A quarter of the square of the second difference: the root is for the largest alone. */
+static double square_of_way(const motion *m, int32_t v) {
     double way[3];
     for (int k = 0; k < 3; k++) {
         int64_t i = 3 * (int64_t)v + k;
         double here = m->points[1][i];
         way[k] = (1 - m->share) * (m->points[0][i] - here) + m->share * (m->points[2][i] - here);
     }
-    return 2 * ss_length(way);
+    return ss_dot(way, way);
 }
 
-static double largest_coordinate(const motion *m, int32_t v, double largest) {
-    for (int k = 0; k < 9; k++)
-        largest = fmax(largest, fabs(m->points[k / 3][3 * (int64_t)v + k % 3]));
-    return largest;
+static inline float larger(float a, float b) {
+    return a > b ? a : b; /* of finite numbers, for which fmaxf does too much */
+}
+
+/* Along each axis, so that none waits for another. */
+static void enlarge(const motion *m, int32_t v, float largest[3]) {
+    for (int k = 0; k < 3; k++) {
+        int64_t i = 3 * (int64_t)v + k;
+        float own = larger(fabsf(m->points[0][i]), larger(fabsf(m->points[1][i]), fabsf(m->points[2][i])));
+        largest[k] = larger(own, largest[k]);
+    }
 }
 
 /* The largest second difference of a patch and the mesh vertex that has it; least grows to what rounding may be. */
 static skinslide_status measure(const ss_patch *patch, const motion *m, double *most, int32_t *vertex, double *least,
                                 skinslide_error *error) {
-    double largest = 0;
-    *most = 0, *vertex = patch->mesh_vertex[0];
+    double most_square = 0;
+    float largest[3] = {0};
+    *vertex = patch->mesh_vertex[0];
     for (int32_t i = 0; i < patch->vertex_count; i++) {
         int32_t v = patch->mesh_vertex[i];
-        double own = second_difference(m, v);
-        if (!isfinite(own))
-            return ss_refuse_vertex(patch->label, v, &(float){(float)own}, 1, SKINSLIDE_BAD_POINTS, error);
-        if (own > *most)
-            *most = own, *vertex = v;
-        largest = largest_coordinate(m, v, largest);
+        double square = square_of_way(m, v);
+        if (!isfinite(square))
+            return ss_refuse_vertex(patch->label, v, &(float){(float)square}, 1, SKINSLIDE_BAD_POINTS, error);
+        if (square > most_square)
+            most_square = square, *vertex = v;
+        enlarge(m, v, largest);
     }
-    *least = fmax(*least, ROUNDING * largest);
+    *most = 2 * sqrt(most_square);
+    *least = fmax(*least, ROUNDING * larger(largest[0], larger(largest[1], largest[2])));
     return SKINSLIDE_OK;
 }
 
