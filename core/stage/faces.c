@@ -27,7 +27,7 @@ static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t count,
 /* ---- Chosen by a primvar ---- */
 
 static skinslide_status check_finite(const ss_record *record, skinslide_error *error) {
-    for (int64_t i = 0; i < record->length; i++)
+    for (int64_t i = 0; ss_is_real(&record->value) && i < record->length; i++)
         if (!isfinite(ss_number(record, i, 0)))
             return ss_fail(error, SKINSLIDE_BAD_PATCH, SS_NAMED "[%lld] is %g", SS_NAME(record->value.name), (long long)i,
                            ss_number(record, i, 0));
@@ -55,24 +55,27 @@ static skinslide_status check_primvar(const skinslide_stage_patch *patch, const 
                     : ss_check_painted_vertices(patch->mesh, record, SKINSLIDE_BAD_PATCH, error);
 }
 
-static bool is_chosen(const skinslide_stage_mesh *mesh, const ss_record *record, bool by_face, int32_t face) {
-    if (by_face)
-        return ss_number(record, face, 0) > 0;
-    const int32_t *indices = mesh->taken[SS_ROW_FACE_INDICES].array.values;
-    for (int32_t c = mesh->face_start[face]; c < mesh->face_start[face + 1]; c++)
-        if (!(ss_number(record, indices[c], 0) > 0))
-            return false;
-    return mesh->face_start[face] < mesh->face_start[face + 1];
+/* Marks faces [face_count] of whose points all are chosen [vertex_count]. */
+static void mark_faces_of(const skinslide_stage_mesh *mesh, const uint8_t *chosen, uint8_t *marked) {
+    const int32_t *indices = mesh->taken[SS_ROW_FACE_INDICES].array.values, *start = mesh->face_start;
+    for (int32_t face = 0; face < mesh->taken[SS_ROW_FACE_COUNTS].array.count; face++) {
+        marked[face] = start[face] < start[face + 1];
+        for (int32_t c = start[face]; c < start[face + 1]; c++)
+            marked[face] &= chosen[indices[c]];
+    }
 }
 
 static bool list_chosen(const skinslide_stage_mesh *mesh, const ss_record *record, bool by_face, ss_memory *memory,
                         ss_array *out) {
     ss_memory scratch = {0};
     int32_t count = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
-    uint8_t *marked = SS_NEW(&scratch, uint8_t, count);
-    for (int32_t face = 0; marked && face < count; face++)
-        marked[face] = is_chosen(mesh, record, by_face, face);
-    bool done = marked && list_marked(memory, marked, count, out);
+    uint8_t *chosen = SS_NEW(&scratch, uint8_t, record->length), *marked = by_face ? chosen : SS_NEW(&scratch, uint8_t, count);
+    bool done = !scratch.failed;
+    if (done)
+        ss_mark_positive(record, chosen);
+    if (done && !by_face)
+        mark_faces_of(mesh, chosen, marked);
+    done = done && list_marked(memory, marked, count, out);
     ss_free(&scratch);
     return done;
 }
@@ -329,7 +332,14 @@ skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *
     uint8_t *vertices = SS_NEW(&scratch, uint8_t, patch->mesh->vertex_count);
     bool done = !scratch.failed && (!(way_of(patch) > 0) || grow(patch, faces)) && list_vertices(patch, vertices);
     ss_free(&scratch);
-    return done ? ss_compare_patch(patch, error) : ss_out_of_memory(error);
+    skinslide_status status = done ? ss_compare_patch(patch, error) : ss_out_of_memory(error);
+    if (!status)
+        patch->way = way_of(patch);
+    return status;
+}
+
+skinslide_status ss_settle_way(skinslide_stage_patch *patch, skinslide_error *error) {
+    return way_of(patch) == patch->way ? SKINSLIDE_OK : ss_settle_faces(patch, error);
 }
 
 const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count) {

@@ -154,10 +154,6 @@ static const char *name_of_channel(const skinslide_stage_patch *patch) {
     return ss_inputs(SKINSLIDE_STAGE_PATCH, &count)[SS_ROW_CHANNEL].shown.tokens[patch->taken[SS_ROW_CHANNEL].choice];
 }
 
-static bool is_real(const skinslide_value *value) {
-    return value->type >= SKINSLIDE_VALUE_HALF && value->type <= SKINSLIDE_VALUE_DOUBLE;
-}
-
 static bool is_choice(const skinslide_value *value) {
     return (value->type == SKINSLIDE_VALUE_BOOL || value->type == SKINSLIDE_VALUE_INT32) && value->width == 1;
 }
@@ -189,7 +185,7 @@ skinslide_status ss_check_paint_type(const skinslide_stage_patch *patch, const s
     if (value->type == SKINSLIDE_VALUE_BLOCKED)
         return SKINSLIDE_OK;
     bool is_wide = value->width > 1, is_single = !value->is_array && (of_faces || is_wide);
-    if (is_single || (is_wide && !patch) || (!is_real(value) && !(of_faces && is_choice(value))))
+    if (is_single || (is_wide && !patch) || (!ss_is_real(value) && !(of_faces && is_choice(value))))
         return refuse_type(value, of_faces, "", status, error);
     return is_wide ? check_channel(patch, value, of_faces, status, error) : SKINSLIDE_OK;
 }

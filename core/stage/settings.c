@@ -307,8 +307,10 @@ skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const 
         status = row < 0 ? ss_take_subset_faces(patch, of_subset, &record, error) : take_setting(patch, row, &record, error);
     if (!status && row == SS_ROW_ST)
         status = name_coordinates(patch, error);
-    if (!status && (row < 0 || row == SS_ROW_FACES || row == SS_ROW_RULE || row == SS_ROW_GROW))
+    if (!status && (row < 0 || row == SS_ROW_FACES))
         status = ss_settle_faces(patch, error);
+    else if (!status && (row == SS_ROW_RULE || row == SS_ROW_GROW))
+        status = ss_settle_way(patch, error);
     if (row >= 0)
         patch->taken[row].refused = status != SKINSLIDE_OK;
     return status;

@@ -23,6 +23,8 @@ typedef struct ss_record {
 /* NULL opens as no value. Fails with BAD_ARGUMENT where the record itself is none. */
 skinslide_status ss_open(const skinslide_value *given, ss_record *record, skinslide_error *error);
 bool ss_has_value(const ss_record *record);
+/* Whether it is of half, float or double. */
+bool ss_is_real(const skinslide_value *value);
 /* Whether it is one number, and no array. */
 bool ss_is_number(const ss_record *record);
 /* As authored, else constant, which is USD's. */
@@ -33,6 +35,8 @@ bool ss_is_by_vertex(const char *interpolation);
 skinslide_status ss_check_indices(const ss_record *record, skinslide_status status, skinslide_error *error);
 /* Number k of an element, indices applied, as a double. */
 double ss_number(const ss_record *record, int64_t element, int32_t k);
+/* Which elements [length] have a first number above 0. */
+void ss_mark_positive(const ss_record *record, uint8_t *marked);
 
 /* That there is nothing in it. */
 skinslide_status ss_refuse_empty(const ss_record *record, skinslide_status status, skinslide_error *error);
@@ -290,6 +294,7 @@ struct skinslide_stage_patch {
     ss_array indices;    /* of that, as authored */
     ss_array vertices;   /* of those faces; ascending */
     ss_memory settled;   /* of the two, as far as they are not authored */
+    double way;          /* that the faces have been grown by */
     uint8_t *held;       /* [vertex_count] those that other meshes have points at; NULL: none */
     double unlike;       /* the factor by which rest differs, where sliding is senseless; 0: it is not */
     const char *warning; /* NULL: none */
@@ -337,6 +342,8 @@ skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32
 /* Lists the faces and vertices of the patch: what was chosen, if anything yet, and what joins that within its grow, under a rule that
  * takes any faces. */
 skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *error);
+/* The same where the way that it grows is another now. */
+skinslide_status ss_settle_way(skinslide_stage_patch *patch, skinslide_error *error);
 
 /* controls.c: whether an input says something, at the time of the controls. */
 bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row);

@@ -18,6 +18,10 @@ static bool is_real(skinslide_value_type type) {
     return type >= SKINSLIDE_VALUE_HALF && type <= SKINSLIDE_VALUE_DOUBLE;
 }
 
+bool ss_is_real(const skinslide_value *value) {
+    return is_real(value->type);
+}
+
 static bool is_text(skinslide_value_type type) {
     return type == SKINSLIDE_VALUE_TEXT || type == SKINSLIDE_VALUE_ASSET;
 }
@@ -125,6 +129,11 @@ static int64_t place(const ss_record *record, int64_t element) {
 
 double ss_number(const ss_record *record, int64_t element, int32_t k) {
     return number(&record->value, place(record, element) * record->value.width + k);
+}
+
+void ss_mark_positive(const ss_record *record, uint8_t *marked) {
+    for (int64_t i = 0; i < record->length; i++)
+        marked[i] = ss_number(record, i, 0) > 0;
 }
 
 /* ---- Checks ---- */
