@@ -24,6 +24,8 @@ typedef struct ss_memory {
 /* count * size bytes of zeros, or NULL with memory->failed set. A count of 0 gives a pointer all the same. */
 void *ss_new(ss_memory *memory, int64_t count, size_t size);
 void ss_free(ss_memory *memory);
+/* Takes what another has, which has nothing then. */
+void ss_adopt(ss_memory *memory, ss_memory *other);
 #define SS_NEW(memory, type, count) ((type *)ss_new((memory), (count), sizeof(type)))
 
 /* ---- memory.c: room for arrays of several objects that are at work by turns ---- */

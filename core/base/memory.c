@@ -31,6 +31,15 @@ void ss_free(ss_memory *memory) {
     }
 }
 
+void ss_adopt(ss_memory *memory, ss_memory *other) {
+    ss_block **end = &other->blocks;
+    while (*end)
+        end = &(*end)->next;
+    *end = memory->blocks;
+    memory->blocks = other->blocks;
+    other->blocks = NULL;
+}
+
 void *ss_take_room(ss_room *room, int64_t count, size_t size) {
     enum { LINE = 64 }; /* bytes of a line of a cache, which no two arrays share */
     char *array = room->bytes ? room->bytes + room->taken : NULL;

@@ -15,12 +15,13 @@
 
 using namespace OpenSubdiv;
 using Surface = Bfr::Surface<double>;
+/* It keeps what it has made for faces alike, for one thread at a time. */
+using SurfaceFactory = Bfr::RefinerSurfaceFactory<>;
 
 struct ss_topology {
     const skinslide_mesh *mesh;
     std::vector<uint8_t> is_hole; /* [face_count] by holeIndices */
     std::unique_ptr<Far::TopologyRefiner> refiner;
-    std::unique_ptr<Bfr::RefinerSurfaceFactory<>> factory;
 };
 
 struct ss_limit_surfaces {
@@ -118,7 +119,6 @@ skinslide_status build_topology(const skinslide_mesh &mesh, ss_topology &topolog
     topology.refiner = refine(mesh);
     if (!topology.refiner)
         return ss_fail(error, SKINSLIDE_BAD_MESH, "OpenSubdiv refuses the mesh");
-    topology.factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*topology.refiner);
     return SKINSLIDE_OK;
 }
 
@@ -193,12 +193,12 @@ skinslide_status refuse_crowd(const ss_topology &topology, int32_t face, const c
 }
 
 /* OpenSubdiv is asked last: where it crashes at a face, it may do so when asked. */
-ss_face_surface kind_of(const ss_topology &topology, int32_t face) {
+ss_face_surface kind_of(const ss_topology &topology, const SurfaceFactory &factory, int32_t face) {
     if (topology.is_hole[size_t(face)])
         return SS_SURFACE_NONE;
     if (refuse_crowd(topology, face, "", nullptr) || crash_at(topology, face))
         return SS_SURFACE_REFUSED;
-    return topology.factory->FaceHasLimitSurface(face) ? SS_SURFACE : SS_SURFACE_NONE;
+    return factory.FaceHasLimitSurface(face) ? SS_SURFACE : SS_SURFACE_NONE;
 }
 
 skinslide_status refuse_hole(const ss_topology &topology, int32_t face, const char *label, skinslide_error *error) {
@@ -211,6 +211,7 @@ skinslide_status refuse_hole(const ss_topology &topology, int32_t face, const ch
 
 skinslide_status build_surfaces(const ss_topology &topology, const int32_t *faces, int32_t count, const char *label,
                                 ss_limit_surfaces &surfaces, skinslide_error *error) {
+    SurfaceFactory factory(*topology.refiner);
     surfaces.faces.resize(size_t(count));
     surfaces.vertex_start.assign(1, 0);
     for (int32_t f = 0; f < count; f++) {
@@ -220,7 +221,7 @@ skinslide_status build_surfaces(const ss_topology &topology, const int32_t *face
         if (const char *why = crash_at(topology, faces[f]))
             return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: face %d has %s; OpenSubdiv before 3.5.1 cannot subdivide it",
                            label, faces[f], why);
-        if (!topology.factory->InitVertexSurface(faces[f], &surface))
+        if (!factory.InitVertexSurface(faces[f], &surface))
             return refuse_hole(topology, faces[f], label, error);
         int32_t start = surfaces.vertex_start.back(), own = surface.GetNumControlPoints();
         surfaces.vertices.resize(size_t(start + own));
@@ -276,8 +277,9 @@ void ss_topology_destroy(ss_topology *topology) {
 
 skinslide_status ss_face_surfaces(const ss_topology *topology, ss_face_surface *kinds, skinslide_error *error) {
     return guarded(error, [&] {
+        SurfaceFactory factory(*topology->refiner);
         for (int32_t face = 0; face < topology->mesh->face_count; face++)
-            kinds[face] = kind_of(*topology, face);
+            kinds[face] = kind_of(*topology, factory, face);
         return SKINSLIDE_OK;
     });
 }

@@ -20,7 +20,7 @@ typedef struct ss_parameter {
 /* The parameters of a place. loop: the scheme is. */
 ss_parameter ss_parametrise(const ss_patch *patch, bool loop, const ss_flat *flat, const ss_place *place);
 
-typedef struct ss_topology ss_topology;             /* a subdivided mesh, checked; keeps the mesh and its arrays */
+typedef struct ss_topology ss_topology;             /* a subdivided mesh, checked: immutable; keeps the mesh and its arrays */
 typedef struct ss_limit_surfaces ss_limit_surfaces; /* limit surfaces of some of its faces: immutable, and good without it */
 
 skinslide_status ss_topology_create(const skinslide_mesh *mesh, ss_topology **out, skinslide_error *error);

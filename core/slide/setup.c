@@ -1,4 +1,4 @@
-/* Builds a slider from its set-ups. */
+/* From a set-up to its parts: checked, in connected pieces, and what its rule makes of each at rest. */
 #include "slide.h"
 
 #include <stdio.h>
@@ -40,17 +40,16 @@ static skinslide_status sort_faces(const skinslide_mesh *mesh, const skinslide_p
     return status;
 }
 
-static bool is_edge_of(const skinslide_slider *slider, int32_t setup, int32_t a, int32_t b) {
-    for (int32_t p = slider->first_part[setup]; p < slider->first_part[setup + 1]; p++)
-        if (ss_patch_mesh_edge(slider->parts[p].patch, a, b) >= 0)
+static bool is_edge_of(const ss_part *parts, int32_t part_count, int32_t a, int32_t b) {
+    for (int32_t p = 0; p < part_count; p++)
+        if (ss_patch_mesh_edge(parts[p].patch, a, b) >= 0)
             return true;
     return false;
 }
 
 /* Every pair must be an edge of a piece of the set-up, and be there once. */
-static skinslide_status check_edges(const skinslide_slider *slider, int32_t setup, const skinslide_controls *controls,
-                                    skinslide_error *error) {
-    const char *name = slider->setups[setup].name;
+static skinslide_status check_edges(const skinslide_patch_setup *setup, const ss_part *parts, int32_t part_count,
+                                    const skinslide_controls *controls, skinslide_error *error) {
     ss_memory scratch = {0};
     if (controls->edge_count == 0)
         return SKINSLIDE_OK;
@@ -59,15 +58,15 @@ static skinslide_status check_edges(const skinslide_slider *slider, int32_t setu
     for (int32_t i = 0; i < controls->edge_count && !status; i++) {
         int32_t a = controls->edges[2 * i], b = controls->edges[2 * i + 1];
         pairs[i][0] = a < b ? a : b, pairs[i][1] = a < b ? b : a;
-        if (!is_edge_of(slider, setup, a, b))
-            status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: %d-%d is not an edge of the patch", name, a, b);
+        if (!is_edge_of(parts, part_count, a, b))
+            status = ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: %d-%d is not an edge of the patch", setup->name, a, b);
     }
     if (!status)
         qsort(pairs, (size_t)controls->edge_count, sizeof *pairs, ss_ascending_pairs);
     for (int32_t i = 1; i < controls->edge_count && !status; i++)
         if (ss_ascending_pairs(pairs[i], pairs[i - 1]) == 0) {
             char label[160], edge[40];
-            ss_label(&slider->setups[setup], 0, 1, label, sizeof label);
+            ss_label(setup, 0, 1, label, sizeof label);
             snprintf(edge, sizeof edge, "edge %d-%d", pairs[i][0], pairs[i][1]);
             status = ss_refuse_repeated(label, edge, SKINSLIDE_BAD_CONTROL, error);
         }
@@ -83,9 +82,10 @@ skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const sk
     skinslide_status status =
         ss_take_all(given, slider->setup_count, "skinslide_controls", controls, sizeof standard, &standard, error);
     for (int32_t i = 0; i < slider->setup_count && !status; i++) {
+        const int32_t *first = &slider->first_part[i];
         status = ss_check_controls(&mesh, slider->setups[i].name, &controls[i], error);
         if (!status)
-            status = check_edges(slider, i, &controls[i], error);
+            status = check_edges(&slider->setups[i], slider->parts + first[0], first[1] - first[0], &controls[i], error);
     }
     return status;
 }
@@ -158,8 +158,9 @@ static skinslide_status sort_by_piece(const int32_t *faces, const int32_t *piece
     return SKINSLIDE_OK;
 }
 
-static skinslide_status split(const skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setup,
-                              split_faces *out, skinslide_error *error) {
+static skinslide_status split(const skinslide_build *build, const skinslide_patch_setup *setup, split_faces *out,
+                              skinslide_error *error) {
+    const skinslide_mesh *mesh = &build->taken.mesh;
     ss_memory *memory = &out->memory;
     ss_faces faces;
     char label[160];
@@ -175,7 +176,7 @@ static skinslide_status split(const skinslide_slider *slider, const skinslide_me
     if (status)
         return status;
     ss_label(setup, 0, 1, label, sizeof label);
-    status = ss_take_faces(mesh, slider->face_start, sorted, setup->face_count, label, memory, &faces, error);
+    status = ss_take_faces(mesh, build->face_start, sorted, setup->face_count, label, memory, &faces, error);
     if (status)
         return status;
     out->count = ss_number_pieces(&faces, piece_of_face, stack);
@@ -183,214 +184,87 @@ static skinslide_status split(const skinslide_slider *slider, const skinslide_me
 }
 
 /* What the limit surface asks for beyond prepare(). */
-static skinslide_status add_cage(const skinslide_slider *slider, const skinslide_mesh *mesh, ss_part *part,
-                                 skinslide_error *error) {
+static skinslide_status add_cage(const skinslide_build *build, ss_part *part, skinslide_error *error) {
+    const skinslide_mesh *mesh = &build->taken.mesh;
     if (part->patch->setup->interpolation != SKINSLIDE_INTERPOLATION_LIMIT)
         return SKINSLIDE_OK;
-    return ss_cage_create(slider->topology, part->patch, mesh->rest_points, mesh->subdivision->scheme == SKINSLIDE_SCHEME_LOOP,
+    return ss_cage_create(build->topology, part->patch, mesh->rest_points, mesh->subdivision->scheme == SKINSLIDE_SCHEME_LOOP,
                           &part->cage, error);
 }
 
-/* Appends a part to the slider for one piece of a set-up. */
-static skinslide_status add_piece(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup,
-                                  const split_faces *pieces, int32_t piece, skinslide_error *error) {
-    const int32_t *faces = pieces->faces + pieces->start[piece];
-    int32_t face_count = pieces->start[piece + 1] - pieces->start[piece];
-    ss_part *part = &slider->parts[slider->part_count];
-    skinslide_status status = ss_patch_create(mesh, slider->face_start, &slider->setups[setup], setup, faces, face_count, piece,
-                                              pieces->count, &part->patch, error);
+/* Appends a part for one piece of a set-up. */
+static skinslide_status add_piece(const skinslide_build *build, int32_t setup, const split_faces *pieces, ss_built *out,
+                                  skinslide_error *error) {
+    const skinslide_mesh *mesh = &build->taken.mesh;
+    const skinslide_patch_setup *own = &build->slider->setups[setup];
+    int32_t piece = out->part_count, first = pieces->start[piece];
+    ss_part *part = &out->parts[piece];
+    skinslide_status status = ss_patch_create(mesh, build->face_start, own, setup, pieces->faces + first,
+                                              pieces->start[piece + 1] - first, piece, pieces->count, &part->patch, error);
     if (!status) {
-        slider->part_count++;
-        status = prepare(&slider->memory, part, mesh, slider->setups[setup].controls, error);
+        out->part_count++;
+        status = prepare(&out->memory, part, mesh, own->controls, error);
     }
     if (!status)
-        status = add_cage(slider, mesh, part, error);
+        status = add_cage(build, part, error);
+    return status;
+}
+
+static skinslide_status add_pieces(const skinslide_build *build, int32_t setup, const split_faces *pieces, ss_built *out,
+                                   skinslide_error *error) {
+    out->parts = SS_NEW(&out->memory, ss_part, pieces->count);
+    skinslide_status status = out->parts ? SKINSLIDE_OK : ss_out_of_memory(error);
+    for (int32_t piece = 0; piece < pieces->count && !status; piece++)
+        status = add_piece(build, setup, pieces, out, error);
     return status;
 }
 
 /* Corners must be those of one of the set-up's pieces. */
-static skinslide_status check_corners(const skinslide_slider *slider, int32_t setup, skinslide_error *error) {
-    const int32_t *corners = slider->setups[setup].corners;
+static skinslide_status check_corners(const skinslide_patch_setup *setup, const ss_built *built, skinslide_error *error) {
+    const int32_t *corners = setup->corners;
     if (!corners)
         return SKINSLIDE_OK;
-    for (int32_t p = slider->first_part[setup]; p < slider->part_count; p++)
-        if (ss_has_corners(slider->parts[p].patch))
+    for (int32_t p = 0; p < built->part_count; p++)
+        if (ss_has_corners(built->parts[p].patch))
             return SKINSLIDE_OK;
     return ss_fail(error, SKINSLIDE_BAD_CONTROL, "patch %s: corners %d, %d, %d and %d are not all on one of its pieces",
-                   slider->setups[setup].name, corners[0], corners[1], corners[2], corners[3]);
+                   setup->name, corners[0], corners[1], corners[2], corners[3]);
 }
 
-static skinslide_status need_topology(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error) {
-    if (slider->topology)
-        return SKINSLIDE_OK;
-    skinslide_status status = ss_check_subdivision(mesh, error);
-    return status ? status : ss_topology_create(mesh, &slider->topology, error);
+static skinslide_status need_topology(const skinslide_build *build, skinslide_error *error) {
+    if (error && build->topology_status)
+        *error = build->topology_error;
+    return build->topology_status;
 }
 
-static skinslide_status grow_parts(skinslide_slider *slider, int32_t count, skinslide_error *error) {
-    int32_t wanted = slider->part_count + count;
-    if (wanted <= slider->part_room)
-        return SKINSLIDE_OK;
-    slider->part_room = wanted > 2 * slider->part_count ? wanted : 2 * slider->part_count;
-    ss_part *parts = SS_NEW(&slider->memory, ss_part, slider->part_room);
-    if (!parts)
-        return ss_out_of_memory(error);
-    if (slider->part_count > 0)
-        memcpy(parts, slider->parts, (size_t)slider->part_count * sizeof *parts);
-    slider->parts = parts;
-    return SKINSLIDE_OK;
-}
-
-static skinslide_status add_setup(skinslide_slider *slider, const skinslide_mesh *mesh, int32_t setup, skinslide_error *error) {
-    const skinslide_patch_setup *own = &slider->setups[setup];
+static skinslide_status make_parts(const skinslide_build *build, int32_t setup, ss_built *out, skinslide_error *error) {
+    const skinslide_patch_setup *own = &build->slider->setups[setup];
+    const skinslide_mesh *mesh = &build->taken.mesh;
     split_faces pieces = {0};
     skinslide_status status = check_choices(mesh, own, error);
     if (!status && own->interpolation == SKINSLIDE_INTERPOLATION_LIMIT)
-        status = need_topology(slider, mesh, error);
+        status = need_topology(build, error);
     if (!status)
-        status = split(slider, mesh, own, &pieces, error);
+        status = split(build, own, &pieces, error);
     if (!status)
         status = ss_check_controls(mesh, own->name, own->controls, error);
     if (!status)
-        status = grow_parts(slider, pieces.count, error);
-    for (int32_t piece = 0; piece < pieces.count && !status; piece++)
-        status = add_piece(slider, mesh, setup, &pieces, piece, error);
-    slider->first_part[setup + 1] = slider->part_count;
+        status = add_pieces(build, setup, &pieces, out, error);
     if (!status)
-        status = check_corners(slider, setup, error);
+        status = check_corners(own, out, error);
     if (!status)
-        status = check_edges(slider, setup, own->controls, error);
+        status = check_edges(own, out->parts, out->part_count, own->controls, error);
     ss_free(&pieces.memory);
     return status;
 }
 
-/* ---- The slider ---- */
-
-static skinslide_interpolation choose_interpolation(const skinslide_mesh *mesh, const skinslide_patch_setup *setup) {
-    if (setup->interpolation != SKINSLIDE_INTERPOLATION_AUTO)
-        return setup->interpolation;
-    return ss_is_subdivided(mesh) ? SKINSLIDE_INTERPOLATION_LIMIT : SKINSLIDE_INTERPOLATION_LINEAR;
-}
-
-static skinslide_status copy_setups(skinslide_slider *slider, const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
-                                    skinslide_error *error) {
-    const skinslide_patch_setup standard = SKINSLIDE_PATCH_SETUP_DEFAULT;
-    int32_t count = slider->setup_count;
-    skinslide_controls *controls = SS_NEW(&slider->memory, skinslide_controls, count);
-    slider->setups = SS_NEW(&slider->memory, skinslide_patch_setup, count);
-    slider->first_part = SS_NEW(&slider->memory, int32_t, (int64_t)count + 1);
-    if (slider->memory.failed)
-        return ss_out_of_memory(error);
-    skinslide_status status =
-        ss_take_all(setups, count, "skinslide_patch_setup", slider->setups, sizeof standard, &standard, error);
-    for (int32_t i = 0; i < count && !status; i++) {
-        skinslide_patch_setup *own = &slider->setups[i];
-        const char *name = own->name ? own->name : "";
-        char *copy = SS_NEW(&slider->memory, char, (int64_t)strlen(name) + 1);
-        controls[i] = (skinslide_controls)SKINSLIDE_CONTROLS_DEFAULT;
-        status = copy ? ss_take(own->controls, "skinslide_controls", &controls[i], sizeof *controls, error)
-                      : ss_out_of_memory(error);
-        own->name = copy ? strcpy(copy, name) : copy;
-        own->interpolation = choose_interpolation(mesh, own);
-        own->controls = &controls[i];
-    }
-    return status;
-}
-
-/* The faces that smooth normals of the patches are made of, and the points of those. */
-static skinslide_status take_around(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error) {
-    ss_memory scratch = {0};
-    uint8_t *chosen = SS_NEW(&scratch, uint8_t, mesh->vertex_count);
-    for (int32_t p = 0; p < slider->part_count && chosen; p++)
-        for (int32_t v = 0; v < slider->parts[p].patch->vertex_count; v++)
-            chosen[slider->parts[p].patch->mesh_vertex[v]] = 1;
-    bool done =
-        chosen && ss_take_around(mesh, chosen, &slider->memory, &slider->around) && ss_list_vertices(slider, mesh, chosen);
-    ss_free(&scratch);
-    return done ? SKINSLIDE_OK : ss_out_of_memory(error);
-}
-
-/* The mesh's weld is the slider's from here on: patches keep it. */
-static skinslide_status copy_weld(skinslide_slider *slider, skinslide_mesh *mesh, skinslide_error *error) {
-    if (!mesh->weld)
-        return SKINSLIDE_OK;
-    slider->weld = SS_NEW(&slider->memory, int32_t, mesh->vertex_count);
-    if (!slider->weld)
-        return ss_out_of_memory(error);
-    memcpy(slider->weld, mesh->weld, (size_t)mesh->vertex_count * sizeof *slider->weld);
-    mesh->weld = slider->weld;
-    return SKINSLIDE_OK;
-}
-
-/* Rest is where lengths are taken from here on, in memory of its own. */
-static skinslide_status bring_rest(const skinslide_slider *slider, skinslide_mesh *mesh, ss_memory *memory,
-                                   skinslide_error *error) {
-    float *room = slider->space ? SS_NEW(memory, float, 3 * (int64_t)mesh->vertex_count) : NULL;
-    if (memory->failed)
-        return ss_out_of_memory(error);
-    ss_bring(slider, &mesh->rest_points, room);
-    return slider->space ? ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points where lengths are taken", error)
-                         : SKINSLIDE_OK;
-}
-
-/* Drops pointers to what is the caller's. */
-static void forget_arrays(skinslide_slider *slider) {
-    for (int32_t i = 0; i < slider->setup_count; i++) {
-        slider->setups[i].faces = slider->setups[i].corners = NULL;
-        slider->setups[i].controls = NULL;
-        slider->setups[i].held = NULL;
-    }
-}
-
-skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups, int32_t setup_count,
-                                         skinslide_slider **out, skinslide_error *error) {
-    if (!out || setup_count < 0 || (setup_count > 0 && !setups))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the slider, or no patches");
-    ss_taken_mesh taken;
-    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
-    if (!status)
-        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
-    if (status)
-        return status;
-    skinslide_slider *slider = calloc(1, sizeof *slider);
-    ss_memory scratch = {0};
-    if (!slider)
-        return ss_out_of_memory(error);
-    slider->vertex_count = mesh->vertex_count, slider->face_count = mesh->face_count, slider->setup_count = setup_count;
-    status = copy_weld(slider, &taken.mesh, error);
-    if (!status)
-        status = ss_take_space(slider, mesh, error);
-    if (!status)
-        status = bring_rest(slider, &taken.mesh, &scratch, error);
-    if (!status)
-        status = copy_setups(slider, mesh, setups, error);
-    if (!status && !(slider->face_start = ss_list_starts(mesh, &scratch)))
-        status = ss_out_of_memory(error);
-    for (int32_t i = 0; i < setup_count && !status; i++)
-        status = add_setup(slider, mesh, i, error);
-    if (!status)
-        status = take_around(slider, mesh, error);
-    ss_topology_destroy(slider->topology);
-    slider->topology = NULL, slider->face_start = NULL;
-    ss_free(&scratch);
+skinslide_status ss_build_setup(const skinslide_build *build, int32_t setup, ss_built *out, skinslide_error *error) {
+    skinslide_status status = make_parts(build, setup, out, error);
     if (status) {
-        skinslide_slider_destroy(slider);
-        return status;
+        ss_destroy_parts(out->parts, out->part_count);
+        ss_free(&out->memory);
+        *out = (ss_built){0};
     }
-    forget_arrays(slider);
-    *out = slider;
-    return SKINSLIDE_OK;
-}
-
-void skinslide_slider_destroy(skinslide_slider *slider) {
-    if (!slider)
-        return;
-    for (int32_t p = 0; p < slider->part_count; p++) {
-        ss_cage_destroy(slider->parts[p].cage);
-        if (slider->parts[p].rest)
-            slider->parts[p].rest->rule->destroy(slider->parts[p].rest);
-        ss_patch_destroy(slider->parts[p].patch);
-    }
-    ss_free(&slider->memory);
-    free(slider);
+    out->done = !status;
+    return status;
 }

@@ -35,17 +35,33 @@ struct skinslide_slider {
     ss_memory memory;
     int32_t vertex_count, face_count, setup_count, part_count;
     skinslide_patch_setup
-        *setups;           /* [setup_count] names copied, interpolation not AUTO; their arrays are the caller's, and not kept */
-    ss_part *parts;        /* [part_count] those of each set-up follow each other */
-    int32_t *first_part;   /* [setup_count + 1] */
-    int32_t part_room;     /* for parts, while the slider is built */
-    int32_t *weld;         /* [vertex_count] the mesh's; NULL: none */
-    ss_topology *topology; /* while the slider is built, once a set-up needs it */
-    const int32_t *face_start; /* of the mesh, while the slider is built */
-    ss_around around;          /* the patches' vertices, for smooth normals */
-    ss_list own;               /* the patches' vertices, and what is one with them */
-    ss_list reads;             /* vertices of a face at a patch */
-    ss_space *space;           /* NULL: the mesh's own */
+        *setups;         /* [setup_count] names copied, interpolation not AUTO; their arrays are the caller's, and not kept */
+    ss_part *parts;      /* [part_count] those of each set-up follow each other */
+    int32_t *first_part; /* [setup_count + 1] */
+    int32_t *weld;       /* [vertex_count] the mesh's; NULL: none */
+    ss_around around;    /* the patches' vertices, for smooth normals */
+    ss_list own;         /* the patches' vertices, and what is one with them */
+    ss_list reads;       /* vertices of a face at a patch */
+    ss_space *space;     /* NULL: the mesh's own */
+};
+
+/* What a set-up has become; nothing before that. */
+typedef struct ss_built {
+    ss_memory memory;
+    ss_part *parts; /* [part_count] a piece each */
+    int32_t part_count;
+    bool done;
+} ss_built;
+
+struct skinslide_build {
+    ss_memory memory;
+    ss_taken_mesh taken;      /* rest is where lengths are taken */
+    skinslide_slider *slider; /* with all but its parts and what is known of them; NULL once it is given away */
+    const int32_t *face_start;
+    ss_topology *topology; /* where a set-up needs it */
+    skinslide_status topology_status;
+    skinslide_error topology_error;
+    ss_built *built; /* [setup_count] */
 };
 
 /* What is painted on an edge by name, maybe on several copies of it. */
@@ -117,9 +133,16 @@ void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls,
 
 /* ---- setup.c ---- */
 
+/* Leaves out as it was where it fails. Any thread, for each set-up one. */
+skinslide_status ss_build_setup(const skinslide_build *build, int32_t setup, ss_built *out, skinslide_error *error);
+
 /* The caller's controls of one frame, in controls [setup_count], and checked. */
 skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
                                         skinslide_controls *controls, skinslide_error *error);
+
+/* ---- build.c ---- */
+
+void ss_destroy_parts(ss_part *parts, int32_t count);
 
 /* ---- reads.c ---- */
 

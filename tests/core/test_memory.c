@@ -205,6 +205,40 @@ static void each_allocation_fails_in_turn(void **state) {
     free_scene(&s);
 }
 
+static skinslide_status run_build(const scene *s, skinslide_error *error) {
+    skinslide_mesh view = view_of_scene(s);
+    skinslide_build *build = NULL;
+    skinslide_slider *slider = NULL;
+    skinslide_status status = skinslide_build_create(&view, s->setups, SETUPS, &build, error);
+    for (int32_t i = SETUPS - 1; i > 0; i--)
+        skinslide_build_setup(build, i);
+    if (!status)
+        status = skinslide_build_finish(build, &slider, error);
+    skinslide_build_destroy(build);
+    skinslide_slider_destroy(slider);
+    return status;
+}
+
+/* A set-up that failed for memory is built in the end, where there is some again. */
+static void each_allocation_of_a_build_fails_in_turn(void **state) {
+    (void)state;
+    scene s;
+    skinslide_error error;
+    int32_t failed = 0, n = -1;
+    make_scene(&s);
+    do {
+        left_to_give = ++n, live = 0, watching = true;
+        skinslide_status status = run_build(&s, &error);
+        watching = false;
+        assert_int_equal(live, 0);
+        if (status)
+            assert_fails(status, &error, SKINSLIDE_OUT_OF_MEMORY, "out of memory");
+        failed += status != SKINSLIDE_OK;
+    } while (left_to_give < 0);
+    assert_in_range(failed, 10, n - 10);
+    free_scene(&s);
+}
+
 /* What artists paint with asks of geometry. */
 static skinslide_status run_geometry(void *subject, skinslide_error *error) {
     const test_mesh *grid = subject;
@@ -602,6 +636,7 @@ int main(void) {
         cmocka_unit_test(counts_that_are_too_large_fail),
         cmocka_unit_test(memory_is_zero_and_aligned),
         cmocka_unit_test(each_allocation_fails_in_turn),
+        cmocka_unit_test(each_allocation_of_a_build_fails_in_turn),
         cmocka_unit_test(each_allocation_for_geometry_fails_in_turn),
         cmocka_unit_test(each_allocation_for_images_fails_in_turn),
         cmocka_unit_test(each_allocation_for_pictures_fails_in_turn),

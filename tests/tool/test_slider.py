@@ -17,7 +17,7 @@ import skinslide
 import stages
 from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
 from skinslide.arrays import slider
-from skinslide.arrays.apart import APART, apart
+from skinslide.arrays.apart import APART, apart, together
 from skinslide.shot.workers import pool_of
 from skinslide.stage.textures import give_files
 
@@ -419,6 +419,60 @@ def test_what_a_call_apart_gives():
     assert apart(divmod, 7, 2) == (3, 1)
     with pytest.raises(ZeroDivisionError):
         apart(divmod, 7, 0)
+
+
+def together_and_where(jobs):
+    """Squares of numbers, and the threads that found them: each waits for the others."""
+    waiting = threading.Barrier(jobs)
+
+    def square(number):
+        waiting.wait(60)
+        return number * number, threading.get_ident()
+
+    squares, threads = zip(*together(square, 2 * jobs, jobs), strict=True)
+    return list(squares), set(threads)
+
+
+@pytest.mark.parametrize("jobs", [1, 4])
+def test_what_calls_together_give(jobs):
+    squares, threads = together_and_where(jobs)
+    assert squares == [number * number for number in range(2 * jobs)]
+    assert len(threads) == jobs and threading.get_ident() in threads
+    assert together(str, 0, jobs) == []
+
+
+@pytest.mark.parametrize("jobs", [1, 4])
+def test_the_first_of_what_calls_together_raise(jobs):
+    with pytest.raises(ValueError, match="'3'"):
+        together(lambda number: number if number < 3 else [].index(str(number)), 8, jobs)
+
+
+def test_calls_together_where_there_are_no_more_threads(monkeypatch):
+    def start(_thread):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(threading.Thread, "start", start)
+    assert together(str, 3, 4) == ["0", "1", "2"]
+
+
+QUARTERS = [
+    PatchSetup(rule, np.flatnonzero(np.arange(FACES) // SIZE * 4 // SIZE == number), rule=rule)
+    for number, rule in enumerate(slider.tokens("rule"))
+]
+
+
+def test_a_slider_is_the_same_by_any_number_of_threads(counts, indices, rest):
+    made = [Slider(counts, indices, rest, QUARTERS, jobs=jobs) for jobs in (1, 2, 9)]
+    assert made[0].patches == made[1].patches == made[2].patches
+    frames = [each.slide(bumped(rest)).points.tobytes() for each in made]
+    assert frames[0] == frames[1] == frames[2] != bumped(rest).tobytes()
+
+
+def test_the_first_patch_that_cannot_be_is_named_by_any_number_of_threads(counts, indices, rest):
+    bad = [*QUARTERS, PatchSetup("none", np.array([0, 0])), PatchSetup("no more", np.array([FACES])), *QUARTERS]
+    for jobs in (1, 2, 9):
+        with pytest.raises(SliderError, match="patch none: face 0 is listed more than once"):
+            Slider(counts, indices, rest, bad, jobs=jobs)
 
 
 def test_workspaces_go_before_their_slider(counts, indices, rest):

@@ -327,6 +327,31 @@ typedef struct skinslide_slider skinslide_slider;
 SKINSLIDE_API skinslide_status skinslide_slider_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
                                                        int32_t setup_count, skinslide_slider **out, skinslide_error *error);
 
+/* A slider under construction, for building many set-ups on several threads. The slider is the same in the end. */
+typedef struct skinslide_build skinslide_build;
+
+/* Makes what all set-ups share. Unlike elsewhere, the arrays of the mesh and of the set-ups must stay until
+ * skinslide_build_finish returns, or the build is destroyed.
+ *   mesh    in
+ *   setups  in  [setup_count]; setup_count >= 0
+ *   out     out, the caller's to destroy
+ * Fails as skinslide_slider_create does where the mesh or its rest points are bad. */
+SKINSLIDE_API skinslide_status skinslide_build_create(const skinslide_mesh *mesh, const skinslide_patch_setup *setups,
+                                                      int32_t setup_count, skinslide_build **out, skinslide_error *error);
+
+/* Builds the patches of one set-up, unless they are built already or there is no such set-up. Several threads may build
+ * different set-ups at once. It reports no errors: skinslide_build_finish does. */
+SKINSLIDE_API void skinslide_build_setup(skinslide_build *build, int32_t setup);
+
+/* Builds the set-ups that are not built yet, and completes the slider. No other thread may use the build at that time, and
+ * afterwards it can only be destroyed.
+ *   out  out the slider, the caller's to destroy
+ * Fails as skinslide_slider_create does, for the first set-up that is bad; also with BAD_ARGUMENT (it was finished before). */
+SKINSLIDE_API skinslide_status skinslide_build_finish(skinslide_build *build, skinslide_slider **out, skinslide_error *error);
+
+/* NULL does nothing. */
+SKINSLIDE_API void skinslide_build_destroy(skinslide_build *build);
+
 /* NULL does nothing. Destroy the slider's workspaces first. */
 SKINSLIDE_API void skinslide_slider_destroy(skinslide_slider *slider);
 

@@ -6,6 +6,7 @@ the main thread waits. The call cannot be stopped: where a signal's handler rais
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, wait
@@ -18,21 +19,45 @@ ANSWERED = 0.1  # the most seconds until a signal is handled
 
 def apart(make: Callable[..., T], *arguments: Any) -> T:
     """Calls `make`, and returns what it returns. The arguments are kept alive for as long as it runs."""
-    future: Future[T] = Future()
-
-    def run() -> None:
-        try:
-            future.set_result(make(*arguments))
-        except BaseException as error:
-            future.set_exception(error)
-
     if threading.current_thread() is not threading.main_thread():
         return make(*arguments)
-    try:
-        threading.Thread(target=run, name=APART, daemon=True).start()
-    except RuntimeError:  # the machine gives no more threads
+    future: Future[T] = Future()
+    if not _starts(lambda: _fulfil(future, make, *arguments)):
         return make(*arguments)
     # In short waits, since a signal does not end one where another thread takes it, or where it comes just before.
     while not future.done():
         wait([future], ANSWERED)
     return future.result()
+
+
+def together(make: Callable[[int], T], count: int, jobs: int) -> list[T]:
+    """Calls `make` with each number below count on several threads, this one included, and returns what it returns.
+
+    Raises what the first of the calls in order raised.
+    """
+    futures, numbers = [Future[T]() for _ in range(count)], itertools.count()
+
+    def run() -> None:
+        while (number := next(numbers)) < count:
+            _fulfil(futures[number], make, number)
+
+    for _ in range(min(jobs, count) - 1):
+        _starts(run)
+    run()
+    return [future.result() for future in futures]
+
+
+def _starts(run: Callable[[], None]) -> bool:
+    """Starts a thread. Returns False where the machine gives no more of them."""
+    try:
+        threading.Thread(target=run, name=APART, daemon=True).start()
+    except RuntimeError:
+        return False
+    return True
+
+
+def _fulfil(future: Future[T], make: Callable[..., T], *arguments: Any) -> None:
+    try:
+        future.set_result(make(*arguments))
+    except BaseException as error:
+        future.set_exception(error)

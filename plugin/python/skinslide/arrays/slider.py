@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.apart import apart
+from skinslide.arrays.apart import apart, together
 from skinslide.arrays.native import (
     Arguments,
     Controls,
@@ -119,6 +119,7 @@ class Slider:
         subdivision: Subdivision | None = None,
         weld: npt.ArrayLike | None = None,
         space: npt.ArrayLike | None = None,
+        jobs: int = 1,
     ):
         """Builds every patch at rest.
 
@@ -133,6 +134,7 @@ class Slider:
                 points are welded.
             space: The matrix (3, 3) that takes points, as rows, to where lengths are measured, such as the world, where
                 a mesh may be scaled more one way than another; None: the mesh's own space.
+            jobs: How many threads build set-ups at once; the slider does not depend on it.
 
         Raises:
             SliderError: The mesh or a set-up cannot be slid; the message names patch and element.
@@ -146,7 +148,7 @@ class Slider:
         setups = new_array("patch_setup", len(given))
         for setup, patch in zip(setups, given, strict=True):
             native.fill_setup(setup, patch, self._sizes)
-        self._slider = apart(_create, native, mesh, setups, len(given))
+        self._slider = apart(_create, native, mesh, setups, len(given), whole(jobs, "jobs"))
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider.pointer)))
         self._idle, self._busy = [apart(self._new_workspace)], list[Handle]()
         self._stopped = False
@@ -435,10 +437,14 @@ class Slider:
             self._idle.append(workspace)
 
 
-def _create(_native: Arguments, mesh: Any, setups: Any, count: int) -> Handle:
-    """Makes a slider. `_native` keeps alive the memory that the structs point into."""
-    out = ffi.new("skinslide_slider **")
-    call(lib.skinslide_slider_create, ffi.addressof(mesh), setups, count, out)
+def _create(_native: Arguments, mesh: Any, setups: Any, count: int, jobs: int) -> Handle:
+    """Makes a slider, its set-ups on several threads. `_native` keeps alive the memory that the structs point into."""
+    begun, out = ffi.new("skinslide_build **"), ffi.new("skinslide_slider **")
+    call(lib.skinslide_build_create, ffi.addressof(mesh), setups, count, begun)
+    build = Handle(begun[0], lib.skinslide_build_destroy)
+    if jobs > 1:
+        together(lambda setup: lib.skinslide_build_setup(build.pointer, setup), count, jobs)
+    call(lib.skinslide_build_finish, build.pointer, out)
     return Handle(out[0], lib.skinslide_slider_destroy)
 
 

@@ -42,7 +42,7 @@ class Plan:
     @classmethod
     def read(cls, stage: Usd.Stage, options: SlideOptions, chunk: Chunk | None = None) -> Plan:
         """Raises StageProblems where any mesh cannot be slid, and UsageError for a chunk of more parts than frames."""
-        found, problems = read_sliders(stage, options.prims, options.lookup)
+        found, problems = read_sliders(stage, options.prims, options.lookup, options.jobs)
         if errors(problems):
             raise StageProblems(problems)
         planned = [_planned(mesh, slider, options.frames) for mesh, slider in found if slider]
@@ -82,14 +82,14 @@ def _part(meshes: Sequence[PlannedMesh], frames: set[float]) -> list[PlannedMesh
 
 
 def read_sliders(
-    stage: Usd.Stage, prims: Sequence[str] | None, lookup: str | Lookup = "auto"
+    stage: Usd.Stage, prims: Sequence[str] | None, lookup: str | Lookup = "auto", jobs: int = 1
 ) -> tuple[list[tuple[PatchedMesh, Slider | None]], list[Problem]]:
     """Every mesh that can be read, with a slider unless a patch of it is bad, and every problem."""
     meshes, problems = read_meshes(stage, prims)
     sliders: list[Slider | None] = []
     for mesh in meshes:
         try:
-            sliders.append(mesh.slider(lookup))
+            sliders.append(mesh.slider(lookup, jobs))
             problems.extend(mesh.weld_problems())
         except StageProblems as bad:
             sliders.append(None)

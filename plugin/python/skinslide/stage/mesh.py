@@ -235,16 +235,16 @@ class PatchedMesh:
         frame = None if time.IsDefault() or time.IsEarliestTime() else time.GetValue()
         return Problem("error", self.path, patch, frame, message)
 
-    def slider(self, lookup: str | Lookup = "auto") -> Slider:
+    def slider(self, lookup: str | Lookup = "auto", jobs: int = 1) -> Slider:
         """The slider of all patches, or StageProblems with each patch that is bad."""
         try:
-            return self.build(self.patches, lookup)
+            return self.build(self.patches, lookup, jobs)
         except SliderError as error:
             if error.status == "OUT_OF_MEMORY":
                 raise MemoryError(str(error)) from error
             raise StageProblems(self._patch_problems(lookup) or [self._core_problem(error)]) from error
 
-    def build(self, patches: Sequence[PatchSetup], lookup: str | Lookup = "auto") -> Slider:
+    def build(self, patches: Sequence[PatchSetup], lookup: str | Lookup = "auto", jobs: int = 1) -> Slider:
         return Slider(
             self.face_counts,
             self.face_indices,
@@ -254,6 +254,7 @@ class PatchedMesh:
             subdivision=self.subdivision,
             weld=self.weld.vertices,
             space=self.space,
+            jobs=jobs,
         )
 
     @cached_property
