@@ -88,6 +88,9 @@ static skinslide_status check(const skinslide_canvas *canvas, const skinslide_vi
 
 /* ---- A figure ---- */
 
+#define THINNEST 1.5f   /* pixels of a line of usual width, at least */
+#define LINES_UP 450.0f /* such lines, side by side, are as high as the picture */
+
 /* All that needs no device. */
 static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camera, skinslide_error *error) {
     const skinslide_figure *figure = drawn->figure;
@@ -106,7 +109,7 @@ static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camer
     for (int32_t i = 0; i < drawn->paint_count; i++)
         if (drawn->paints[i].own.values)
             ss_tessellate_values(mesh, drawn->paints[i].own.values, i, work);
-    drawn->line = fmaxf(1.5f, (float)drawn->viewport->height / 450) * (figure->line > 0 ? figure->line : 1);
+    drawn->line = fmaxf(THINNEST, (float)drawn->viewport->height / LINES_UP) * (figure->line > 0 ? figure->line : 1);
     return ss_list_seen(drawn) && ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
 

@@ -12,7 +12,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LARGEST_SIDE   16384
 #define LARGEST_CHUNK  ((uint64_t)1 << 30)
 #define LARGEST_HEADER ((int64_t)1 << 26)
 #define MOST_CHUNKS    (1 << 22)
@@ -242,10 +241,10 @@ static skinslide_status check_window(const char *what, window w, skinslide_error
     if (w.width < 1 || w.height < 1)
         return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the %s window has no texels (%lld x %lld)", what, (long long)w.width,
                        (long long)w.height);
-    if (w.width > LARGEST_SIDE * (int64_t)LARGEST_SIDE || w.height > LARGEST_SIDE * (int64_t)LARGEST_SIDE ||
-        w.width * w.height > LARGEST_SIDE * (int64_t)LARGEST_SIDE)
+    if (w.width > SS_LARGEST_IMAGE * (int64_t)SS_LARGEST_IMAGE || w.height > SS_LARGEST_IMAGE * (int64_t)SS_LARGEST_IMAGE ||
+        w.width * w.height > SS_LARGEST_IMAGE * (int64_t)SS_LARGEST_IMAGE)
         return ss_fail(error, SKINSLIDE_UNSUPPORTED, "the %s window is %lld x %lld; more texels than %d x %d are refused", what,
-                       (long long)w.width, (long long)w.height, LARGEST_SIDE, LARGEST_SIDE);
+                       (long long)w.width, (long long)w.height, SS_LARGEST_IMAGE, SS_LARGEST_IMAGE);
     return SKINSLIDE_OK;
 }
 

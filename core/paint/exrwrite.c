@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGEST_SIDE 16384
 #define LONGEST_NAME 31 /* of a channel, in files that every reader knows */
 
 /* What OpenEXR writes to, and its first error. */
@@ -70,8 +69,9 @@ static const char *wrap_name(skinslide_wrap wrap) {
 
 static skinslide_status check_channels(const skinslide_channel *channels, int32_t count, int32_t width, int32_t height,
                                        skinslide_error *error) {
-    if (width < 1 || height < 1 || width > LARGEST_SIDE || height > LARGEST_SIDE)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "an image of %d x %d; each must be 1 to %d", width, height, LARGEST_SIDE);
+    if (width < 1 || height < 1 || width > SS_LARGEST_IMAGE || height > SS_LARGEST_IMAGE)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "an image of %d x %d; each must be 1 to %d", width, height,
+                       SS_LARGEST_IMAGE);
     for (int32_t c = 0; c < count; c++) {
         if (!channels[c].name || !channels[c].name[0] || strlen(channels[c].name) > LONGEST_NAME || !channels[c].pixels)
             return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "channel %d has no pixels, or no name of 1 to %d bytes", c,

@@ -45,14 +45,13 @@ static void measure(const skinslide_mesh *mesh, double size[3]) {
     }
 }
 
-/* Sorts along the axis of the plane in which the mesh is longest, since the fewest vertices share a coordinate there. */
-static void choose_scale(mirror *m) {
+int ss_sort_along(const skinslide_mesh *mesh, int axis, double *tolerance) {
     double size[3];
-    measure(m->mesh, size);
-    int a = (m->axis + 1) % 3, b = (m->axis + 2) % 3;
-    m->along = size[a] >= size[b] ? a : b;
-    if (m->tolerance < 0)
-        m->tolerance = 1e-4 * fmax(fmax(size[0], size[1]), size[2]);
+    measure(mesh, size);
+    int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    if (*tolerance < 0)
+        *tolerance = 1e-4 * fmax(fmax(size[0], size[1]), size[2]);
+    return size[a] >= size[b] ? a : b;
 }
 
 static void sort_places(mirror *m) {
@@ -250,7 +249,7 @@ skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, doub
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for what is found");
     ss_memory memory = {0};
     mirror m = {.mesh = mesh, .axis = axis, .plane = plane, .tolerance = tolerance};
-    choose_scale(&m);
+    m.along = ss_sort_along(mesh, axis, &m.tolerance);
     uint8_t *lost;
     status = allocate(&m, &memory, &lost, error);
     int32_t *found = SS_NEW(&memory, int32_t, face_count);

@@ -97,19 +97,6 @@ static int by_place(const void *a, const void *b) {
     return ss_ascending(&x->face, &y->face);
 }
 
-/* Sorts along the axis of the plane in which the mesh is longest, since that tells most faces apart. */
-static void choose_along(search *s) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (int64_t i = 0; i < 3 * (int64_t)s->mesh->vertex_count; i++) {
-        double here = s->mesh->rest_points[i];
-        low[i % 3] = fmin(low[i % 3], here), high[i % 3] = fmax(high[i % 3], here);
-    }
-    int a = (s->axis + 1) % 3, b = (s->axis + 2) % 3;
-    s->along = high[a] - low[a] >= high[b] - low[b] ? a : b;
-    if (s->tolerance < 0)
-        s->tolerance = 1e-4 * fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
-}
-
 static void sort_faces(search *s) {
     for (int32_t f = 0; f < s->mesh->face_count; f++) {
         double middle[3];
@@ -211,7 +198,7 @@ static skinslide_status run(search *s, const int32_t *faces, int32_t face_count,
                             skinslide_error *error) {
     int32_t count = 0;
     ss_start_faces(s->mesh, s->face_start);
-    choose_along(s);
+    s->along = ss_sort_along(s->mesh, s->axis, &s->tolerance);
     sort_faces(s);
     for (int32_t i = 0; i < face_count; i++)
         s->is_chosen[faces[i]] = 1;

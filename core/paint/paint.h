@@ -8,11 +8,17 @@
 /* UDIM tiles, numbered by rows of ten: 1001 to 10000. */
 enum { SS_FIRST_TILE = 1001, SS_TILE_COLUMNS = 10, SS_TILE_ROWS = 900 };
 
+/* Texels along each side of the largest OpenEXR file that is written; one that is read has no more than its square in all. */
+enum { SS_LARGEST_IMAGE = 16384 };
+
 /* ---- mirror.c ---- */
 
 /* Checks the arguments that skinslide_mirror and skinslide_mirror_nearest share. */
 skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
                                  int32_t face_count, skinslide_error *error);
+/* The axis in the plane across `axis` along which a mesh at rest is longest: sorted along it, the fewest vertices and faces
+ * share a coordinate. A tolerance below 0 becomes the default. */
+int ss_sort_along(const skinslide_mesh *mesh, int axis, double *tolerance);
 /* For messages: x, y or z. */
 static inline char ss_axis_name(int32_t axis) {
     return (char)('x' + axis);

@@ -15,12 +15,14 @@ using glm::dmat3;
 using glm::dmat4;
 using glm::dvec3;
 
-const double field_of_view = 0.5;  /* radians, up and down */
-const double margin = 1.12;        /* how much wider than what is framed the view is */
-const double least_distance = 0.5; /* of the nearest point, in diagonals of the box */
-const double cancelled = 0.25;     /* as a share of the area: normals whose sum is less cancel out */
-const double much_less = 0.5;      /* as a share of how far a pose could be turned to the camera */
-const double no_area = 1e-14;      /* in diagonals squared: faces of less are lines */
+const double field_of_view = 0.5;       /* radians, up and down */
+const double margin = 1.12;             /* how much wider than what is framed the view is */
+const double least_distance = 0.5;      /* of the nearest point, in diagonals of the box */
+const double cancelled = 0.25;          /* as a share of the area: normals whose sum is less cancel out */
+const double much_less = 0.5;           /* as a share of how far a pose could be turned to the camera */
+const double in_front = 4, behind = 40; /* in diagonals of the box: how far around what is framed other things are drawn */
+const double nearest = 0.1;             /* as a share of the distance to what is framed: the near plane is no nearer */
+const double no_area = 1e-14;           /* in diagonals squared: faces of less are lines */
 
 /* USD's matrices are for points as rows, GLM's for points as columns: the rows of one are the columns of the other. */
 dmat4 matrix_of(const double *rows) {
@@ -228,8 +230,8 @@ skinslide_camera look(const Subject &subject, const Shape &shape, dvec3 directio
                                   not */
     Distance away = draw_back(subject, turned, aspect, size);
     dmat4 to_camera = glm::translate(dmat4(1), dvec3(0, 0, -away.back)) * turned;
-    dmat4 to_screen =
-        glm::perspective(field_of_view, aspect, std::max(away.near - 4 * size, 0.1 * away.near), away.far + 40 * size);
+    dmat4 to_screen = glm::perspective(field_of_view, aspect, std::max(away.near - in_front * size, nearest * away.near),
+                                       away.far + behind * size);
     skinslide_camera camera;
     std::copy_n(glm::value_ptr(to_camera), 16, camera.to_camera);
     std::copy_n(glm::value_ptr(to_screen), 16, camera.to_screen);
