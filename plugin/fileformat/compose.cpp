@@ -58,7 +58,7 @@ template <class T> bool lerpArray(double alpha, const VtValue &lower, const VtVa
     return true;
 }
 
-// Values of other types, and arrays of different lengths, are held.
+// Values of types that Usd does not interpolate, and arrays of different lengths, are held.
 VtValue lerp(double alpha, const VtValue &lower, const VtValue &upper) {
     VtValue value;
     if (alpha == 0)
@@ -360,8 +360,8 @@ Composition::Composition(const SdfLayerRefPtr &root) : _root(root) {
 }
 
 Prim Composition::prim(const SdfPath &path, std::vector<ClipSite> inheritedClips) {
-    // Asked for before the index is made, so that it is made with its payloads. One at a time, not in parallel: a thread that
-    // waits for tasks of its own may be given one that opens the layer being read.
+    // Payloads are asked for first, so that the index is made with them. Indices are made one at a time, and not in parallel: a
+    // thread that waits for its tasks may be given one that opens the layer being read.
     if (path.IsPrimPath())
         _cache->RequestPayloads({path}, {});
     return Prim(_cache->ComputePrimIndex(path, &_errors), std::move(inheritedClips));
@@ -400,7 +400,7 @@ SdfPathVector Composition::targets(const SdfPath &relationship) {
 std::vector<std::pair<SdfPath, std::string>> Composition::errors() const {
     std::vector<std::pair<SdfPath, std::string>> errors;
     for (const PcpErrorBasePtr &error : _errors) {
-        // The root is opened by a name that nobody else knows it by.
+        // The root's identifier is one that openText() made up: name the file instead.
         std::string message = TfStringReplace(error->ToString(), _root->GetIdentifier(), _root->GetResolvedPath());
         std::pair<SdfPath, std::string> said(error->rootSite.path, message);
         if (std::find(errors.begin(), errors.end(), said) == errors.end())

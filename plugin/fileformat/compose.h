@@ -1,7 +1,8 @@
-// Composes a layer with PcpCache, and resolves values as a UsdStage would, but for value clips and splines.
+// Composes a layer with PcpCache, and resolves values as a UsdStage would, except those of value clips and splines.
 //
-//     nodes strong to weak, layers strong to weak; in each layer: timeSamples, else spline, else default; first hit wins.
-//     Times are those of the root layer.
+//     nodes strong to weak, layers strong to weak; in each layer timeSamples, else spline, else default: the first opinion wins
+//
+// Times are those of the root layer.
 #ifndef SKINSLIDE_FORMAT_COMPOSE_H
 #define SKINSLIDE_FORMAT_COMPOSE_H
 
@@ -53,7 +54,7 @@ class Attribute {
     bool clipped() const {
         return _clipped;
     }
-    bool hasDefault() const; // be it hidden by samples
+    bool hasDefault() const; // even if samples hide it
     bool varies() const;     // may have different values at different times
     std::vector<double> times() const;
     // The value at a time, interpolated linearly between samples as Usd does; empty where there is none. The path of an asset is
@@ -92,8 +93,8 @@ class Attribute {
 struct ClipSite {
     PcpLayerStackRefPtr layerStack;
     SdfPath path;
-    // What each set has values of, as its manifest says, at a prim that stands for the site. Of a set without one nobody knows:
-    // it is then of points.
+    // For each set of clips its manifest, which says what it has values of, and the prim that stands for the site there. A set
+    // without a manifest is taken to have points.
     std::vector<std::pair<SdfLayerRefPtr, SdfPath>> manifests;
 
     bool mayHave(const SdfPath &attribute) const; // below the site
@@ -132,10 +133,10 @@ class Prim {
 
 class Composition {
   public:
-    // root  asset paths are resolved in the context that is bound
+    // Asset paths are resolved in the context that is bound.
     explicit Composition(const SdfLayerRefPtr &root);
 
-    // Everything below a prim is visited parents first; `visit` returns whether to go below its prim.
+    // Visits every prim, parents first; `visit` returns whether to go below its prim.
     void traverse(const std::function<bool(const Prim &)> &visit);
     // inheritedClips  those of its parent
     Prim prim(const SdfPath &path, std::vector<ClipSite> inheritedClips = {});

@@ -1,4 +1,4 @@
-// Which .skinslide files the running thread is reading: reading one opens those that it leads to, which are read in turn.
+// The .skinslide files that the running thread is reading: reading one opens those that it leads to, which are read in turn.
 #ifndef SKINSLIDE_FORMAT_CYCLE_H
 #define SKINSLIDE_FORMAT_CYCLE_H
 

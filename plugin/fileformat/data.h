@@ -1,4 +1,4 @@
-// The content of an opened .skinslide layer: its text, and attributes that are computed when a value of them is asked for.
+// The content of an open .skinslide layer: its text, and attributes whose values are computed when they are asked for.
 #ifndef SKINSLIDE_FORMAT_DATA_H
 #define SKINSLIDE_FORMAT_DATA_H
 
@@ -22,8 +22,8 @@ class Data : public SdfData {
 
     // Resolved paths of every file that the values depend on.
     std::set<std::string> dependencies;
-    // Kept open. Sources, so that a reload finds them; .skinslide files, because every layer that leads to one through others
-    // would read it again, which doubles with each.
+    // Layers that are kept open: sources, so that a reload finds them; nested .skinslide files, since every layer that leads to
+    // one through others would read it again, twice as often with each.
     std::vector<SdfLayerRefPtr> sources, nested;
 
     bool StreamsData() const override;
@@ -43,7 +43,7 @@ class Data : public SdfData {
     bool GetBracketingTimeSamplesForPath(const SdfPath &path, double time, double *lower, double *upper) const override;
     bool QueryTimeSample(const SdfPath &path, double time, SdfAbstractDataValue *value) const override;
     bool QueryTimeSample(const SdfPath &path, double time, VtValue *value) const override;
-#if PXR_VERSION >= 2505 // USD before asks for the samples and the value instead
+#if PXR_VERSION >= 2505 // earlier USD asks for the samples and the value instead
     bool GetPreviousTimeSampleForPath(const SdfPath &path, double time, double *previous) const override;
     const std::type_info &QueryTimeSampleTypeid(const SdfPath &path, double time) const override;
 #endif

@@ -1,4 +1,4 @@
-// What is wrong with a value, said by code that need not know the layer, prim, patch and frame it is read for.
+// What is wrong with a value, thrown by code that does not know for which layer, prim, patch and frame it reads it.
 #ifndef SKINSLIDE_FORMAT_FAULT_H
 #define SKINSLIDE_FORMAT_FAULT_H
 

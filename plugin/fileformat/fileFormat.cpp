@@ -16,7 +16,7 @@
 #include "pxr/usd/sdf/layer.h"
 #include "pxr/usd/sdf/schema.h"
 
-// With the headers of another TBB than USD was built with, classes that hold its containers have other sizes.
+// With the headers of a TBB that USD was not built with, classes that hold TBB's containers have another size.
 #if !defined(SKINSLIDE_SYSTEM_USD)
 #include <tbb/tbb_stddef.h>
 static_assert(TBB_INTERFACE_VERSION < 12000, "the wheel usd-core is built with TBB 2020; put its headers first");
@@ -53,13 +53,14 @@ bool SkinSlideFileFormat::Read(SdfLayer *layer, const std::string &resolvedPath,
 
 namespace {
 
-// So that an asset path means the same to everything that resolves it here.
+// The context that everything here resolves asset paths in, so that they mean the same throughout.
 ArResolverContext contextFor(const std::string &resolvedPath) {
     ArResolverContext bound = ArGetResolver().GetCurrentContext();
     return bound.IsEmpty() ? ArGetResolver().CreateDefaultContextForAsset(resolvedPath) : bound;
 }
 
-// On a reload, the layers that this one leads to may be reloaded after it. Unsaved edits are the user's to throw away.
+// Reloads layers that this one leads to, which USD may reload only after it; except those with unsaved edits, which are for the
+// user to discard.
 void reloadUnedited(const std::vector<SdfLayerRefPtr> &layers) {
     std::set<SdfLayerHandle> unedited;
     for (const SdfLayerRefPtr &layer : layers) {
@@ -106,7 +107,7 @@ void SkinSlideFileFormat::readText(SdfLayer *layer, const std::string &resolvedP
     layer->SetPermissionToEdit(false);
 }
 
-// False where the text cannot be read: its own error says so.
+// False where the text cannot be read, which has posted an error.
 bool SkinSlideFileFormat::compose(SdfLayer *layer, const std::string &resolvedPath, bool metadataOnly) const {
     std::vector<std::string> problems;
     Params params = Params::fromArguments(layer->GetFileFormatArguments(), &problems);
@@ -132,7 +133,7 @@ bool SkinSlideFileFormat::compose(SdfLayer *layer, const std::string &resolvedPa
         TF_WARN("%s: %s", resolvedPath.c_str(), problem.c_str());
     SdfAbstractDataRefPtr content = data;
     _SetLayerData(layer, content);
-    // An edit would not be composed, and what is computed hides it.
+    // Edits would not be composed, and computed values would hide them.
     layer->SetPermissionToEdit(false);
     return true;
 }

@@ -1,4 +1,4 @@
-// Solved frames of every open layer: bounded by bytes, each solved once however many threads ask for it.
+// The slid frames of all open layers: bounded by bytes, each slid once however many threads ask for it.
 #ifndef SKINSLIDE_FORMAT_FRAME_CACHE_H
 #define SKINSLIDE_FORMAT_FRAME_CACHE_H
 

@@ -4,10 +4,10 @@
 
 namespace skinslide {
 
-// The thread is without Python's lock for as long as this lives; nothing where it has none, or USD is without Python.
+// Releases Python's lock for as long as this lives; does nothing if the thread does not hold it, or USD has no Python.
 //
-// As TF_PY_ALLOW_THREADS_IN_SCOPE, but for a thread that wants the lock back while the process exits: before Python 3.14 it
-// is unwound, which ends in std::terminate. It stops here for good instead, as such threads do from 3.14 on.
+// Like TF_PY_ALLOW_THREADS_IN_SCOPE, except for a thread that wants the lock back while the process exits: before Python 3.14
+// it is unwound, which ends in std::terminate. Here it stops for good instead, as such threads do from 3.14 on.
 class PythonReleased {
   public:
     PythonReleased();

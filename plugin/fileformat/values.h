@@ -1,5 +1,4 @@
-// What the core asks for, fetched from a composed prim and handed over as its records. Nothing is checked here, and nothing
-// meant.
+// What the core asks for, fetched from a composed prim and handed over as its records. Nothing is checked or interpreted here.
 #ifndef SKINSLIDE_FORMAT_VALUES_H
 #define SKINSLIDE_FORMAT_VALUES_H
 
@@ -48,9 +47,9 @@ template <class Handle, class Function, class... Arguments> Handle make(Function
 // What an attribute has at a time, as a record that points into this.
 class Record {
   public:
-    // indices  of an indexed primvar
+    // indices  those of an indexed primvar, or null
     Record(const Attribute &attribute, double time, const Attribute *indices = nullptr);
-    // Of something that is no attribute.
+    // Of a value that is not an attribute's.
     Record(const std::string &name, const VtValue &value);
     Record(const Record &) = delete;
     Record &operator=(const Record &) = delete;
@@ -76,9 +75,9 @@ class Record {
 class Property {
   public:
     Property() = default;
-    // patch    whose input it is; empty: the mesh's own
-    // meaning  of that patch, which knows the names that its paint may have; null: the schema's alone
-    // Throws Fault where it is authored as something that this reader cannot read.
+    // patch    the patch whose input it is; empty: it is the mesh's own
+    // meaning  that patch in the core, which knows under which names its paint may be; null: under the schema's only
+    // Throws Fault where it is authored in a way that this reader cannot read.
     Property(Composition &composition, const Prim &prim, const skinslide_stage_input *input, const std::string &patch = "",
              const skinslide_stage_patch *meaning = nullptr);
 
@@ -99,8 +98,8 @@ class Property {
     Record first() const {
         return at(_input->when == SKINSLIDE_STAGE_DEFAULT_TIME ? Attribute::defaultTime : Attribute::first);
     }
-    // Hands the value over, and of what must stay the same its later samples, and the default that its first one hides. Throws
-    // Fault.
+    // Hands over the value and, if it must stay the same over time, its later samples and the default that the first one hides.
+    // Throws Fault.
     template <class Handle, class Take, class Check> void give(Handle *handle, Take take, Check check) const {
         call(take, handle, _input, first());
         if (_input->when != SKINSLIDE_STAGE_STILL)
