@@ -97,6 +97,12 @@ double ss_walk_measured(const ss_posed *plane, const ss_posed *pose, ss_place *p
 
 /* ---- Along the border ---- */
 
+/* A place on the border as the triangle has it whose side it is on: at a vertex that of the side that leaves it. */
+static ss_place on_border(const ss_patch *patch, const ss_place *place) {
+    int corner = ss_place_corner(place);
+    return corner < 0 ? *place : ss_place_of_vertex(patch, NULL, patch->triangles.vertex[place->triangle][corner]);
+}
+
 /* The border side that the place is on, up to rounding: at a vertex the one that leaves it. */
 static int border_side(const ss_patch *patch, const ss_place *place) {
     int nearest = 0;
@@ -133,12 +139,13 @@ static void side_after(const ss_patch *patch, int32_t *triangle, int *side) {
 }
 
 void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]) {
-    int side = border_side(pose->patch, place);
-    side_vector(pose, place->triangle, side, out);
+    ss_place from = on_border(pose->patch, place);
+    int side = border_side(pose->patch, &from);
+    side_vector(pose, from.triangle, side, out);
     ss_normalise(out);
-    if (place->weight[side] != 1)
+    if (from.weight[side] != 1)
         return;
-    int32_t triangle = place->triangle;
+    int32_t triangle = from.triangle;
     double before[3];
     side_before(pose->patch, &triangle, &side);
     side_vector(pose, triangle, side, before);
@@ -150,12 +157,13 @@ void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]) {
 
 void ss_walk_border(const ss_posed *pose, ss_place *place, double distance) {
     const ss_patch *patch = pose->patch;
-    int32_t triangle = place->triangle;
     if (distance == 0) /* not on over sides that have no length */
         return;
-    int side = border_side(patch, place);
+    ss_place from = on_border(patch, place);
+    int32_t triangle = from.triangle;
+    int side = border_side(patch, &from);
     double vector[3], length = side_vector(pose, triangle, side, vector);
-    double along = place->weight[(side + 1) % 3] * length + distance;
+    double along = from.weight[(side + 1) % 3] * length + distance;
     for (int walked = 0; along < 0 && walked < 1000; walked++) {
         side_before(patch, &triangle, &side);
         along += length = side_vector(pose, triangle, side, vector);
@@ -174,12 +182,13 @@ void ss_walk_border(const ss_posed *pose, ss_place *place, double distance) {
 double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *place) {
     const ss_patch *patch = pose->patch;
     int32_t triangle = patch->triangles.vertex_triangle[vertex];
-    int side = ss_triangle_corner(patch, triangle, vertex), goal = border_side(patch, place);
+    ss_place end = on_border(patch, place);
+    int side = ss_triangle_corner(patch, triangle, vertex), goal = border_side(patch, &end);
     double walked = 0, there = 0, vector[3];
     do {
         double length = side_vector(pose, triangle, side, vector);
-        if (triangle == place->triangle && side == goal)
-            there = walked + place->weight[(side + 1) % 3] * length;
+        if (triangle == end.triangle && side == goal)
+            there = walked + end.weight[(side + 1) % 3] * length;
         walked += length;
         side_after(patch, &triangle, &side);
     } while (patch->triangles.vertex[triangle][side] != vertex);
