@@ -95,6 +95,14 @@ BAD = {
         ],
         "primvars:skel:jointIndices has 90 values, where 98 are needed",
     ),
+    "fewer weights than joints": (
+        influences("jointWeights", lambda values: values.__delitem__(slice(4, None))),
+        "primvars:skel:jointWeights has 4 values, where 98 are needed",
+    ),
+    "more joints than weights": (
+        influences("jointIndices", lambda values: values.extend([0, 0])),
+        "primvars:skel:jointIndices has 100 values, where 98 are needed",
+    ),
     "another number of weights": (
         lambda _, mesh: binding_of(mesh).GetJointWeightsPrimvar().SetElementSize(1),
         "UsdSkel cannot use its joints or blend shapes; is SkelBindingAPI applied to it, and are there as many joint "

@@ -71,7 +71,8 @@ def check_joints(query: UsdSkel.SkinningQuery, skeleton: UsdSkel.SkeletonQuery, 
         raise Fault(f"the skeleton {where} has no bindTransforms, of which there must be one for each of its joints")
     joints = query.GetJointOrder()
     _check_known("skel:joints names", own if joints is None else list(joints), own, str(where))
-    indices, weights = (np.array(each) for each in query.ComputeJointInfluences(FIRST))
+    primvars = (query.GetJointIndicesPrimvar(), query.GetJointWeightsPrimvar())
+    indices, weights = (np.array(each.ComputeFlattened(FIRST) or ()) for each in primvars)
     count = query.GetNumInfluencesPerComponent()
     wanted = count * (1 if query.GetInterpolation() == UsdGeom.Tokens.constant else point_count)
     for name, values in (("jointIndices", indices), ("jointWeights", weights)):
