@@ -1,6 +1,7 @@
 """The summary of many shots: which records it finds, and what it says of them."""
 
 import json
+import os
 
 import pytest
 
@@ -78,7 +79,26 @@ def test_a_shot_that_failed_is_told_of(baked, capsys):
 )
 def test_what_is_no_record_is_passed_over(document, baked):
     (baked / "d.json").write_text(json.dumps(document))
-    assert len(skinslide.report(baked).shots) == 2
+    report = skinslide.report(baked)
+    assert len(report.shots) == 2 and _left_out(report) == ["d.json", "half.json", "later.json"]
+
+
+@pytest.mark.parametrize(
+    "make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero"), lambda path: path.write_bytes(b"\xff")]
+)
+def test_what_cannot_be_read_is_told_of(make, baked, capsys):
+    """A pipe is not waited for, and of a device nothing is read."""
+    make(baked / "a.json")
+    assert main(["report", str(baked), "--quiet"]) == 0
+    said = "is left out: it is no whole record of this version"
+    assert [line for line in capsys.readouterr().err.splitlines() if said in line] == [
+        f"warning: {name} {said}" for name in ("a.json", "half.json", "later.json")
+    ]
+    assert f"half.json {said}" in (baked / "shots.html").read_text()
+
+
+def _left_out(report) -> list[str]:
+    return [problem.message.partition(" ")[0] for problem in report.left_out]
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from typing import Any
 from urllib.parse import quote
 
 from skinslide.picture.page import render
-from skinslide.problems import Problem, UsageError, lines_text
+from skinslide.problems import Problem, UsageError, lines_text, told
 from skinslide.shot.report import RECORD, roughness_text, stretch_text, time_text
 from skinslide.stage.given import StrPath
 from skinslide.write.place import check_output, given_output, replacing, writing
@@ -85,15 +85,17 @@ class ShotsReport:
     Attributes:
         page: The page that was written.
         shots: What is on it.
+        left_out: A warning of each file that should be a record, and cannot be read as one.
     """
 
     page: str
     shots: list[ShotRecord]
+    left_out: list[Problem]
 
     @property
     def problems(self) -> list[Problem]:
-        """Of every shot."""
-        return [problem for shot in self.shots for problem in shot.problems]
+        """Of every shot, and of what is left out."""
+        return [*self.left_out, *(problem for shot in self.shots for problem in shot.problems)]
 
     def as_dict(self) -> dict[str, Any]:
         """The same for JSON."""
@@ -107,11 +109,11 @@ class ShotsReport:
             }
             for shot in self.shots
         ]
-        return {"page": self.page, "shots": shots}
+        return {"page": self.page, "shots": shots, "left_out": [problem.as_dict() for problem in self.left_out]}
 
     def text(self) -> str:
-        """A line for each shot."""
-        return lines_text([_line(shot) for shot in self.shots])
+        """A line for each shot, and for what is left out."""
+        return lines_text([*map(_line, self.shots), *told(self.left_out)])
 
 
 def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
@@ -134,16 +136,22 @@ def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
         raise UsageError(f"{top} is no folder of records")
     page = top / _PAGE if output is None else given_output("output", output)
     check_output(page, (".html", ".htm"))
-    shots = sorted(_records(top, page), key=lambda shot: (-shot.left, shot.file))
+    left_out: list[Problem] = []
+    shots = sorted(_records(top, page, left_out), key=lambda shot: (-shot.left, shot.file))
     if not shots:
         raise UsageError(f"{top}: there is no record in it or below, such as bake --json prints")
     total = sum(len(shot.patches) for shot in shots)
     text = render(
-        "shots.html", shots=shots, title=top.resolve().name or str(top), total=total, worst_first=_worst_first
+        "shots.html",
+        shots=shots,
+        left_out=left_out,
+        title=top.resolve().name or str(top),
+        total=total,
+        worst_first=_worst_first,
     )
     with replacing(page) as partial, writing(page):
         partial.write_text(text, "utf-8")
-    return ShotsReport(str(page), shots)
+    return ShotsReport(str(page), shots, left_out)
 
 
 def _line(shot: ShotRecord) -> str:
@@ -159,18 +167,30 @@ def _line(shot: ShotRecord) -> str:
 # ---- Records ----
 
 
-def _records(top: Path, page: Path) -> Iterator[ShotRecord]:
-    """Those of its files that are records of this version, or have but the problems of a command that failed."""
+def _records(top: Path, page: Path, left_out: list[Problem]) -> Iterator[ShotRecord]:
+    """Those of its files that are records of this version, or have but the problems of a command that failed.
+
+    What is not whole JSON may be a record, of a bake that still runs or found the disk full: it is told of.
+    """
     for file in sorted(top.rglob("*.json")):
         try:
-            found = json.loads(file.read_text("utf-8"))
-            if isinstance(found, dict) and (found.get("record") == RECORD or found.keys() == {"problems"}):
-                yield _record({"meshes": [], **found}, file, top, page)
+            found = json.loads(_text(file))
+            if isinstance(found, dict) and ("record" in found or found.keys() == {"problems"}):
+                yield _record({"record": RECORD, "meshes": [], **found}, file, top, page)
         except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
-            continue  # of something else, or still being written
+            message = f"{file.relative_to(top)} is left out: it is no whole record of this version"
+            left_out.append(Problem("warning", "", None, None, message))
+
+
+def _text(file: Path) -> str:
+    if not file.is_file():  # a pipe would be waited for
+        raise OSError
+    return file.read_text("utf-8")
 
 
 def _record(found: dict[str, Any], file: Path, top: Path, page: Path) -> ShotRecord:
+    if found["record"] != RECORD:
+        raise ValueError
     pages = (path for path in (file.with_suffix(".html"), file.with_name("report.html")) if path.is_file())
     beside = next((each for each in pages if each.resolve() != page.resolve()), None)
     address = quote(Path(os.path.relpath(beside, page.absolute().parent)).as_posix()) if beside else ""
