@@ -107,6 +107,75 @@ def test_pins(shot, tmp_path):
         setup_to_file(shot, tmp_path / "x.usda", whole=True, pin=["lips", "nails"])
 
 
+def referenced(shot, folder, **instanceable: str):
+    """The character by reference, once under each name."""
+    prims = (
+        f'def "{name}" (references = @{shot.name}@; instanceable = {value}) {{\n}}'
+        for name, value in instanceable.items()
+    )
+    path = folder / "shot.usda"
+    path.write_text('#usda 1.0\n(defaultPrim = "Shot")\ndef Xform "Shot" {\n' + "\n".join(prims) + "\n}\n")
+    return path
+
+
+def test_what_instances_share_is_told_of(shot, tmp_path):
+    path = referenced(shot, tmp_path, own="false", shared="true")
+    report = setup_to_file(path, tmp_path / "x.usda", whole=True)
+    assert list(whole(tmp_path / "x.usda")) == [SKIN.replace("/World", "/Shot/own")]
+    warnings = [problem for problem in report.problems if problem.severity == "warning"]
+    said = "is inside an instance, whose points are shared; author instanceable = false on /Shot/shared"
+    assert [warning.prim for warning in warnings] == [path.replace("/World", "/Shot/shared") for path in (SKIN, ROD)]
+    assert {warning.message for warning in warnings} == {f"has no patch: {said}"}
+    with pytest.raises(StageProblems, match=f"error: /Shot/shared/char/geo/skin_GEO: {said}"):
+        setup_to_file(referenced(shot, tmp_path, shared="true"), tmp_path / "y.usda", whole=True)
+
+
+def test_a_prototype_of_an_instancer_does_not_stop_the_others(shot, tmp_path):
+    stage = Usd.Stage.Open(str(shot))
+    add(stage, "/World/crowd/double", bulging(stages.squares(SIDE)))
+    instancer = UsdGeom.PointInstancer.Define(stage, "/World/crowd")
+    instancer.CreatePrototypesRel().AddTarget("/World/crowd/double")
+    report = skinslide.setup(stage, whole=True)
+    assert [mesh.path for mesh in report.meshes] == [SKIN]
+    (warning,) = [problem for problem in report.problems if problem.severity == "warning"]
+    assert warning.prim == "/World/crowd/double" and "has no patch: is a prototype of" in warning.message
+
+
+def test_what_is_slid_live_already_is_told_of(shot, tmp_path):
+    setup_to_file(shot, tmp_path / "x.skinslide", SKIN, whole=True)
+    path = tmp_path / "shot.usda"
+    path.write_text("#usda 1.0\n(subLayers = [@x.skinslide@])\n")
+    with pytest.raises(StageProblems, match=f"error: {SKIN}: is slid already, by"):
+        setup_to_file(path, tmp_path / "y.usda", SKIN, whole=True)
+
+
+def test_a_mesh_without_faces_is_none(shot, tmp_path):
+    stage = Usd.Stage.Open(str(shot))
+    rod = UsdGeom.Mesh(stage.GetPrimAtPath(ROD))
+    rod.GetFaceVertexCountsAttr().Set([])
+    rod.GetFaceVertexIndicesAttr().Set([])
+    assert [mesh.path for mesh in skinslide.setup(stage, whole=True).meshes] == [SKIN]
+
+
+def test_after_a_bake_into_the_same_layer(shot, tmp_path):
+    """It looks at the cache, as it did before, and not at what was slid."""
+    stage = open_stage(shot)
+    skinslide.setup(stage, whole=True)
+    before = stage.GetPrimAtPath(SKIN).GetAttribute("primvars:skinSlide:skin:patch").Get()
+    skinslide.bake(stage)
+    points = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN)).GetPointsAttr()
+    slid = np.array(points.Get(FRAMES[-1]))
+    skinslide.setup(stage, whole=True)
+    assert stage.GetPrimAtPath(SKIN).GetAttribute("primvars:skinSlide:skin:patch").Get() == before
+    assert np.array(points.Get(FRAMES[-1])).tobytes() == slid.tobytes()
+
+
+def test_frames_beyond_the_samples_are_told_of(shot, tmp_path):
+    report = setup_to_file(shot, tmp_path / "x.usda", SKIN, whole=True, frames="1003-1005")
+    (warning,) = [problem for problem in report.problems if problem.severity == "warning"]
+    assert warning.frame == 1004 and "2 frames are beyond the samples, which go from 1001 to 1003" in warning.message
+
+
 def test_a_frame_that_cannot_be_looked_at(shot, tmp_path):
     stage = Usd.Stage.Open(str(shot))
     points = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN)).GetPointsAttr()
@@ -121,7 +190,8 @@ def test_a_frame_that_cannot_be_looked_at(shot, tmp_path):
 
 def test_usage(shot, tmp_path):
     stage = open_stage(shot)
-    for given in (dict(whole=True, faces="0"), dict(), dict(patch="elbow", faces="0"), dict(prim=SKIN, faces="0")):
+    bad = (dict(whole=True, patch=""), dict(whole=True, faces="0"), dict())
+    for given in (*bad, dict(patch="elbow", faces="0"), dict(prim=SKIN, faces="0")):
         with pytest.raises(UsageError):
             skinslide.setup(stage, **given)
 

@@ -38,6 +38,7 @@ from skinslide.stage.given import (
     given_subset,
 )
 from skinslide.stage.patch import primvar_faces, subset_faces
+from skinslide.write.earlier import without_earlier_bake
 
 _RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
@@ -124,7 +125,8 @@ def setup(
         raise UsageError("reach and mirror go with joint")
     settings = Settings(texts("pin", pin), weight, rule, holes, interpolation, grow)
     if whole:
-        return _setup_whole(stage, prim, patch or "skin", None if frames is None else checked_frames(frames), settings)
+        name, times = "skin" if patch is None else patch, None if frames is None else checked_frames(frames)
+        return _setup_whole(stage, prim, name, times, settings)
     if prim is None or patch is None or frames is not None:
         raise UsageError("a prim and a patch are needed, and no frames, where whole is not asked for")
     if joint is not None:
@@ -149,22 +151,31 @@ def _setup_whole(
 ) -> CheckReport:
     """One patch for each mesh that stretches; all of them, or none."""
     paths = None if prim is None else given_paths("prim", prim)
-    moving, made, left = moving_meshes(stage, paths), list[EditedMesh](), list[Problem]()
-    _check_pins(moving, settings.pins)
+    made, left = list[EditedMesh](), list[Problem]()
     with ExitStack() as authoring:
-        for each in moving:
-            mesh = authoring.enter_context(edited(stage, each, patch))
-            faces = stretched_faces(mesh.prim, frames)
-            if faces.any():
-                _make(mesh, patch, faces, settings.for_mesh(each))
-                made.append(mesh)
-            else:
-                left.append(Problem("note", str(each.GetPath()), None, None, f"has no patch: {_never('no edge')}"))
+        with without_earlier_bake(stage, paths):
+            moving, barred = moving_meshes(stage, paths)
+            _check_pins(moving, settings.pins)
+            for each in moving:
+                mesh = authoring.enter_context(edited(stage, each, patch))
+                faces, warnings = stretched_faces(mesh.prim, frames)
+                left += warnings
+                if faces.any():
+                    _make(mesh, patch, faces, settings.for_mesh(each))
+                    made.append(mesh)
+                else:
+                    left.append(_left(str(each.GetPath()), "note", _never("no edge")))
         if not made:
             message = _never("no edge of any mesh") if left else "no mesh is rendered and has points that move"
-            raise StageProblems([Problem("error", paths[0] if paths else "", None, None, message)])
+            nothing = Problem("error", paths[0] if paths else "", None, None, message)
+            raise StageProblems([replace(each, severity="error") for each in barred] or [nothing])
         report = checked(made)
+    left += [_left(each.prim, "warning", each.message) for each in barred]
     return replace(report, problems=[*report.problems, *left])
+
+
+def _left(path: str, severity: str, why: str) -> Problem:
+    return Problem(severity, path, None, None, f"has no patch: {why}")
 
 
 def _never(what: str) -> str:

@@ -49,7 +49,7 @@ class Plan:
         if options.frames is None:
             problems += [said for mesh, *_ in planned for said in mesh.between_problems()]
         wanted = sorted({frame for mesh in planned for frame in mesh.frames})
-        problems += _outside(planned, options.named)
+        problems += [said for mesh, *_ in planned for said in beyond(mesh, options.named)]
         own = sorted({frame for mesh, *_ in planned for frame in _own_frames(mesh)}) if options.named else wanted
         paths = [each.mesh.path for each in planned]
         return cls(_part(planned, set(chunk.of(wanted))) if chunk else planned, paths, problems, wanted, own)
@@ -103,16 +103,15 @@ def outside(mesh: PatchedMesh, named: Sequence[float]) -> list[float]:
     return [frame for frame in named if samples and not samples[0] <= frame <= samples[-1]]
 
 
-def _outside(meshes: list[PlannedMesh], named: list[float]) -> Iterator[Problem]:
+def beyond(mesh: PatchedMesh, named: Sequence[float]) -> Iterator[Problem]:
     """Warns of frames beyond the samples of a mesh, where USD holds the nearest."""
-    for mesh, *_ in meshes:
-        frames = outside(mesh, named)
-        if frames:
-            samples = mesh.sample_times()
-            span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
-            beyond = counted(len(frames), "frame is", "frames are")
-            message = f"{beyond} beyond the samples, which go {span}; the nearest is held there"
-            yield Problem("warning", mesh.path, None, frames[0], message)
+    frames = outside(mesh, named)
+    if frames:
+        samples = mesh.sample_times()
+        span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
+        said = counted(len(frames), "frame is", "frames are")
+        message = f"{said} beyond the samples, which go {span}; the nearest is held there"
+        yield Problem("warning", mesh.path, None, frames[0], message)
 
 
 def _planned(mesh: PatchedMesh, slider: Slider, asked: AskedFrames) -> PlannedMesh:

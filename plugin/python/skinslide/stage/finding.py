@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
@@ -61,11 +61,19 @@ def find_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> t
 
 def find_slidable(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> list[FoundMesh]:
     """The meshes that would be slid if they carried a patch."""
-    prototypes, found = _instancer_prototypes(stage), list[FoundMesh]()
-    for prim in filter(UsdGeom.Mesh, _prims(stage, prim_paths, [])):
+    return slidable(stage, filter(UsdGeom.Mesh, _prims(stage, prim_paths, [])))[0]
+
+
+def slidable(stage: Usd.Stage, prims: Iterable[Usd.Prim]) -> tuple[list[FoundMesh], list[Problem]]:
+    """Those of some meshes that would be slid if they carried a patch, and what there is to say of the others."""
+    prototypes, found, problems = _instancer_prototypes(stage), list[FoundMesh](), list[Problem]()
+    for prim in prims:
         finding = find(_facts(prim, prototypes, [f"{SCHEMA}:any"]))
-        found += [FoundMesh(prim, [], finding.is_skinned)] if finding.slides else []
-    return found
+        if finding.slides:
+            found.append(FoundMesh(prim, [], finding.is_skinned))
+        else:
+            problems += _said(prim, finding)
+    return found, problems
 
 
 def is_skinned(prim: Usd.Prim) -> bool:
