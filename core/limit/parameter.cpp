@@ -46,6 +46,10 @@ dvec2 roots(double a, double b, double c) {
     return {c / q, q / a};
 }
 
+/* Of solutions the nearest counts, and of those that are this near to each other the first: where a face is not convex several hit,
+ * and rounding is not to choose among them. */
+const double accepted_miss = 1e-8;
+
 /* st with quad.at(st) nearest to p, clamped to the quad. With  e = p10 - p00,  f = p01 - p00,  g = p11 - p10 - f,  h = p - p00:
  * h = e s + f t + g s t;  the cross product with  e + g t  leaves a quadratic for t, and of its roots the better counts. */
 dvec2 inverse_bilinear(const Quad &quad, dvec2 p, double *missed) {
@@ -58,13 +62,11 @@ dvec2 inverse_bilinear(const Quad &quad, dvec2 p, double *missed) {
         dvec2 along = e + both[k] * g;
         dvec2 st = glm::clamp(dvec2(glm::dot(h - both[k] * f, along) / glm::dot(along, along), both[k]), 0.0, 1.0);
         double own = miss(quad, size, st, p);
-        if (own < *missed)
+        if (own + accepted_miss < *missed)
             *missed = own, best = st;
     }
     return best;
 }
-
-const double accepted_miss = 1e-8; /* in a quad; a polygon takes the best of its quads, however far off */
 
 /* The parameters of a triangle of the fan, for faces on which the inverse fails: quads of no area or not convex, and polygons
  * none of whose quads has one; in these the corner that is nearest by weight. */
@@ -113,7 +115,7 @@ ss_parameter in_polygon(const ss_patch *patch, const ss_flat &flat, const ss_pla
         Quad quad = corner_quad(patch, flat, face, k, n, mean);
         double missed;
         dvec2 st = inverse_bilinear(quad, p, &missed);
-        if (missed < least)
+        if (missed + accepted_miss < least)
             least = missed, best = {k, {st.x, st.y}};
     }
     return best.corner < 0 ? from_fan(patch, place, n) : best;
