@@ -1,4 +1,4 @@
-"""A mesh of which a patch is authored into the edit target of its stage: whole and fit to be slid, or not at all."""
+"""Authors a patch of a mesh in the edit target of its stage: whole and fit to be slid, or not at all."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class EditedMesh:
         return checked([self])
 
     def hidden(self) -> Iterator[Problem]:
-        """Warns of what a stronger opinion than the edit target's hides."""
+        """Warnings of properties that an opinion stronger than the edit target's hides."""
         for each in self.prim.GetAuthoredProperties():
             stronger = hidden_by(each) if schema.is_of_patch(each.GetName(), self.patch) else None
             if stronger:
@@ -66,10 +66,10 @@ def checked(meshes: Sequence[EditedMesh]) -> CheckReport:
 
 @contextmanager
 def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = None) -> Iterator[EditedMesh]:
-    """The mesh, for as long as the block authors its patch.
+    """The mesh, while the block authors its patch.
 
-    Faults are said of `source`, the patch that is read for it; None: of the patch itself. Raises TypeError, UsageError,
-    and StageProblems for a Fault too; nothing is authored then.
+    Faults are reported for `source`, the patch that is read for it; None: for the patch itself. Raises TypeError,
+    UsageError, and StageProblems, also in place of a Fault; nothing is authored then.
     """
     check_target(stage)
     path = given_path("prim", prim)

@@ -1,4 +1,4 @@
-"""A layer that sits on a stage and carries set-ups: made, or taken up again, and put in place in one step."""
+"""A layer that sublayers a stage and holds set-ups: made or extended, and put in place in one step."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ OWN_FIELDS = {"subLayers", "subLayerOffsets", "primChildren", "comment", "docume
 
 
 def author_layer(stage: StageLike, output: StrPath, force: bool, author: Callable[[Usd.Stage], Report]) -> Report:
-    """Has `author` author into a stage that sits on another, and whose root layer becomes `output`; gives its report.
+    """Lets `author` author into a layer that sublayers a stage and becomes `output`; returns its report.
 
-    That layer is what is at `output`, where it sits on the stage, else a new one. An exception leaves it as it was.
-    Where another process put something there meanwhile, all is done again, on that.
+    That layer begins as what is at `output`, if that sublayers the stage, else as a new one. An exception leaves the
+    output as it was. If another process has changed it meanwhile, all is done again on what is there then.
     Raises TypeError, UsageError, StageError.
     """
     path, output = given_file(stage), given_output("output", output)
@@ -60,7 +60,7 @@ def author_layer(stage: StageLike, output: StrPath, force: bool, author: Callabl
 
 def _starting_layer(stage: Usd.Stage, path: Path, output: Path, force: bool) -> Sdf.Layer:
     check_not_input(output, stage, path)
-    # Beside the output, where relative paths mean what they will mean in it, but never saved there.
+    # Named as if beside the output, so that relative paths mean what they will mean there; never saved under that name.
     place = output.absolute().with_name(partial_name(output.with_suffix(".usda"), secrets.token_hex(4)))
     layer = Sdf.Layer.New(Sdf.FileFormat.FindById("usda"), str(place))
     if output.exists() and not force:
@@ -86,7 +86,7 @@ def in_the_way(output: Path, fault: str) -> UsageError:
 
 
 def describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
-    """Has a layer on a stage read with the same units, time and default prim."""
+    """Gives a layer that sublayers a stage the same units, time and default prim."""
     root = stage.GetRootLayer().pseudoRoot
     for field in set(root.ListInfoKeys()) - OWN_FIELDS:
         layer.pseudoRoot.SetInfo(field, root.GetInfo(field))
@@ -95,7 +95,7 @@ def describe(layer: Sdf.Layer, stage: Usd.Stage) -> None:
 
 
 def _write(layer: Sdf.Layer, output: Path, before: State, force: bool) -> None:
-    """Puts the layer in place in one step. Raises Changed where another is there than before, unless forced."""
+    """Puts the layer in place in one step. Raises Changed if the output is not what it was before, unless forced."""
     with replacing(output, lambda: force or state(output) == before) as partial, writing(output):
         if partial.suffix == EXTENSION:
             partial.write_text(layer.ExportToString(), encoding="utf-8")

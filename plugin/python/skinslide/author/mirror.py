@@ -151,7 +151,7 @@ def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: fl
 
 
 class _OtherSide(NamedTuple):
-    """The faces of the other side, with the face of this one that each takes the paint of; and the same of vertices."""
+    """The faces of the other side, with the faces of this side whose paint they take; the same for vertices."""
 
     faces: np.ndarray  # (n,)
     face_sources: np.ndarray  # (n,)
@@ -177,14 +177,14 @@ def _across(mesh: EditedMesh, faces: np.ndarray, axis: str, plane: float, tolera
 
 
 def _inverse(places: np.ndarray) -> np.ndarray:
-    """Of each vertex the lowest whose place it is, -1 for none."""
+    """For each vertex, the lowest one that goes to it; -1 for none."""
     inverse, known = np.full(len(places), -1, np.int32), np.flatnonzero(places >= 0)[::-1]
     inverse[places[known]] = known
     return inverse
 
 
 class _Copy:
-    """Writes what one patch has as another's; `told` is what to say of it."""
+    """Copies what one patch has to another; `told` is what to report."""
 
     def __init__(self, mesh: EditedMesh, patch: str, animation: Animation, across: _OtherSide):
         self.told = [across.told] if across.told else []
@@ -192,7 +192,7 @@ class _Copy:
         self._animation, self._setup, self._across = animation, animation.setup, across
 
     def run(self, chosen: np.ndarray) -> None:
-        """With the counterparts of the faces that were chosen; what grows them is a setting."""
+        """Copies all of it. `chosen` are the faces without those that grow adds, which is a setting of its own."""
         faces = self._across.faces[np.isin(self._across.face_sources, chosen)]
         SkinSlideAPI.Apply(self._mesh, self._name).SetFaces(faces)
         self._paint()
@@ -247,7 +247,7 @@ class _Copy:
     # ---- Edges ----
 
     def _kept_edges(self) -> np.ndarray | None:
-        """Which painted edges the other side has, bool (n,); None where there are none. By faces, it has all."""
+        """Which painted edges the other side has, bool (n,): all, unless by nearest place; None if none are painted."""
         edges = self._setup.controls.edges
         if edges is None or not self._across.told:
             return None if edges is None else np.ones(len(edges), dtype=bool)
@@ -271,7 +271,7 @@ class _Copy:
         self._anew(name).Set(Vt.IntArray.FromNumpy(self._across.vertices[vertices]))
 
     def _setting(self, name: str, kept: np.ndarray | None = None) -> None:
-        """A value that does not depend on the side, with its samples or its spline; of an array, what is kept."""
+        """Copies an attribute that does not depend on the side, with its samples or spline; of arrays, what is kept."""
         source = schema.attribute(self._mesh, self._patch, name)
         if not source or not source.HasAuthoredValue():
             self._block(self._new(name))
@@ -288,13 +288,13 @@ class _Copy:
         return schema.property_name(self._name, name)
 
     def _anew(self, name: str) -> Usd.Attribute:
-        """An attribute of the new patch, without what the edit target said of it before."""
+        """An attribute of the new patch, without the edit target's earlier opinions on it."""
         declared = schema.declared(name)
         self._mesh.RemoveProperty(self._new(name))
         return self._mesh.CreateAttribute(self._new(name), declared.typeName, False, declared.variability)
 
     def _block(self, name: str) -> None:
-        """Leaves the new patch without a value that it had before."""
+        """Takes away a value that the new patch had before."""
         self._mesh.RemoveProperty(name)
         before = self._mesh.GetAttribute(name)
         if before and before.HasAuthoredValue():

@@ -1,6 +1,6 @@
-"""A layer that payloads a character: its set-up, live, and below that its cache, all there is without skinslide.
+"""A layer that payloads a character: its set-up, live, and weaker than that its cache, which shows without skinslide.
 
-Of a list of payloads USD passes over those that it cannot open, with a warning.
+USD skips those of a list of payloads that it cannot open, with a warning.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from skinslide.write.place import asset_path, check_not_input, check_output, giv
 
 
 class PayloadLayer:
-    """What is to be written, once the set-up is there. Raises UsageError for what cannot be used."""
+    """The layer to write once the set-up is written. Raises UsageError for what cannot be used."""
 
     def __init__(self, stage: StageLike, setup: StrPath, output: StrPath, force: bool):
         self._output, live = given_output("payload", output), given_output("output", setup)

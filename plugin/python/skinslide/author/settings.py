@@ -18,12 +18,12 @@ from skinslide.stage.given import given_array, given_number, given_primvar
 from skinslide.stage.patch import primvar_faces, subset_faces
 from skinslide.stage.values import FIRST, read_value
 
-RULE = "even"  # of patches that are new
+RULE = "even"  # of new patches
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What is None is not authored, but for the rule of a new patch."""
+    """Settings to author; those that are None are not authored, except for the rule of a new patch."""
 
     pins: Sequence[str] = ()
     weight: npt.ArrayLike | str | None = None
@@ -33,7 +33,7 @@ class Settings:
     grow: float | None = None
 
     def for_mesh(self, prim: Usd.Prim) -> Self:
-        """With those of the pins that the mesh has."""
+        """The settings with only those pins that the mesh has."""
         return replace(self, pins=[name for name in self.pins if has_pin(prim, name)])
 
     def author(self, patch: SkinSlideAPI, mesh: EditedMesh, *, is_new: bool) -> None:

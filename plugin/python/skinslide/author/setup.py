@@ -149,7 +149,7 @@ def setup(
 def _setup_whole(
     stage: Usd.Stage, prim: PrimLike | None, patch: str, frames: list[float] | None, settings: Settings
 ) -> CheckReport:
-    """One patch for each mesh that stretches; all of them, or none."""
+    """Makes one patch for each mesh that stretches; all of them, or none."""
     paths = None if prim is None else given_paths("prim", prim)
     made, left = list[EditedMesh](), list[Problem]()
     with ExitStack() as authoring:
@@ -206,7 +206,7 @@ def _setup_joints(
     reach: float | None,
     settings: Settings,
 ) -> CheckReport:
-    """The patch of some joints and, where there is a second, that of their counterparts; both, or none."""
+    """Makes the patch of some joints and, if a second is named, that of their counterparts; both, or none."""
     far = REACH if reach is None else positive("reach", reach)
     with ExitStack() as authoring:
         for number, patch in enumerate(patches):
@@ -258,7 +258,7 @@ def setup_to_file(
 
 
 def parse_faces(spec: str) -> list[tuple[int, int]]:
-    """The ranges, first and last face, of a comma list of faces and ranges that include both ends: 0-120,140."""
+    """The ranges, first and last face, of a comma-separated list of faces and inclusive ranges: 0-120,140."""
     ranges = []
     for part in spec.split(","):
         match = _RANGE.fullmatch(part.strip())

@@ -1,4 +1,4 @@
-"""Set-ups that nobody painted: which meshes of a stage move, and the faces that a patch needs where they stretch."""
+"""Patches that nobody painted: the meshes of a stage that move, and the faces that a patch needs where they stretch."""
 
 from __future__ import annotations
 
@@ -41,10 +41,9 @@ def _is_rendered(prim: Usd.Prim) -> bool:
 
 
 def stretched_faces(prim: Usd.Prim, frames: Sequence[float] | None) -> tuple[np.ndarray, list[Problem]]:
-    """A bool for each face (F,): whether a patch needs it. Of the frames given, or of every sample.
+    """Whether a patch needs each face, bool (F,), by the frames given or every sample; and warnings.
 
-    Warns of frames beyond the samples.
-    Raises Fault, and FrameProblem for points that cannot be looked at.
+    There is a warning of frames beyond the samples. Raises Fault, and FrameProblem for points that cannot be used.
     """
     mesh = read_moving(prim)
     counts, indices, rest = mesh.face_counts, mesh.face_indices, mesh.rest_points

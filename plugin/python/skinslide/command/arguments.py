@@ -18,7 +18,7 @@ _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
 
 
 def parse(words: list[str]) -> dict[str, Any]:
-    """The command, and those of its arguments that are given, by the keywords of the function that it calls.
+    """The command and the arguments that are given, as keywords of the function that it calls.
 
     Raises UsageError, and SystemExit after --help and --version.
     """
@@ -38,7 +38,7 @@ def parse(words: list[str]) -> dict[str, Any]:
 
 
 def device_of_environment() -> int | None:
-    """The one of EGL's devices that the environment names; raises UsageError where that is no number."""
+    """The number of the EGL device that the environment names. Raises UsageError if that is no number."""
     named = os.environ.get(_DEVICE_VARIABLE)
     try:
         return count_text(named) if named else None
@@ -47,9 +47,9 @@ def device_of_environment() -> int | None:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Raises UsageError where argparse would exit, so that --json has a document then too.
+    """Raises UsageError where argparse would exit, so that --json prints a document then too.
 
-    What is not given has no value: it is left to the functions, which have the same defaults.
+    Options that are not given have no value: the functions have the defaults.
     """
 
     def __init__(self, **words: Any):
@@ -65,7 +65,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _Version(argparse.Action):
-    """As argparse's own, but the library that knows it is loaded only when it is asked."""
+    """Like argparse's own, but loads the library, which knows the version, only when asked."""
 
     def __call__(self, *_arguments: object) -> NoReturn:
         import skinslide
@@ -105,7 +105,7 @@ def _add_stage(command: argparse.ArgumentParser) -> None:
 
 
 def _add_options(command: argparse._ActionsContainer, table: type[Options], *names: str) -> None:
-    """Options of a table: those named, or all."""
+    """Adds options of a table: those named, or all."""
     for each in fields(table):
         if names and each.name not in names:
             continue
@@ -231,7 +231,7 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
 
 
 def _add_layer(command: argparse.ArgumentParser) -> None:
-    """What all commands that write a set-up have."""
+    """Adds what all commands that write a set-up have."""
     _add_stage(command)
     _add_output(
         command,

@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _loaded(home: str, name: str) -> Callable[..., Any]:
-    """Raises StageError where there is no USD, which comes from elsewhere."""
+    """A function of a module. Raises StageError if there is no USD, which skinslide does not bring."""
     try:
         return getattr(import_module(f"skinslide.{home}"), name)
     except ModuleNotFoundError as missing:
@@ -58,7 +58,7 @@ def _loaded(home: str, name: str) -> Callable[..., Any]:
 
 
 def _is_json(word: str) -> bool:
-    """Whether a word asks for JSON, as the parser takes it, or would if it took a value."""
+    """Whether a word asks for JSON: --json, abbreviated as the parser allows, even with a value, which is an error."""
     return word.startswith("--js") and "--json".startswith(word.partition("=")[0])
 
 
@@ -68,7 +68,7 @@ _BESIDE = (".openjd.json", ".slurm.sh", ".manifest.*.usda")  # jobs of farm, and
 
 
 def _state(given: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-    """Tells whether a file is another than before: those that a command writes outside its folders."""
+    """What changes when a file is replaced, for the files that a command writes outside its folders."""
     found: dict[str, tuple[int, ...]] = {}
     for file in _written_by(given):
         try:
@@ -80,7 +80,7 @@ def _state(given: dict[str, Any]) -> dict[str, tuple[int, ...]]:
 
 
 def _written_by(given: dict[str, Any]) -> Iterator[str]:
-    """Those that are named, and those beside the output that have its name."""
+    """The files that are named, and those beside the output that begin with its name."""
     yield from filter(None, (given.get("output"), given.get("html"), given.get("payload")))
     if given.get("output"):
         stem = glob.escape(os.path.splitext(given["output"])[0])
@@ -89,7 +89,7 @@ def _written_by(given: dict[str, Any]) -> Iterator[str]:
 
 
 def _outcome(given: dict[str, Any], before: dict[str, tuple[int, ...]]) -> str:
-    """What became of the files, for where that is in question."""
+    """What became of the files, for when that is in doubt."""
     written = [file for file, state in _state(given).items() if before.get(file) != state]
     folders = [given[name] for name in ("folder", "pictures", "maps") if given.get(name)]
     if written:
@@ -126,7 +126,7 @@ def _bake(
 
 
 def _also(pictures: str | None, html: str | None, maps: str | None, options: dict[str, Any]) -> list[Product]:
-    """Pictures and maps, with their options, which are taken out. UsageError for options of what is not asked for."""
+    """Pictures and maps, with their options, which are removed. Raises UsageError for options that go with neither."""
     drawn = {each.name: options.pop(each.name) for each in fields(PictureOptions) if each.name in options}
     mapped = {name: drawn[name] for name in ("patches", "st") if name in drawn}
     size = {"size": options.pop("map_size")} if "map_size" in options else {}
@@ -215,7 +215,7 @@ def _report(
 
 
 def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bool, quiet: bool) -> Text:
-    """What is printed of a report: one document, lines, or its warnings alone, which then go to stderr."""
+    """What to print of a report: one document, lines, or only its warnings, which then go to stderr."""
     if json:
         return as_json({**named, **getattr(report, "document", report.as_dict)()})
     for problem in report.problems if quiet else ():
@@ -225,12 +225,12 @@ def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bo
 
 
 def _followed(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
-    """Calls a function that slides, with its progress told."""
+    """Calls a function that slides, and shows its progress."""
     return _told(function, quiet, *arguments, **_with_lookup(options))
 
 
 def _told(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
-    """Calls a function of frames, with its progress told."""
+    """Calls a function that works on frames, and shows its progress."""
     from skinslide.command.progress import reporter
 
     with reporter(quiet=quiet) as progress:
@@ -238,7 +238,7 @@ def _told(function: Callable[..., Any], quiet: bool, *arguments: Any, **options:
 
 
 def _with_lookup(options: dict[str, Any]) -> dict[str, Any]:
-    """Options with one lookup in the place of its parts; the environment may name a device."""
+    """Options with one Lookup in place of its parts; the environment may name the device."""
     from skinslide.arrays.native import Lookup
 
     method, resolution = options.pop("lookup", "auto"), options.pop("egl_resolution", 0)

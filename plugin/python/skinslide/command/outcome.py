@@ -37,13 +37,13 @@ def expected() -> tuple[type[BaseException], ...]:
 
 
 def _usd_errors() -> tuple[type[BaseException], ...]:
-    """USD's exception; none where USD is not loaded, so that nothing waits for it."""
+    """USD's exception, or nothing if USD is not loaded, so that it is not loaded for this."""
     usd = sys.modules.get("pxr.Tf")
     return (usd.ErrorException,) if usd else ()
 
 
 def prepare_streams() -> None:
-    """Makes printing safe: for names that the terminal's encoding lacks, and where a stream was closed."""
+    """Makes printing safe for names that the terminal's encoding lacks, and if a stream was closed."""
     for number in range(3):
         try:
             os.fstat(number)
@@ -61,13 +61,13 @@ def prepare_streams() -> None:
 
 
 def tell(line: str) -> None:
-    """Prints a line to stderr, where that is possible."""
+    """Prints a line to stderr, if that is possible."""
     with suppress(OSError):
         _print(one_line(line), sys.stderr)
 
 
 def say(text: str | Iterator[str], code: int) -> int:
-    """Prints what a command was asked for, or its pieces. Gives its exit code: failed, where it cannot be printed."""
+    """Prints what a command was asked for, or its pieces. Returns the exit code: failed if it cannot be printed."""
     if not text:
         return code
     try:
@@ -81,7 +81,7 @@ def say(text: str | Iterator[str], code: int) -> int:
 
 
 def as_json(value: Any, margin: str = "\n") -> Iterator[str]:
-    """A document in pieces, whose lists may be iterators; null for a number that is not finite, which JSON has not."""
+    """A document in pieces; lists may be iterators. Numbers that are not finite, which JSON lacks, become null."""
     inner, before = margin + "  ", "{"
     if isinstance(value, dict) and value:
         for name, each in value.items():

@@ -1,7 +1,7 @@
 """The command `skinslide` from its first moment to its last.
 
-Ctrl-C while the tool is being loaded ends it as it does later. A process that is done ends at once: to take down what
-USD and the core hold would take as long as some frames, and be for nothing.
+Ctrl-C while the tool is being loaded ends it as it does later. A process that is done ends at once: tearing down what
+USD and the core hold would take as long as some frames, for nothing.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import NoReturn
 
 
 def run() -> NoReturn:
-    """The process of a command."""
-    # No matrices are multiplied here, for which numpy's BLAS would have a thread for each processor wait busily.
+    """Runs the process of a command."""
+    # numpy's BLAS would keep a thread busy on each processor, waiting for matrix products: there are none here.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     code = main()
     try:
@@ -26,7 +26,7 @@ def run() -> NoReturn:
 
 
 def main() -> int:
-    """One command; gives its exit code."""
+    """Runs one command; returns its exit code."""
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # until cli.main can say what became of it
     from skinslide.command import cli
 

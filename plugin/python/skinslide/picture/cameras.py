@@ -16,12 +16,12 @@ from skinslide.problems import NO_SUCH_PRIM, Fault, FrameProblem, SliderError
 from skinslide.stage.mesh import PatchedMesh
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
-# So many times as far as a camera that goes along with the patch, one that stands still shows too little of it.
+# A camera that stands still shows too little of a patch if it is this many times as far off as one that goes along.
 _FAR = 1.5
 
 
 class Eye(Protocol):
-    """Gives the camera of a time."""
+    """Where a patch is seen from at each time."""
 
     def camera(self, time: Usd.TimeCode) -> Camera:
         """Raises Fault, SliderError and FrameProblem where there is none."""
@@ -95,7 +95,7 @@ class ShotCamera:
 
 
 class FollowingCamera:
-    """Frames a patch anew in each frame."""
+    """Points at a patch anew in each frame."""
 
     def __init__(self, mesh: PatchedMesh, faces: np.ndarray, aspect: float):
         self._subject, self._aspect = _Subject(mesh, faces), aspect
@@ -105,7 +105,7 @@ class FollowingCamera:
 
 
 def to_world(mesh: PatchedMesh, time: Usd.TimeCode) -> np.ndarray:
-    """The way of a mesh to the world, (4, 4). Raises FrameProblem."""
+    """The matrix (4, 4) that takes a mesh to the world. Raises FrameProblem."""
     matrix = np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(mesh.prim))
     if not np.isfinite(matrix).all():
         raise FrameProblem(mesh.problem("its transform to the world is not finite", time))
@@ -156,7 +156,7 @@ class _Subject:
 
 
 def _moving(way: np.ndarray) -> np.ndarray:
-    """The matrix, for points as rows, of a way, (3,)."""
+    """The matrix of a translation (3,), for points as rows."""
     matrix = np.eye(4)
     matrix[3, :3] = way
     return matrix

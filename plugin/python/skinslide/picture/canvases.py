@@ -11,7 +11,7 @@ from skinslide.problems import SliderError, StageError, UsageError
 
 
 class Canvases:
-    """A canvas for each thread that draws, made when it is needed; the first at once, so that its faults show."""
+    """A canvas for each thread that draws, made when needed; the first one at once, so that its errors show early."""
 
     def __init__(self, make: Callable[[], Canvas], at_once: int):
         """at_once: how many may be. Raises UsageError where there is no EGL, or where it has no such size."""

@@ -69,7 +69,7 @@ class DrawnPictures:
 
 @dataclass
 class Budget:
-    """How many bytes each picture of a page may have: known once all meshes are."""
+    """How many bytes each picture of a page may have, which is known once all meshes are."""
 
     of_each: int = 0
 
@@ -136,7 +136,7 @@ class MeshPictures(MeshMaking):
         return 1 + max(1, len(self._rules))
 
     def _slider_of(self, rule: str) -> Slider:
-        """One by which every patch follows a rule; where there is none, the mesh's own, and a problem."""
+        """A slider in which every patch follows a rule; if there can be none, the mesh's own, and a problem."""
         try:
             found = self._mesh.build([replace(patch, rule=rule) for patch in self._mesh.patches])
             if [each.vertex_count for each in found.patches] == [each.vertex_count for each in self._slider.patches]:
@@ -216,7 +216,7 @@ class MeshPictures(MeshMaking):
         return [frame.patches[series.index].stretch_after for series in self._series]
 
     def take(self, time: Usd.TimeCode, _frames: SlidFrames, made: _Drawn) -> None:
-        """Writes the files; keeps what sheet and page want."""
+        """Writes the files; keeps what the contact sheet and the page need."""
         self._left.append(made.left)
         self._easel.drawn.pictures += len(made.pictures)
         for number, encoded in enumerate(made.pictures):

@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class Encoders:
-    """So many threads, and as many pictures as they may hold: whoever brings one more waits until one is encoded."""
+    """Some threads, and a limit of pictures in hand: whoever brings one more waits until one is encoded."""
 
     def __init__(self, jobs: int, at_once: int):
         self._jobs, self._room = jobs, threading.Semaphore(at_once)

@@ -18,7 +18,7 @@ _FAST = 1  # of the levels of zlib
 
 
 def srgb(light: np.ndarray) -> np.ndarray:
-    """Bytes, in sRGB, of linear light."""
+    """Linear light as bytes in sRGB."""
     light = np.clip(light, 0, 1)
     encoded = np.where(light < 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.rint(255 * encoded).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""What stands on a picture beside the skin: titles, the scale of its colours; and contact sheets."""
+"""What is on a picture beside the skin, titles and the scale of its colours; and contact sheets."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _NO_LETTER = "\uffff"  # every font draws it as what it has not
 
 
 def _fonts(size: float) -> Iterator[ImageFont.FreeTypeFont]:
-    """Pillow's own, which is the same everywhere, and those of the others that there are."""
+    """Pillow's own font, which is the same everywhere, and those of the others that this machine has."""
     own = ImageFont.load_default(size)
     assert isinstance(own, ImageFont.FreeTypeFont)  # as Pillow's wheels have it
     yield own
@@ -61,7 +61,7 @@ def _glyph(font: ImageFont.FreeTypeFont, letter: str) -> tuple[tuple[int, int], 
 
 
 def _drawable(font: ImageFont.FreeTypeFont, line: str) -> str:
-    """A line with the numbers of letters that a font has not, as Python writes them."""
+    """A line in which letters that a font lacks are escaped as Python escapes them."""
     missing = _glyph(font, _NO_LETTER)
     lost = {letter for letter in set(line) if not letter.isspace() and _glyph(font, letter) == missing}
     return "".join(letter.encode("unicode_escape").decode() if letter in lost else letter for letter in line)
@@ -69,7 +69,7 @@ def _drawable(font: ImageFont.FreeTypeFont, line: str) -> str:
 
 @functools.lru_cache(maxsize=256)
 def _lettered(line: str, size: float) -> tuple[str, ImageFont.FreeTypeFont]:
-    """A line, and the first font that has all its letters; else what Pillow's own can write of it."""
+    """A line, and the first font that has all its letters; else Pillow's own, with the others escaped."""
     for font in _fonts(size):
         if _drawable(font, line) == line:
             return line, font
@@ -78,7 +78,7 @@ def _lettered(line: str, size: float) -> tuple[str, ImageFont.FreeTypeFont]:
 
 
 def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_foot: bool = False) -> None:
-    """Puts lines on a shade into the upper left corner of a part of a picture, or the lower left."""
+    """Writes lines on a dark ground into the upper or lower left corner of a part of a picture."""
     font = font_of(place.height)
     pad = round(font.size * _GAP)
     lettered = [_lettered(line, font.size) for line in lines]
@@ -93,7 +93,7 @@ def write_text(pixels: np.ndarray, lines: Sequence[str], place: Viewport, *, at_
 
 
 def write_scale(pixels: np.ndarray, title: str, ticks: tuple[str, str, str], place: Viewport) -> None:
-    """Puts the scale of colours, with what its ends and its middle are, into the lower left corner of a part."""
+    """Draws the scale of colours, with the values at its ends and its middle, in the lower left corner of a part."""
     font = font_of(place.height)
     pad, wide, tall = round(font.size * _GAP), max(2, round(place.height * 0.34)), round(font.size * 0.7)
     top = pad // 4 + sum(font.getmetrics())  # of the colours: below the title's descenders
@@ -109,7 +109,7 @@ def write_scale(pixels: np.ndarray, title: str, ticks: tuple[str, str, str], pla
 
 
 def _lay(pixels: np.ndarray, card: np.ndarray, place: Viewport, top: int) -> None:
-    """Lays a card over a part of a picture, in the picture's own colours; what reaches past its edges is cut."""
+    """Lays a card over a part of a picture, in the picture's own colours; what is beyond its edges is cut off."""
     part = pixels[pixels.shape[0] - place.y - place.height :, place.x : place.x + place.width, :3]
     part = part[max(top, 0) :][: card.shape[0], : card.shape[1]]
     card = card[: part.shape[0], : part.shape[1]]

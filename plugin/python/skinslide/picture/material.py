@@ -1,4 +1,4 @@
-"""The base colour texture of a mesh's material, which pictures may show in the place of a chequer."""
+"""The base colour texture of a mesh's material, which pictures may show in place of a chequer."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ def page(
 
 @dataclass(frozen=True)
 class _Timeline:
-    """Every frame that some patch has, ascending; none where all have but a default value."""
+    """Every frame that some patch has, ascending; none if all have only a default value."""
 
     frames: list[float]
 
@@ -123,7 +123,7 @@ class _Timeline:
         return [time_text(frame) for frame in self.frames] or [time_text(None)]
 
     def positions(self, patch: PatchReport) -> list[int]:
-        """Where each frame of a patch is; nowhere, where it has but a default value."""
+        """The place of each frame of a patch; none if it has only a default value."""
         place = {frame: i for i, frame in enumerate(self.frames)}
         return [place[frame] for frame in patch.frames if frame is not None]
 
@@ -133,7 +133,7 @@ class _Timeline:
 
 
 def _start(strips: Sequence[Strip], timeline: _Timeline) -> int:
-    """Where most stretch is removed from all patches together; where they stretch most, if it is removed nowhere."""
+    """The frame at which most stretch is removed from all patches together; at which they stretch most, if none is."""
     patches = [strip.patch for strip in strips]
     shown = [[patch.results[timeline.sample(patch, i)] for patch in patches] for i in range(len(timeline.frames))]
     gains = [sum(result.stretch_before - result.stretch_after for result in results) for results in shown]
@@ -153,7 +153,7 @@ def render(name: str, **values: Any) -> str:
 
 
 def _templates() -> Environment:
-    """All that they are given is text, and escaped, but the page's own style and script."""
+    """All that the templates are given is escaped text, except for the page's own style and script."""
     templates = Environment(
         loader=PackageLoader("skinslide.picture"),
         autoescape=True,
@@ -183,14 +183,14 @@ def _templates() -> Environment:
 
 
 def _inlined(templates: Environment, name: str) -> Markup:
-    """A file of the page's own, as it stands."""
+    """The text of a file beside the templates, such as the style."""
     loader = templates.loader
     assert loader
     return Markup(loader.get_source(templates, name)[0])
 
 
 def _shown(value: Any) -> Any:
-    """Bytes of file names that are no UTF-8 are shown by number."""
+    """Text in which bytes of file names that are not UTF-8 are shown as numbers."""
     plain = isinstance(value, str) and not isinstance(value, Markup)
     return value.encode("utf-8", "backslashreplace").decode() if plain else value
 
@@ -201,7 +201,7 @@ def _path(prim: str) -> Markup:
 
 
 def _digest(inlined: str) -> str:
-    """What a policy calls a style or a script."""
+    """The digest by which a content security policy names a style or a script."""
     return f"sha256-{base64.b64encode(hashlib.sha256(inlined.encode()).digest()).decode()}"
 
 

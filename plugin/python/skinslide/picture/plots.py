@@ -1,4 +1,4 @@
-"""The curves of a patch over its frames: axes with numbers, a line a quantity, and marks for one frame.
+"""The curves of a patch over its frames: axes with numbers, a line for each quantity, and marks for one frame.
 
 Everything is placed here, in the units of an SVG: a page shows it without a script, which only moves the marks.
 """
@@ -75,7 +75,7 @@ class Chart:
 
     @property
     def described(self) -> str:
-        """In words: the most of each quantity and where."""
+        """The largest value of each quantity, and where it is, in words."""
         parts = []
         for quantity in self.quantities:
             most = int(np.argmax(quantity.values))
@@ -176,7 +176,7 @@ def _ticks(low: float, high: float, most: int) -> list[float]:
 
 
 def _tick_text(tick: float, step: float) -> str:
-    """With the step's decimals, unless they are many."""
+    """A tick with as many decimals as the step, unless they are many."""
     return f"{tick:.{max(-math.floor(math.log10(step)), 0)}f}" if 1e-4 <= step < 1e5 else f"{tick:g}"
 
 

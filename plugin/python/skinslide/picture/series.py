@@ -66,7 +66,7 @@ class Skin:
 
     @property
     def told(self) -> str:
-        """What to say of the chequer, or nothing."""
+        """What to report about the chequer, or nothing."""
         if self.st is not None:
             return ""
         there = self.mesh.meaning.coordinates_there
@@ -135,7 +135,7 @@ class Series:
         return None if weight is None else (weight <= 0) & self.skin.mesh.topology.vertices_of(self.faces)
 
     def _marks(self, view: str, at: Moment, column: Column) -> Marks:
-        """What is drawn in a view, and in those with the same marks."""
+        """The marks of a view, and of others with the same."""
         pinned, painted, sliding = _marked(view)
         marks = Marks(self.wire, at.pins if pinned else None, column.ways if sliding else None)
         if not painted or at.edges is None or at.edge_density is None:
@@ -149,7 +149,7 @@ class Series:
     def draw_all(
         self, canvas: Canvas, views: Sequence[str], at: Moment, columns: Sequence[Column], most_stretch: float
     ) -> Iterator[np.ndarray]:
-        """A picture of each view: as many at once as the canvas has layers, of those with the same marks."""
+        """A picture of each view: those with the same marks at once, as many as the canvas has layers."""
         drawn: dict[str, np.ndarray] = {}
         for view in views:
             if view not in drawn:
@@ -210,7 +210,7 @@ class Series:
         return None
 
     def _ticks(self, view: str, most_stretch: float) -> tuple[str, tuple[str, str, str]] | None:
-        """What the scale of a view is of, and what its ends and its middle are."""
+        """What the scale of colours of a view shows, and its values at the ends and the middle."""
         if view == "density":
             return "force density", (f"1/{_MOST_DENSITY:g}", "1", f"{_MOST_DENSITY:g}")
         most = {"stretch": most_stretch, "slide": self.most_slide}.get(view)
@@ -218,12 +218,12 @@ class Series:
 
 
 def _marked(view: str) -> tuple[bool, bool, bool]:
-    """Whether pins are drawn in a view, edges that are painted, and ways."""
+    """Whether a view shows pins, painted edges, and ways."""
     return view in ("density", "slide"), view == "density", view == "slide"
 
 
 def layers_of(views: Sequence[str]) -> int:
-    """How many layers a canvas needs for all views that can be drawn at once to be."""
+    """How many layers a canvas needs so that all views that can be drawn at once are."""
     return min(MOST_LAYERS, max(Counter(_marked(view) for view in dict.fromkeys(views)).values(), default=1))
 
 
@@ -246,7 +246,7 @@ def _suitable_squares(skin: Skin, faces: np.ndarray) -> float:
 
 
 def _root_of_area(skin: Skin, faces: np.ndarray) -> float:
-    """Of what faces have in the texture, which may lie in pieces far apart; 0 without a texture."""
+    """The square root of the area of faces in the texture, where they may be far apart; 0 without a texture."""
     if skin.st is None:
         return 0.0
     start = np.cumsum(skin.mesh.face_counts) - skin.mesh.face_counts

@@ -74,7 +74,7 @@ class ShotRecord:
 
     @property
     def left(self) -> float:
-        """The most stretch that is left, of its patches at their worst frames."""
+        """The most stretch that is left of any patch at its worst frame."""
         return max((patch.after for patch in self.patches), default=0.0)
 
 
@@ -94,7 +94,7 @@ class ShotsReport:
 
     @property
     def problems(self) -> list[Problem]:
-        """Of every shot, and of what is left out."""
+        """The problems of every shot, and what was left out."""
         return [*self.left_out, *(problem for shot in self.shots for problem in shot.problems)]
 
     def as_dict(self) -> dict[str, Any]:
@@ -168,9 +168,9 @@ def _line(shot: ShotRecord) -> str:
 
 
 def _records(top: Path, page: Path, left_out: list[Problem]) -> Iterator[ShotRecord]:
-    """Those of its files that are records of this version, or have but the problems of a command that failed.
+    """The files in a folder that are records of this version, or hold only the problems of a command that failed.
 
-    What is not whole JSON may be a record, of a bake that still runs or found the disk full: it is told of.
+    What is not complete JSON may be the record of a bake that still runs or found the disk full: it is reported.
     """
     for file in sorted(top.rglob("*.json")):
         try:
@@ -208,5 +208,5 @@ def _patch(prim: str, patch: dict[str, Any]) -> ShotPatch:
 
 
 def _worst_first(patches: Sequence[ShotPatch]) -> list[ShotPatch]:
-    """Those with most stretch left first."""
+    """The patches with most stretch left first."""
     return sorted(patches, key=lambda patch: -patch.after)

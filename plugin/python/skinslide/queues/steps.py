@@ -1,4 +1,4 @@
-"""What a job consists of, in the words of the tool: a queue's own format is made of these."""
+"""The steps of a job, as commands of the tool, from which a queue's own format is made."""
 
 from __future__ import annotations
 

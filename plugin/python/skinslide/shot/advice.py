@@ -1,4 +1,4 @@
-"""What is worth knowing of a mesh and its patches before they are slid, and stops nobody: for checks and bakes."""
+"""What is worth knowing about a mesh and its patches before they are slid, but is no error: for checks and bakes."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _overlapping(patches: Sequence[PatchSetup], taken: np.ndarray) -> list[tuple
 
 
 def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
-    """Points that another mesh has in the same place: what is open there stays closed as long as they stay."""
+    """Points that another mesh has in the same places: the gap there stays closed only if they stay."""
     try:
         points = mesh.points_at(Usd.TimeCode.EarliestTime())
         slider.check_points(points)
@@ -105,7 +105,7 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
 
 
 def _apart(points: np.ndarray, others: np.ndarray) -> bool:
-    """Whether boxes around them are by more than a hundredth of the first."""
+    """Whether the boxes around two sets of points are apart by more than a hundredth of the first."""
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.01 * np.linalg.norm(high - low)
     return bool((others.min(axis=0) > high + margin).any() or (others.max(axis=0) < low - margin).any())

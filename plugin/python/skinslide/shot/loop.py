@@ -68,7 +68,7 @@ def slide(
 
 
 def _wanted(plan: Plan, makings: Sequence[Making]) -> list[_Mesh]:
-    """The meshes of which something is made. Raises StageProblems for all of which it cannot be."""
+    """The meshes of which something is made. Raises StageProblems for all of which nothing can be."""
     for making in makings:
         plan.check_patches(making.patches)
     meshes: list[_Mesh] = []
@@ -89,7 +89,7 @@ def _wanted(plan: Plan, makings: Sequence[Making]) -> list[_Mesh]:
 
 
 class _Mesh(NamedTuple):
-    """A mesh and what is made of it."""
+    """A mesh, and what is made of it."""
 
     planned: PlannedMesh
     report: MeshReport

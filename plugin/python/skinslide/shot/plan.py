@@ -31,7 +31,7 @@ class PlannedMesh(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """Slides that are known to be possible."""
+    """Everything to slide, known to be possible."""
 
     meshes: list[PlannedMesh]
     paths: list[str]  # of the meshes of all chunks
@@ -73,7 +73,7 @@ def _own_frames(mesh: PatchedMesh) -> list[float]:
 
 
 def _part(meshes: Sequence[PlannedMesh], frames: set[float]) -> list[PlannedMesh]:
-    """The meshes with no other frames than these; a default value is in every chunk."""
+    """The meshes with only these frames; a default value is in every chunk."""
     parts = [
         mesh._replace(times=[time for time in mesh.times if time.IsDefault() or time.GetValue() in frames])
         for mesh in meshes
@@ -98,7 +98,7 @@ def read_sliders(
 
 
 def outside(mesh: PatchedMesh, named: Sequence[float]) -> list[float]:
-    """Those of the frames that are beyond its samples, where it has some."""
+    """The frames that are beyond the mesh's samples, if it has any."""
     samples = mesh.sample_times()
     return [frame for frame in named if samples and not samples[0] <= frame <= samples[-1]]
 

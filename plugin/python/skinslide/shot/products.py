@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Shot(NamedTuple):
-    """An open stage, and the path it was opened by; None where it came open."""
+    """An open stage, and the path it was opened from; None if it was given open."""
 
     stage: Usd.Stage
     path: StrPath | None
@@ -71,7 +71,7 @@ SlidFrames = Mapping[Usd.TimeCode, SlidFrame]
 
 @runtime_checkable
 class Product(Protocol):
-    """What can be asked for."""
+    """What can be made of a shot."""
 
     def begin(self, shot: Shot, options: SlideOptions) -> Making:
         """Raises UsageError and StageProblems for what can be known before the meshes are read."""
@@ -90,7 +90,7 @@ class Making(ABC):
     patches: Sequence[str] | None = None  # names of those it is made of; None: all
 
     def planned(self, _plan: Plan) -> bool:
-        """Learns what is going to be slid; whether all that it makes of it is there already, and need not be made."""
+        """Learns what is going to be slid. Returns whether all that it makes is there already, and need not be made."""
         return False
 
     @abstractmethod
@@ -122,8 +122,8 @@ class MeshMaking(ABC):
 
     @abstractmethod
     def take(self, time: Usd.TimeCode, frames: SlidFrames, made: Any) -> None:
-        """Takes what the work has made. Times come in order, with the frames that they need."""
+        """Takes what the work has made. Times come in order, each with the frames that it needs."""
 
     def end(self) -> list[Problem]:
-        """After the last time: the warnings."""
+        """Called after the last time. Returns warnings."""
         return []

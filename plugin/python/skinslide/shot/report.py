@@ -50,7 +50,7 @@ MEASURES: dict[str, Callable[[PatchResult], float]] = {
 
 
 def whole(document: Any) -> Any:
-    """A document with lists for what was to be there when it is asked for."""
+    """A document in which lists replace the parts that are made only when they are asked for."""
     if isinstance(document, dict):
         return {name: whole(value) for name, value in document.items()}
     return [whole(value) for value in document] if isinstance(document, list | Iterator) else document

@@ -1,4 +1,4 @@
-"""The frames of a mesh worked on in a pool of threads, a few ahead, and given in order."""
+"""Works on the frames of a mesh in a pool of threads, a few ahead, and gives them in order."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Progress = Callable[[int, int], None]  # frames done, frames in all
 
 @contextmanager
 def pool_of(jobs: int, frame_count: int, sliders: Sequence[Slider]) -> Iterator[ThreadPoolExecutor]:
-    """Threads for frames of sliders; when the block ends, those that have not begun never do.
+    """Threads for frames of sliders. When the block fails, frames that have not begun never do; the others are stopped.
 
-    When it fails, those that have begun are left; a signal does not wait for them, of which nothing is written here.
+    A signal does not wait even for those: nothing is written on these threads.
     """
     pool = ThreadPoolExecutor(min(jobs, frame_count), APART)
     try:
@@ -44,7 +44,7 @@ def work_ahead(
     pool: ThreadPoolExecutor,
     in_flight: int,
 ) -> Iterator[tuple[Usd.TimeCode, T]]:
-    """What the work on each time gives, in the order of times.
+    """Yields what the work on each time returns, in the order of times.
 
     Args:
         mesh: Whose times they are.
@@ -91,7 +91,7 @@ def _take(mesh: PatchedMesh, time: Usd.TimeCode, future: Future[T]) -> tuple[Usd
 
 @contextmanager
 def core_named(mesh: PatchedMesh, time: Usd.TimeCode) -> Iterator[None]:
-    """What the core refuses, as a FrameProblem of the mesh and the time."""
+    """Turns what the core refuses into a FrameProblem of the mesh and the time."""
     try:
         yield
     except SliderError as error:

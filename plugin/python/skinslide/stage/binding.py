@@ -1,4 +1,4 @@
-"""Whether what binds a mesh to a skeleton can be used: the one place that says of a rig what is wrong with it."""
+"""Whether the binding of a mesh to a skeleton can be used: the one place that says what is wrong with a rig."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What callers give, as the rest has it: a stage or its path, prims or their paths, numpy arrays or other sequences.
+"""Arguments as the rest needs them: a stage or its path, prims or their paths, numpy arrays or other sequences.
 
-What is of no such kind is a TypeError, what is but cannot be is a UsageError; both name the argument.
+One of another type raises TypeError, one that cannot be used UsageError; both name the argument.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ ARRAYS = {
 
 
 def given_stage(stage: StageLike) -> Usd.Stage:
-    """The stage, opened where a path is given. Raises StageError where it cannot be."""
+    """The stage, opened if a path is given. Raises StageError if it cannot be."""
     if isinstance(stage, Usd.Stage):
         check_clocks(stage)
         return stage
@@ -44,7 +44,7 @@ def given_stage(stage: StageLike) -> Usd.Stage:
 
 
 def given_file(stage: StageLike) -> Path:
-    """The file of a stage, that of its root layer where it came open."""
+    """The file of a stage: that of its root layer, if it was given open."""
     if isinstance(stage, str | os.PathLike):
         return Path(stage)
     layer = given_stage(stage).GetRootLayer()

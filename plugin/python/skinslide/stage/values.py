@@ -103,12 +103,12 @@ def read_value(
 
 
 def _anchored(attribute: Usd.Attribute, time: Usd.TimeCode, path: str) -> str:
-    """Where a file is looked for: beside the layer that names it."""
+    """Where to look for a file: relative to the layer that names it."""
     return Sdf.ComputeAssetPathRelativeToLayer(layer_of(attribute, time), path) if path else ""
 
 
 def layer_of(attribute: Usd.Attribute, time: Usd.TimeCode) -> Sdf.Layer:
-    """That of the strongest opinion, which paths are relative to."""
+    """The layer of the strongest opinion, to which paths are relative."""
     return attribute.GetPropertyStack(time)[0].layer
 
 
@@ -120,7 +120,7 @@ def _get(attribute: Usd.Attribute, time: Usd.TimeCode) -> object:
 
 
 def _plain(value: object, type_name: str) -> object:
-    """A value of USD as one of numpy and of the core's own."""
+    """A value of USD as numpy or as a type of the core's."""
     if value is None or isinstance(value, str):
         return value
     if isinstance(value, Sdf.AssetPath):
@@ -159,7 +159,7 @@ def _knots(attribute: Usd.Attribute) -> list[float]:
 
 
 def _has_default(attribute: Usd.Attribute) -> bool:
-    """Whether one is authored, be it hidden by samples."""
+    """Whether a default is authored, even if samples hide it."""
     defaults = (spec.default for spec in attribute.GetPropertyStack() if spec.HasInfo("default"))
     return not isinstance(next(defaults, Sdf.ValueBlock()), Sdf.ValueBlock)
 
@@ -177,7 +177,7 @@ def take(taker: Taker, sources: Iterable[Source]) -> list[str]:
 
 @contextmanager
 def noting(faults: list[str]) -> Iterator[None]:
-    """Adds to the faults that which is raised."""
+    """Adds a Fault that the block raises to the faults."""
     try:
         yield
     except Fault as fault:

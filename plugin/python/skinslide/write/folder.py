@@ -30,7 +30,7 @@ _PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
 
 
 class OutputFolder:
-    """Where files of meshes are written. Nothing of it is made before the first is."""
+    """Where files of meshes are written. The folder is not made before the first file is."""
 
     def __init__(self, folder: StrPath, stage: Usd.Stage, stage_path: StrPath | None):
         """Raises UsageError for a folder that cannot be used."""

@@ -1,4 +1,4 @@
-"""The files that are written: where one may be, and putting it in place in one step or not at all."""
+"""Where files may be written, and how one is put in place in one step or not at all."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def check_output(output: Path, extensions: Sequence[str], made: Path | None = No
 
 
 def given_output(name: str, given: StrPath) -> Path:
-    """The path of what is to be written. Raises UsageError for what is none."""
+    """The path of an output. Raises UsageError for what is no path."""
     if not isinstance(given, str | os.PathLike):
         raise UsageError(f"{name} is {given!r}; it must be a path")
     if not os.fspath(given):  # Path would take it for the working folder
@@ -181,7 +181,7 @@ State: TypeAlias = tuple[int, ...] | None
 
 
 def state(file: Path) -> State:
-    """Tells whether a file is another than before; None where there is none."""
+    """What changes when a file is replaced; None where there is none."""
     try:
         status = os.stat(file)
     except FileNotFoundError:
@@ -231,7 +231,7 @@ def check_writable(output: Path) -> None:
 
 @contextmanager
 def writing(output: Path) -> Iterator[None]:
-    """Whatever fails here is said to be the output's fault."""
+    """Reports whatever fails in the block as the output's fault."""
     try:
         yield
     except (OSError, Tf.ErrorException) as error:
@@ -255,7 +255,7 @@ def saved(written: bool) -> None:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Keeps others out who would lock the folder, for a moment, where it can be locked."""
+    """Locks the folder for a moment, if it can be locked."""
     with ExitStack() as unlocking:
         with suppress(OSError):  # not every file system can, and not every folder may be opened
             descriptor = os.open(folder, os.O_RDONLY)
@@ -274,7 +274,7 @@ def _remove_abandoned(output: Path) -> None:
 
 
 def _flush(file: Path) -> None:
-    """Without this a machine that loses power may be left with the new name and none of the bytes."""
+    """Flushes a file to the disk: after a loss of power there might else be the new name, but none of the bytes."""
     descriptor = os.open(file, os.O_RDONLY)
     try:
         os.fsync(descriptor)

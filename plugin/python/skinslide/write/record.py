@@ -1,6 +1,6 @@
-"""What a baked layer says of itself, in its customLayerData: what it was made from, and which frames it is to hold.
+"""What a baked layer says about itself in its customLayerData: what it was made from, and which frames it must hold.
 
-By it chunks are known to belong together, to be whole, and to leave no frame out between them. Layers of sublayers do
+It shows that chunks belong together, are complete, and leave no frame out between them. Layers of sublayers do
 not compose it, and no sample depends on it.
 """
 

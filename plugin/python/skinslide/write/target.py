@@ -32,7 +32,7 @@ def check_target(stage: Usd.Stage) -> None:
 
 
 def _fault(stage: Usd.Stage, layer: Sdf.Layer) -> str | None:
-    """Why a layer takes nothing, and what to do before "choose another"."""
+    """Why a layer takes no opinions, and what to do about it other than to choose another."""
     if stage.IsLayerMuted(layer.identifier):
         return "is muted; unmute it by stage.UnmuteLayer, or"
     if layer not in stage.GetUsedLayers():
@@ -43,7 +43,7 @@ def _fault(stage: Usd.Stage, layer: Sdf.Layer) -> str | None:
 
 
 def spec_path(stage: Usd.Stage, prim: Sdf.Path) -> Sdf.Path:
-    """Where the edit target has opinions on a prim. Raises UsageError where it can have none that count."""
+    """The path at which the edit target has opinions on a prim. Raises UsageError if none there would count."""
     target = stage.GetEditTarget()
     path, layer = target.MapToSpecPath(prim), target.GetLayer().identifier
     if not path:
@@ -58,7 +58,7 @@ def spec_path(stage: Usd.Stage, prim: Sdf.Path) -> Sdf.Path:
 
 
 def hidden_by(attribute: Usd.Attribute) -> str | None:
-    """Where the value is that hides the one in the edit target of the stage; None where that is the strongest."""
+    """Where the value is that hides the edit target's; None if that is the strongest."""
     target = attribute.GetStage().GetEditTarget()
     own = target.GetLayer(), target.MapToSpecPath(attribute.GetPath())
     valued = [spec for spec in attribute.GetPropertyStack() if has_values(spec)]
@@ -87,7 +87,7 @@ class Before:
             self._specs[path] = self._store.GetPropertyAtPath(place)
 
     def bring_back(self) -> None:
-        """Makes them as they were, and leaves no prim that is without opinions."""
+        """Restores them, and removes prims that are left without opinions."""
         with Sdf.CleanupEnabler(), Sdf.ChangeBlock():
             for path, before in self._specs.items():
                 if before:
