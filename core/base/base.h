@@ -74,8 +74,11 @@ static inline void ss_set(int *flag, int to) {
 double ss_log(double x);
 /* Of each of several, in their place: the same bits, and quicker. */
 void ss_logs(int32_t count, double *x);
-/* The same as processors without AVX2 do it. */
+/* The sum of log^2(x / y), in their order. */
+double ss_sum_squared_logs(int32_t count, const double *x, const double *y);
+/* The same as processors without AVX2 do them. */
 void ss_logs_plain(int32_t count, double *x);
+double ss_sum_squared_logs_plain(int32_t count, const double *x, const double *y);
 /* Of |x| under 700. */
 double ss_exp(double x);
 

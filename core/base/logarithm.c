@@ -29,54 +29,138 @@ double ss_log(double x) {
     return log_of(low ? 2 * m : m, low ? exponent - 1 : exponent);
 }
 
-/* The same of a normal number, by its bits and without a branch, so that several are computed at once. The exponent counts from
- * the bits of root_of_half; it becomes a double as the last bits of one of 2^52 and more. */
-INLINE double log_of_normal(double x) {
+/* ---- Several at once: each step of all of them before the next, since a step of one has to wait for the one before ---- */
+
+enum { VECTORS = 4, AT_ONCE = 4 * VECTORS };
+typedef double vector __attribute__((vector_size(32)));
+typedef double loose __attribute__((vector_size(32), aligned(8), may_alias)); /* wherever it is */
+typedef uint64_t bits __attribute__((vector_size(32)));
+
+INLINE void take(const double *from, vector x[VECTORS]) {
+    for (int k = 0; k < VECTORS; k++)
+        x[k] = *(const loose *)(from + 4 * k);
+}
+
+INLINE void put(const vector x[VECTORS], double *to) {
+    for (int k = 0; k < VECTORS; k++)
+        *(loose *)(to + 4 * k) = x[k];
+}
+
+INLINE bool are_normal(const vector x[VECTORS]) {
+    bits normal = ~(bits){0};
+    for (int k = 0; k < VECTORS; k++)
+        normal &= (bits)(x[k] >= DBL_MIN);
+    return normal[0] & normal[1] & normal[2] & normal[3];
+}
+
+/* Of normal numbers, by their bits and without a branch. The exponent counts from the bits of root_of_half; it becomes a double as the
+ * last bits of one of 2^52 and more. */
+INLINE void take_logs_of_normal(vector x[VECTORS]) {
     const uint64_t root = UINT64_C(0x3fe6a09e667f3bcd), above = UINT64_C(0x400) << 52, large = UINT64_C(0x433) << 52;
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    uint64_t raised = (bits - root + above) >> 52, mantissa = bits - (raised << 52) + above, counted = raised | large;
-    double m, exponent;
-    memcpy(&m, &mantissa, sizeof m);
-    memcpy(&exponent, &counted, sizeof exponent);
-    return log_of(m, exponent - (0x1p52 + 0x400));
+    vector exponent[VECTORS], s[VECTORS], square[VECTORS], sum[VECTORS];
+    for (int k = 0; k < VECTORS; k++) {
+        bits raised = ((bits)x[k] - root + above) >> 52;
+        vector m = (vector)((bits)x[k] - (raised << 52) + above);
+        exponent[k] = (vector)(raised | large) - (0x1p52 + 0x400);
+        s[k] = (m - 1) / (m + 1), square[k] = s[k] * s[k], sum[k] = square[k] * (1.0 / 21);
+    }
+    for (int divisor = 19; divisor >= 3; divisor -= 2)
+        for (int k = 0; k < VECTORS; k++)
+            sum[k] = square[k] * (sum[k] + 1.0 / divisor);
+    for (int k = 0; k < VECTORS; k++)
+        x[k] = exponent[k] * ln2_high + (2 * s[k] + (2 * s[k] * sum[k] + exponent[k] * ln2_low));
 }
 
-static void logs_of_normal(int32_t count, double *x) {
-    for (int32_t i = 0; i < count; i++)
-        x[i] = log_of_normal(x[i]);
+INLINE void take_logs(vector x[VECTORS]) {
+    double each[AT_ONCE];
+    if (are_normal(x)) {
+        take_logs_of_normal(x);
+        return;
+    }
+    put(x, each);
+    for (int i = 0; i < AT_ONCE; i++)
+        each[i] = ss_log(each[i]);
+    take(each, x);
 }
 
-#ifdef __x86_64__
-__attribute__((target("avx2"))) static void logs_of_normal_avx2(int32_t count, double *x) {
-    for (int32_t i = 0; i < count; i++)
-        x[i] = log_of_normal(x[i]);
+/* Fewer than AT_ONCE, then ones. */
+INLINE void fill_up(int32_t count, const double *x, double out[AT_ONCE]) {
+    for (int32_t i = 0; i < AT_ONCE; i++)
+        out[i] = i < count ? x[i] : 1;
 }
-#endif
 
-static bool are_normal(int32_t count, const double *x) {
-    int64_t normal = 0;
-    for (int32_t i = 0; i < count; i++)
-        normal += x[i] >= DBL_MIN;
-    return normal == count;
+INLINE void logs(int32_t count, double *x) {
+    vector some[VECTORS];
+    double last[AT_ONCE];
+    for (; count >= AT_ONCE; count -= AT_ONCE, x += AT_ONCE) {
+        take(x, some);
+        take_logs(some);
+        put(some, x);
+    }
+    fill_up(count, x, last);
+    take(last, some);
+    take_logs(some);
+    put(some, last);
+    memcpy(x, last, (size_t)count * sizeof *x);
+}
+
+/* Adds to sum the squares of logs of as many quotients, one after the other. */
+INLINE double add_squares(const double *x, const double *y, double sum) {
+    vector quotient[VECTORS], divisor[VECTORS];
+    take(x, quotient), take(y, divisor);
+    for (int k = 0; k < VECTORS; k++)
+        quotient[k] /= divisor[k];
+    take_logs(quotient);
+    for (int k = 0; k < VECTORS; k++) {
+        vector square = quotient[k] * quotient[k];
+        for (int j = 0; j < 4; j++)
+            sum += square[j];
+    }
+    return sum;
+}
+
+INLINE double sum_squares(int32_t count, const double *x, const double *y) {
+    double sum = 0, last[2][AT_ONCE];
+    for (; count >= AT_ONCE; count -= AT_ONCE, x += AT_ONCE, y += AT_ONCE)
+        sum = add_squares(x, y, sum);
+    fill_up(count, x, last[0]), fill_up(count, y, last[1]);
+    return add_squares(last[0], last[1], sum);
 }
 
 void ss_logs_plain(int32_t count, double *x) {
-    if (are_normal(count, x))
-        logs_of_normal(count, x);
-    else
-        for (int32_t i = 0; i < count; i++)
-            x[i] = ss_log(x[i]);
+    logs(count, x);
 }
+
+double ss_sum_squared_logs_plain(int32_t count, const double *x, const double *y) {
+    return sum_squares(count, x, y);
+}
+
+#ifdef __x86_64__
+__attribute__((target("avx2"))) static void logs_avx2(int32_t count, double *x) {
+    logs(count, x);
+}
+
+__attribute__((target("avx2"))) static double sum_squares_avx2(int32_t count, const double *x, const double *y) {
+    return sum_squares(count, x, y);
+}
+#endif
 
 void ss_logs(int32_t count, double *x) {
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2") && are_normal(count, x)) {
-        logs_of_normal_avx2(count, x);
+    if (__builtin_cpu_supports("avx2")) {
+        logs_avx2(count, x);
         return;
     }
 #endif
     ss_logs_plain(count, x);
+}
+
+double ss_sum_squared_logs(int32_t count, const double *x, const double *y) {
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2"))
+        return sum_squares_avx2(count, x, y);
+#endif
+    return ss_sum_squared_logs_plain(count, x, y);
 }
 
 /* x = e ln 2 + r, |r| at most ln 2 / 2: the series of exp r. */

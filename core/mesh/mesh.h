@@ -246,10 +246,15 @@ int32_t ss_patch_vertex(const ss_patch *patch, int32_t mesh_vertex);
 int32_t ss_patch_edge(const ss_patch *patch, int32_t a, int32_t b);
 /* The edge between two mesh vertices, or -1. */
 int32_t ss_patch_mesh_edge(const ss_patch *patch, int32_t a, int32_t b);
-/* The length of every edge, raised to patch->shortest. Returns how many were shorter. points is the whole mesh's. */
-int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths);
 /* The points [vertex_count][3] of the patch, of the whole mesh's. */
 void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]);
+
+/* ---- lengths.c ---- */
+
+/* The length of every edge, raised to patch->shortest. Returns how many were shorter. points is the whole mesh's. */
+int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths);
+/* The same bits, faster. own is scratch [vertex_count]. */
+int32_t ss_edge_lengths_at_once(const ss_patch *patch, const float *points, double (*own)[4], double *lengths);
 
 /* ---- split.c ---- */
 

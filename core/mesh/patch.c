@@ -209,23 +209,6 @@ static void put_outer_first(ss_patch *patch, int32_t *scratch) {
 
 /* ---- Lengths ---- */
 
-static double distance(const float *a, const float *b) {
-    double x = (double)a[0] - b[0], y = (double)a[1] - b[1], z = (double)a[2] - b[2];
-    return sqrt(x * x + y * y + z * z);
-}
-
-int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths) {
-    int32_t clamped = 0;
-    for (int32_t e = 0; e < patch->faces.edge_count; e++) {
-        const int32_t *v = patch->edge_vertex[e];
-        double length =
-            distance(points + 3 * (int64_t)patch->mesh_vertex[v[0]], points + 3 * (int64_t)patch->mesh_vertex[v[1]]);
-        clamped += length < patch->shortest;
-        lengths[e] = length < patch->shortest ? patch->shortest : length;
-    }
-    return clamped;
-}
-
 /* Not relative to the patch's centre: so differences of points are those from which edge lengths are taken, to the bit, and
  * rest has no stretch at all. */
 void ss_take_points(const ss_patch *patch, const float *points, double (*out)[3]) {

@@ -1,11 +1,11 @@
-/* Goes near several points at once, before walks to them. A hop goes over the side of a slab that a point is farthest outside of, as a
- * step of a walk does, but by no branch, since nothing foretells which side that is, and as far as rounding lets see. Hops of one
- * point wait for each other; those of several go on side by side. */
+/* Takes the first steps of several walks side by side. As a step of a walk does, a hop crosses the side of a slab that the point is
+ * farthest outside of; but it is computed without branches, because a processor cannot predict which side that is, and near a side
+ * it may err: the walks that follow are exact. Hops of one point have to wait for each other; those of several points overlap. */
 #include "plane.h"
 
 #define INLINE static inline __attribute__((always_inline))
 
-enum { LANES = 2, HOPS = 3 }; /* of which most points need no more, from where a neighbour landed */
+enum { LANES = 2, HOPS = 3 }; /* enough for most points from where a neighbour landed */
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t lane_bits __attribute__((vector_size(8 * LANES)));
 

@@ -28,6 +28,11 @@ static void apply_controls(const ss_part *part, ss_patch_work *work, const skins
         frame->paint = work->own_paint;
 }
 
+/* Edge lengths as ss_edge_lengths takes them; scratch comes from the room, in its current turn. */
+static int32_t take_lengths(ss_room *room, const ss_patch *patch, const float *points, double *lengths) {
+    return ss_edge_lengths_at_once(patch, points, ss_take_room(room, patch->vertex_count, sizeof(double[4])), lengths);
+}
+
 /* Begins a frame of a patch, as far as its rule can before other patches have begun: a device may go on meanwhile. */
 static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, const float *points,
                                     const skinslide_controls *controls, skinslide_error *error) {
@@ -36,7 +41,8 @@ static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, c
     skinslide_patch_result *result = &workspace->results[p];
     double time = ss_now();
     apply_controls(part, work, controls, &workspace->room, result);
-    result->zero_length_edges = ss_edge_lengths(part->patch, points, work->lengths);
+    ss_begin_turn(&workspace->room);
+    result->zero_length_edges = take_lengths(&workspace->room, part->patch, points, work->lengths);
     work->frame.points = points, work->frame.lengths = work->lengths, work->frame.stop = &workspace->stop;
     ss_lap(&time, &result->density_seconds);
     return part->rest->rule->start(work->slide, &work->frame, result, error);
@@ -167,23 +173,21 @@ static void measure_slide(const ss_patch *patch, const double (*displacement)[4]
     result->largest_slide = sqrt(largest);
 }
 
-/* RMS over edges of log(length / rest length), in the cache and slid. Both sums in one loop, since each addition to a sum has
- * to wait for the one before. */
-static void measure_stretch(const ss_patch *patch, const double *cached, const double *slid, skinslide_patch_result *result) {
-    enum { AT_ONCE = 256 };
-    double before[AT_ONCE], after[AT_ONCE], sum[2] = {0, 0};
-    for (int32_t begin = 0; begin < patch->faces.edge_count; begin += AT_ONCE) {
-        int32_t left = patch->faces.edge_count - begin, count = left < AT_ONCE ? left : AT_ONCE;
-        for (int32_t i = 0; i < count; i++) {
-            before[i] = cached[begin + i] / patch->rest_length[begin + i];
-            after[i] = slid[begin + i] / patch->rest_length[begin + i];
-        }
-        ss_logs(count, before), ss_logs(count, after);
-        for (int32_t i = 0; i < count; i++)
-            sum[0] += before[i] * before[i], sum[1] += after[i] * after[i];
-    }
-    result->stretch_before = sqrt(sum[0] / patch->faces.edge_count);
-    result->stretch_after = sqrt(sum[1] / patch->faces.edge_count);
+/* RMS over edges of log(length / rest length). */
+static double stretch_of(const ss_patch *patch, const double *lengths) {
+    int32_t count = patch->faces.edge_count;
+    return sqrt(ss_sum_squared_logs(count, lengths, patch->rest_length) / count);
+}
+
+static void measure(skinslide_workspace *workspace, int32_t p, const float *slid) {
+    const ss_patch *patch = workspace->slider->parts[p].patch;
+    skinslide_patch_result *result = &workspace->results[p];
+    measure_slide(patch, (const double(*)[4])workspace->sum, result);
+    ss_begin_turn(&workspace->room);
+    double *lengths = SS_TAKE(&workspace->room, double, patch->faces.edge_count);
+    take_lengths(&workspace->room, patch, slid, lengths);
+    result->stretch_before = stretch_of(patch, workspace->patches[p].lengths);
+    result->stretch_after = stretch_of(patch, lengths);
 }
 
 /* ---- One frame ---- */
@@ -233,14 +237,8 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     if ((status = write_points(workspace, points, slid, error)))
         return status;
     ss_bring(slider, &after, workspace->after);
-    for (int32_t p = 0; p < slider->part_count; p++) {
-        const ss_patch *patch = slider->parts[p].patch;
-        measure_slide(patch, (const double(*)[4])workspace->sum, &workspace->results[p]);
-        ss_begin_turn(&workspace->room);
-        double *lengths = SS_TAKE(&workspace->room, double, patch->faces.edge_count);
-        ss_edge_lengths(patch, after, lengths);
-        measure_stretch(patch, workspace->patches[p].lengths, lengths, &workspace->results[p]);
-    }
+    for (int32_t p = 0; p < slider->part_count; p++)
+        measure(workspace, p, after);
     if (results)
         ss_give_all(workspace->results, slider->part_count, sizeof *workspace->results, results);
     workspace->has_frame = true;

@@ -20,8 +20,13 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     ss_room counted = {0};
     ss_lay_out_displacement(work, part->patch, &counted);
     ss_ask_room(&workspace->room, &counted);
-    /* Paint of edges, and in the end their lengths, which are fewer bytes. */
-    ss_ask_room(&workspace->room, &(ss_room){.taken = edges * (int64_t)sizeof(ss_edge_paint)});
+    ss_begin_turn(&counted);
+    ss_take_room(&counted, edges, sizeof(ss_edge_paint));
+    ss_ask_room(&workspace->room, &counted);
+    ss_begin_turn(&counted);
+    ss_take_room(&counted, part->patch->vertex_count, sizeof(double[4]));
+    SS_TAKE(&counted, double, edges);
+    ss_ask_room(&workspace->room, &counted);
     skinslide_status status = part->rest->rule->open(part->rest, &workspace->room, workspace->idbuffer, p, &work->slide, error);
     if (!status && part->cage)
         status = ss_cage_work_create(part->cage, &work->cage, error);

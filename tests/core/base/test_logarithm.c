@@ -42,6 +42,27 @@ static void several_are_each_to_the_bit(void **state) {
     }
 }
 
+/* As they come, of whatever count and with what is not normal among them. */
+static void squares_are_summed_in_their_order(void **state) {
+    (void)state;
+    enum { COUNT = 100 };
+    double x[COUNT], y[COUNT];
+    for (int i = 0; i < COUNT; i++)
+        x[i] = ldexp(1 + i / 97.0, i % 40 - 20), y[i] = 1 + i / 89.0;
+    for (int k = 0; k < 4; k++) {
+        double sum = 0;
+        if (k % 2)
+            x[5] = 0x1p-1060;
+        for (int32_t count = 0; count < COUNT; count++) {
+            double found = (k < 2 ? ss_sum_squared_logs : ss_sum_squared_logs_plain)(count, x, y);
+            assert_memory_equal(&found, &sum, sizeof sum);
+            double logarithm = ss_log(x[count] / y[count]);
+            sum += logarithm * logarithm;
+        }
+        x[5] = 3;
+    }
+}
+
 static void exponentials_are_those_of_the_library(void **state) {
     (void)state;
     for (double x = -700; x < 700; x += 0.37)
@@ -53,6 +74,7 @@ int main(void) {
         cmocka_unit_test(one_has_none),
         cmocka_unit_test(logarithms_are_those_of_the_library),
         cmocka_unit_test(several_are_each_to_the_bit),
+        cmocka_unit_test(squares_are_summed_in_their_order),
         cmocka_unit_test(exponentials_are_those_of_the_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,74 @@
+/* Lengths of edges: one by one, or four at once, for which points are first copied to four numbers each. */
+#include "mesh.h"
+
+/* From an edge on. */
+static int32_t measure(const ss_patch *patch, const float *points, int32_t first, double *lengths) {
+    int32_t clamped = 0;
+    for (int32_t e = first; e < patch->faces.edge_count; e++) {
+        const int32_t *v = patch->edge_vertex[e];
+        double length = ss_distance(points, patch->mesh_vertex[v[0]], patch->mesh_vertex[v[1]]);
+        clamped += length < patch->shortest;
+        lengths[e] = length < patch->shortest ? patch->shortest : length;
+    }
+    return clamped;
+}
+
+int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *lengths) {
+    return measure(patch, points, 0, lengths);
+}
+
+#ifdef __x86_64__
+typedef double vector __attribute__((vector_size(32)));
+typedef double loose __attribute__((vector_size(32), aligned(8), may_alias)); /* wherever it is */
+typedef int64_t bits __attribute__((vector_size(32)));
+
+static void lay_out(const ss_patch *patch, const float *points, double (*out)[4]) {
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        const float *from = points + 3 * (int64_t)patch->mesh_vertex[v];
+        out[v][0] = from[0], out[v][1] = from[1], out[v][2] = from[2], out[v][3] = 0;
+    }
+}
+
+/* The squares of four lengths, of edges that follow each other. */
+__attribute__((target("avx2"), always_inline)) static inline vector squares(const int32_t (*edge)[2],
+                                                                            const double (*points)[4]) {
+    vector way[4], low[2], high[2];
+    for (int k = 0; k < 4; k++)
+        way[k] = *(const loose *)points[edge[k][1]] - *(const loose *)points[edge[k][0]];
+    for (int k = 0; k < 2; k++) {
+        vector a = way[2 * k], b = way[2 * k + 1];
+        low[k] = (vector){a[0], b[0], a[2], b[2]}, high[k] = (vector){a[1], b[1], a[3], b[3]};
+    }
+    vector x = {low[0][0], low[0][1], low[1][0], low[1][1]}, y = {high[0][0], high[0][1], high[1][0], high[1][1]},
+           z = {low[0][2], low[0][3], low[1][2], low[1][3]};
+    return x * x + y * y + z * z;
+}
+
+/* Of the first edges, whose count is a multiple of four. It has no calls: GCC 12 does not clear the upper halves of registers before
+ * one here, and SSE code that runs next is slow then. */
+__attribute__((target("avx2"))) static int32_t measure_avx2(const ss_patch *patch, const double (*points)[4], int32_t count,
+                                                            double *lengths) {
+    const vector shortest = {patch->shortest, patch->shortest, patch->shortest, patch->shortest};
+    bits clamped = {0};
+    for (int32_t e = 0; e < count; e += 4) {
+        vector square = squares((const int32_t(*)[2])patch->edge_vertex + e, points);
+        vector length = {sqrt(square[0]), sqrt(square[1]), sqrt(square[2]), sqrt(square[3])};
+        bits is_short = length < shortest;
+        *(loose *)(lengths + e) = (vector)(((bits)shortest & is_short) | ((bits)length & ~is_short));
+        clamped -= is_short;
+    }
+    return (int32_t)(clamped[0] + clamped[1] + clamped[2] + clamped[3]);
+}
+#endif
+
+int32_t ss_edge_lengths_at_once(const ss_patch *patch, const float *points, double (*own)[4], double *lengths) {
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) {
+        int32_t fours = patch->faces.edge_count / 4 * 4;
+        lay_out(patch, points, own);
+        return measure_avx2(patch, (const double(*)[4])own, fours, lengths) + measure(patch, points, fours, lengths);
+    }
+#endif
+    (void)own;
+    return ss_edge_lengths(patch, points, lengths);
+}
