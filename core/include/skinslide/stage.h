@@ -1,8 +1,8 @@
 /* skinslide/stage.h: what SkinSlideAPI means. Values as a scene holds them become what skinslide.h takes, or one sentence.
  *
  * A reader of scenes (of USD, of a host application) fetches values and hands each over as a record: names, numbers and tokens
- * as they were authored. It checks nothing, expands nothing and has no defaults: all that is here, so that a scene means the
- * same in every reader. What there is to fetch it asks for, so that a reader need not change when the schema grows.
+ * as they were authored. It checks nothing, expands nothing and has no defaults: all of that is done here, so that a scene
+ * means the same in every reader. It asks here what there is to fetch, so that it need not change when the schema grows.
  *
  * How a reader uses it, in order
  *     1. A prim that mentions the schema: its facts to skinslide_stage_find, which gives the patches it carries, why they
@@ -12,22 +12,22 @@
  *     3. For each patch skinslide_stage_patch_create, each input of the group PATCH to skinslide_stage_patch_take, the child
  *        prim of the patch's name to skinslide_stage_patch_take_subset and, where there is one, each input of the group SUBSET
  *        to skinslide_stage_patch_take. Paint, here and in 4, is found by skinslide_stage_patch_property.
- *        Where skinslide_stage_patch_wants_neighbours says so, the meshes beside it to skinslide_stage_patch_meet.
+ *        If skinslide_stage_patch_wants_neighbours says so, the other meshes in its space to skinslide_stage_patch_meet.
  *     4. Its controls at the first time: skinslide_stage_controls_create, each input of the group CONTROLS to
  *        skinslide_stage_controls_take; then, for textures, the input that skinslide_stage_controls_coordinates gives, and the
  *        files that skinslide_stage_controls_need asks for.
- *     5. Where skinslide_stage_patch_needs_subdivision says so of any patch, the inputs of the group SUBDIVISION to
+ *     5. If skinslide_stage_patch_needs_subdivision says so of any patch, the inputs of the group SUBDIVISION to
  *        skinslide_stage_mesh_take.
- *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes, with the weld that comes
- *        of skinslide_stage_mesh_weld, which is shown every sample of points.
- *     7. A frame: its points to skinslide_stage_points. Where controls vary, a controls handle of the thread's own, made from
- *        that of step 4, is given those that do, and skinslide_stage_controls_get gives what skinslide_slide takes.
+ *     6. skinslide_stage_mesh_get and skinslide_stage_patch_get: what skinslide_slider_create takes, with the weld that
+ *        skinslide_stage_mesh_weld begins and that is shown every sample of points.
+ *     7. For each frame, its points to skinslide_stage_points. Where controls vary, each thread makes a controls handle from
+ *        that of step 4 and hands those that vary to it; skinslide_stage_controls_get gives what skinslide_slide takes.
  *     8. What follows from points: skinslide_stage_derived_create, each input of the group DERIVED and each primvar that
  *        skinslide_stage_derived_offer accepts to skinslide_stage_derived_take, its later samples to
  *        skinslide_stage_derived_check, then skinslide_stage_derived_value for each of its outputs at each time.
- * Every sentence names the property by the name in its record, and the element; the reader puts prim, patch and frame in front.
- * A handle that refused a value may be given the others all the same, so that a reader can say all that is wrong; it then gives
- * nothing, until a value that it can use takes the place of the refused one.
+ * Every message names the property, by the name in its record, and the element; the reader puts prim, patch and frame in front.
+ * A handle that refused a value may still be given the others, so that a reader can report all errors; it then gives nothing
+ * until a value that it can use replaces the refused one.
  *
  * Conventions are those of skinslide.h. Records, and what they point to, are read during the call only. A handle may be read by
  * any number of threads, but changed by one at a time, while no other uses it.
@@ -60,7 +60,7 @@ typedef enum skinslide_value_type {
     SKINSLIDE_VALUE_FLOAT,
     SKINSLIDE_VALUE_DOUBLE,
     SKINSLIDE_VALUE_TEXT,  /* a token or a string: data is the text itself, UTF-8 and ended by 0 */
-    SKINSLIDE_VALUE_ASSET, /* the path of a file, given as TEXT is: one that no longer depends on the layer that authored it */
+    SKINSLIDE_VALUE_ASSET, /* the path of a file, as TEXT: anchored, so that it does not depend on the layer that authored it */
     SKINSLIDE_VALUE_OTHER  /* a value of another kind: data is not read, and type_name says what it is */
 } skinslide_value_type;
 
@@ -81,7 +81,7 @@ typedef struct skinslide_value {
 #define SKINSLIDE_VALUE_DEFAULT                                                                                                \
     { sizeof(skinslide_value), 0, 0, SKINSLIDE_VALUE_NONE, 0, 1, 0, 0, 0, 0 }
 
-/* The elements of a record, indices applied; 0 where it has no value. */
+/* How many elements a record has, indices applied; 0 where it has no value. */
 SKINSLIDE_API int64_t skinslide_value_length(const skinslide_value *value);
 
 /* The elements of an array of whole numbers; of a record of no value there are none.
@@ -113,11 +113,11 @@ typedef enum skinslide_stage_group {
     SKINSLIDE_STAGE_COORDINATES  /* no group to list, but what skinslide_stage_controls_coordinates gives */
 } skinslide_stage_group;
 
-/* When a value is fetched. The first time is that of the first sample; where there are none, the default. */
+/* When a value is fetched. The first time is that of the first sample or, without samples, the default time. */
 typedef enum skinslide_stage_when {
     SKINSLIDE_STAGE_FIRST,        /* at the first time */
-    SKINSLIDE_STAGE_STILL,        /* the same; each other sample, and a default that the first one hides, with the frame of
-                                   * that, goes to the handle's *_check */
+    SKINSLIDE_STAGE_STILL,        /* the same; every later sample goes to the handle's *_check, and so does a default that the
+                                   * first sample hides, with the frame of that */
     SKINSLIDE_STAGE_DEFAULT_TIME, /* the default value, whatever samples there are */
     SKINSLIDE_STAGE_ANIMATED      /* at the first time, and at every frame where it varies */
 } skinslide_stage_when;
@@ -127,42 +127,42 @@ typedef struct skinslide_stage_input {
     const char *name;          /* "faceVertexCounts", "weight" */
     const char *type_name;     /* as USD or the schema declares it; of what may have several types, one */
     const char *fallback;      /* what it is where it is not authored, as text; NULL: nothing */
-    const char *const *tokens; /* that it may be, in the order of the core's enum, then NULL; NULL: it is no choice */
+    const char *const *tokens; /* those that it may be, in the order of the core's enum, then NULL; NULL: it is no choice */
     skinslide_stage_group group;
     const char *prefix; /* "", "primvars:", "skinSlide:", "primvars:skinSlide:" */
     skinslide_stage_when when;
     skinslide_bool is_primvar;   /* it may have indices, in NAME:indices */
-    skinslide_bool is_inherited; /* where the mesh has none, a constant one of the nearest ancestor that has any counts */
+    skinslide_bool is_inherited; /* if the mesh has none, that of the nearest ancestor that has one counts, if it is constant */
 } skinslide_stage_input;
 
 /* Whether the values of an input are paths of files. */
 SKINSLIDE_API skinslide_bool skinslide_stage_is_texture(const skinslide_stage_input *input);
 
-/* The first input of a group, for NULL; then the one after each; NULL after the last. They live as long as the library, and are
- * to be handed over in this order. */
+/* The first input of a group for NULL, else the one after `before`; NULL after the last. They live as long as the library. Hand
+ * their values over in this order. */
 SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_input(skinslide_stage_group group,
                                                                       const skinslide_stage_input *before);
 
-/* Checks what is to be authored for an input of the group PATCH or LIVE, as far as that can be told without a mesh: that it is
- * one of its tokens, or that it may be indices of points.
+/* Checks a value to be authored for an input of the group PATCH or LIVE, as far as is possible without a mesh: that it is one
+ * of its tokens, or that it may be indices of points.
  * Fails with BAD_CONTROL (names it by the record's name), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_check_value(const skinslide_stage_input *input, const skinslide_value *value,
                                                            skinslide_error *error);
 
 /* ---- Prims --------------------------------------------------------------------------------------------------------------- */
 
-/* "SkinSlideAPI": a prim that has it applied, as SkinSlideAPI:PATCH, carries a patch. A static string. */
+/* "SkinSlideAPI": a prim to which it is applied, as SkinSlideAPI:PATCH, carries a patch. A static string. */
 SKINSLIDE_API const char *skinslide_stage_schema(void);
 
-/* Whether a name may be a patch's, as far as the schema goes: not "", nor names that it has other uses for. */
+/* Whether a name may be a patch's, as far as the schema is concerned: not "", and none that it uses for something else. */
 SKINSLIDE_API skinslide_bool skinslide_stage_can_name_patch(const char *name);
 
-/* Words of sentences that readers say themselves. */
+/* Words for messages of readers' own. */
 typedef enum skinslide_saying {
-    SKINSLIDE_SAYING_NO_TYPE,   /* of a prim that has none, where its type would stand */
-    SKINSLIDE_SAYING_NO_FILE,   /* of a file that is missing */
-    SKINSLIDE_SAYING_IRREGULAR, /* of a pipe, a socket or a device, behind its name */
-    SKINSLIDE_SAYING_UNREADABLE /* of a file, or of a value in one, behind its name */
+    SKINSLIDE_SAYING_NO_TYPE,   /* in place of the type of a prim that has none */
+    SKINSLIDE_SAYING_NO_FILE,   /* that a file is missing */
+    SKINSLIDE_SAYING_IRREGULAR, /* that a file is a pipe, a socket or a device; behind its name */
+    SKINSLIDE_SAYING_UNREADABLE /* that a file, or a value in one, cannot be read; behind its name */
 } skinslide_saying;
 
 /* A static string; NULL for another number. */
@@ -178,18 +178,18 @@ typedef struct skinslide_stage_prim {
     const char *instancer;     /* the path of the point instancer that it, or what it is below, is a prototype of; or NULL */
     const char *slid_by;       /* the file that computes its points as slid already, or NULL */
     const char *baked_by;      /* the layer of an earlier bake that its points, or their default value, come from; or NULL */
-    int32_t point_samples;     /* how many points has */
+    int32_t point_samples;     /* how many samples its points have */
     skinslide_bool has_joint_indices; /* primvars:skel:jointIndices has a value, be it inherited */
     int32_t blend_shape_count;        /* targets of skel:blendShapeTargets */
     int32_t schema_count;             /* of applied schemas */
     int32_t property_count;           /* of authored properties that begin with skinSlide: or primvars: */
     const char *const *schemas;       /* [schema_count] their names, in order */
     const char *const *properties;    /* [property_count] their names */
-    const char *uncomposed;           /* what USD says that it could not compose of it, in one line; or NULL */
-    const char *variant_set;          /* of the variant that its points come from; NULL: of none, or they are written there */
+    const char *uncomposed;           /* what USD could not compose of it, in one line; or NULL */
+    const char *variant_set;          /* of the variant that its points come from; NULL: of none, or of the one written into */
     const char *variant;              /* its name */
-    const char *skel_root;            /* the path of the nearest SkelRoot, of it and what it is below; or NULL */
-    const char *skeleton;             /* that of the Skeleton that is bound to it, there or below; NULL: none, or unbound */
+    const char *skel_root;            /* the path of the nearest SkelRoot, the prim itself or an ancestor; or NULL */
+    const char *skeleton;             /* that of the Skeleton that is bound to it, at or below that; NULL: none, or unbound */
     skinslide_bool has_joint_weights; /* primvars:skel:jointWeights has a value, be it inherited */
     skinslide_bool reads_skinning;    /* the reader asks UsdSkel for points, and takes those for the cache */
 } skinslide_stage_prim;
@@ -207,7 +207,7 @@ typedef struct skinslide_stage_problem {
 } skinslide_stage_problem;
 
 typedef struct skinslide_stage_finding {
-    skinslide_bool slides; /* it carries patches, and none of these facts keeps them from being slid */
+    skinslide_bool slides; /* it carries patches, and none of these facts stops them from being slid */
     int32_t patch_count;
     int32_t problem_count;
     const char *const *patches;                     /* [patch_count] their names, in the order of the schemas */
@@ -224,7 +224,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_find(const skinslide_stage_prim *
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_finding_destroy(skinslide_stage_finding *finding);
 
-/* The sentence for a scene in which no mesh carries a patch: always fails, with BAD_PATCH.
+/* The message for a scene in which no mesh carries a patch: always fails, with BAD_PATCH.
  *   where  in  "on the stage"; NULL: nowhere in particular */
 SKINSLIDE_API skinslide_status skinslide_stage_nothing(const char *where, skinslide_error *error);
 
@@ -236,53 +236,53 @@ typedef struct skinslide_stage_mesh skinslide_stage_mesh;
 /* Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_create(skinslide_stage_mesh **out, skinslide_error *error);
 
-/* NULL does nothing. Its patches must be gone before it. */
+/* NULL does nothing. Destroy its patches first. */
 SKINSLIDE_API void skinslide_stage_mesh_destroy(skinslide_stage_mesh *mesh);
 
-/* Takes the value of an input of the group MESH or SUBDIVISION. Where points, face counts or face indices are refused, what
- * comes after needs them. Rest points are the first candidate that is authored.
+/* Takes the value of an input of the group MESH or SUBDIVISION. What comes later needs points, face counts and face indices,
+ * and fails if these were refused. Rest points are the first candidate that is authored.
  * Fails with BAD_POINTS (points and rest points), BAD_CONTROL (numbers), BAD_MESH (the others; each names what it cannot use),
  * BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
                                                          const skinslide_value *value, skinslide_error *error);
 
 /* Checks that a later sample of an input that must stay the same does so.
- *   frame  in  its time, for the sentence
+ *   frame  in  its time, for the message
  * Fails as skinslide_stage_mesh_take ("NAME changes at frame 1002; it must stay the same over time"). */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_check(const skinslide_stage_mesh *mesh, const skinslide_stage_input *input,
                                                           const skinslide_value *value, double frame, skinslide_error *error);
 
-/* The mesh as the slider takes it; its arrays are the handle's, and subdivision is NULL where it was not taken, or is none.
+/* The mesh as the slider takes it; its arrays are the handle's. subdivision is NULL if it was not taken, or there is none.
  * Fails with BAD_ARGUMENT where something is missing, or was refused. */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_get(const skinslide_stage_mesh *mesh, skinslide_mesh *out,
                                                         skinslide_error *error);
 
-/* The same once points and faces are there, which is what patches need; rest points may be missing, and are then NULL.
+/* The same as soon as points and faces are there, which patches need; rest points may be missing, and are then NULL.
  * Fails with BAD_ARGUMENT where points or faces are missing, or were refused. */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_mesh *mesh, skinslide_mesh *out,
                                                           skinslide_error *error);
 
-/* Where the rest points were found: "primvars:Pref", "points (default)"; "" before. Lives as long as the mesh. */
+/* Where the rest points were found: "primvars:Pref", "points (default)"; "" before that. Lives as long as the mesh. */
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
 
-/* What to warn of: rest points of another scale, which are taken at the cache's; NULL: nothing. Lives as long as the mesh. Rest
- * is compared with the points of the first time, edge by edge, unless skinSlide:compareRest is off. */
+/* A warning of rest points of another scale, which are scaled to the cache's; NULL: none. Lives as long as the mesh. Rest is
+ * compared with the points of the first time, edge by edge, unless skinSlide:compareRest is off. */
 SKINSLIDE_API const char *skinslide_stage_mesh_warning(const skinslide_stage_mesh *mesh);
 
-/* Takes the way of the mesh to the world at a time, the first time first, then those at which the transforms above it were
- * authored. Where skinSlide:worldSpace is on, lengths are those in the world.
+/* Takes the transform of the mesh to the world: at the first time, then at those at which the transforms above it were
+ * authored. If skinSlide:worldSpace is on, lengths are those in the world.
  *   to_world  in  [4][4] takes points, as rows, to the world
- *   frame     in  its time, for the sentence
- * Fails, where lengths are taken there, with BAD_CONTROL (the mesh is flat in the world, its shape there changes but for its
- * size, not finite), BAD_ARGUMENT, OUT_OF_MEMORY. */
+ *   frame     in  its time, for the message
+ * If lengths are those in the world, fails with BAD_CONTROL (the mesh is flat there, the transform changes its shape over time
+ * and not only its size, not finite), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_space(skinslide_stage_mesh *mesh, const double to_world[16], double frame,
                                                           skinslide_error *error);
 
-/* What to warn of: transforms that scale the mesh more one way than another, where lengths are taken in its own space; NULL:
- * nothing. Lives as long as the mesh. */
+/* A warning of transforms that scale the mesh more one way than another, if lengths are those in its own space; NULL: none.
+ * Lives as long as the mesh. */
 SKINSLIDE_API const char *skinslide_stage_mesh_space_warning(const skinslide_stage_mesh *mesh);
 
-/* Begins to find which vertices are one, as skinslide_weld_create, as near as skinSlide:weldTolerance says.
+/* Begins to weld points, as skinslide_weld_create does, with skinSlide:weldTolerance.
  *   setups  in   [setup_count] all patches of the mesh
  *   out     out  the caller's to destroy; NULL where skinSlide:weld is off
  * Fails as skinslide_weld_create and skinslide_stage_mesh_get. */
@@ -294,12 +294,12 @@ SKINSLIDE_API skinslide_bool skinslide_stage_mesh_left_handed(const skinslide_st
 
 /* The points of a frame.
  *   points  out [vertex_count][3]; NULL: the record is only checked, as where its data are floats that can be used as they are
- * Fails with BAD_POINTS (no value, not points, another count than at first), BAD_ARGUMENT. Whether they are finite the slider
- * asks. */
+ * Fails with BAD_POINTS (no value, not points, another count than at first), BAD_ARGUMENT. The slider checks whether they are
+ * finite. */
 SKINSLIDE_API skinslide_status skinslide_stage_points(const skinslide_stage_mesh *mesh, const skinslide_value *value,
                                                       float *points, skinslide_error *error);
 
-/* What skinslide_slide would say of the points of a frame, for those who look at frames before they slide them.
+/* Fails as skinslide_slide would for the points of a frame, for readers that check frames before they slide them.
  *   points  in  [vertex_count][3]
  * Fails with BAD_POINTS (not finite: names the first vertex), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_stage_check_points(const skinslide_stage_mesh *mesh, const float *points,
@@ -312,8 +312,8 @@ SKINSLIDE_API skinslide_status skinslide_stage_check_points(const skinslide_stag
 SKINSLIDE_API skinslide_status skinslide_stage_coordinates(const skinslide_stage_mesh *mesh, const skinslide_value *value,
                                                            float *st, skinslide_error *error);
 
-/* Offers a primvar of the mesh itself, so that errors can list those that may be texture coordinates: of each that has a value,
- * in the order of their names, before patches are read.
+/* Offers a primvar of the mesh itself, so that errors can list those that may be texture coordinates. Offer each that has a
+ * value, in the order of their names, before patches are read.
  *   name           in  "primvars:map1"
  *   type_name      in  as the scene declares it: "texCoord2f[]"
  *   interpolation  in  as authored; NULL: it is not
@@ -321,10 +321,11 @@ SKINSLIDE_API skinslide_status skinslide_stage_coordinates(const skinslide_stage
 SKINSLIDE_API skinslide_status skinslide_stage_mesh_offer(skinslide_stage_mesh *mesh, const char *name, const char *type_name,
                                                           const char *interpolation, skinslide_error *error);
 
-/* Those that may be: "primvars:map1, primvars:uv"; "" where there are none. Lives as long as the mesh. */
+/* The primvars that may be texture coordinates: "primvars:map1, primvars:uv"; "" if there are none. Lives as long as the mesh.
+ * */
 SKINSLIDE_API const char *skinslide_stage_mesh_coordinates(const skinslide_stage_mesh *mesh);
 
-/* What any primvar says of the points: bools, ints or floats by vertex, as an artist chooses points by.
+/* The values by which any primvar chooses points: bools, ints or floats by vertex.
  *   numbers  out [vertex_count]
  * Fails with BAD_PATCH (another type, interpolation or length, an index out of range, a number that is not finite),
  * BAD_ARGUMENT. */
@@ -333,7 +334,7 @@ SKINSLIDE_API skinslide_status skinslide_stage_painted(const skinslide_stage_mes
 
 /* ---- Patches ------------------------------------------------------------------------------------------------------------- */
 
-/* What a shot sets from outside, for every patch of a file. Start from SKINSLIDE_STAGE_LIVE_DEFAULT: nothing. */
+/* What a shot sets for every patch of a file. Start from SKINSLIDE_STAGE_LIVE_DEFAULT: nothing. */
 typedef struct skinslide_stage_live {
     size_t size;           /* sizeof(skinslide_stage_live) */
     double envelope;       /* scales each patch's own */
@@ -362,11 +363,11 @@ SKINSLIDE_API skinslide_status skinslide_stage_patch_create(const skinslide_stag
                                                             const skinslide_stage_live *live, skinslide_stage_patch **out,
                                                             skinslide_error *error);
 
-/* NULL does nothing. Its controls must be gone before it. */
+/* NULL does nothing. Destroy its controls first. */
 SKINSLIDE_API void skinslide_stage_patch_destroy(skinslide_stage_patch *patch);
 
-/* Takes the value of an input of the group PATCH or, after its subset was taken, of SUBSET. The primvar of faces may be any
- * record of that kind, of any name; where it chose faces those of the subset are not looked at.
+/* Takes the value of an input of the group PATCH or, after its subset was taken, of SUBSET. The primvar of faces may have any
+ * name; if it chose faces, those of the subset are ignored.
  * Fails with BAD_PATCH (faces), BAD_CONTROL (the others; each names what it cannot use), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take(skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                                           const skinslide_value *value, skinslide_error *error);
@@ -388,48 +389,47 @@ typedef struct skinslide_stage_subset {
 #define SKINSLIDE_STAGE_SUBSET_DEFAULT                                                                                         \
     { sizeof(skinslide_stage_subset), 0, 0, 0 }
 
-/* Takes the child prim whose inputs follow, or learns from NULL that there is none. Where the primvar chose faces nothing is
- * looked at.
+/* Takes the child prim whose inputs follow; NULL: there is none. Does nothing if the primvar chose faces.
  * Fails with BAD_PATCH (no such child, no GeomSubset), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
                                                                  const skinslide_stage_subset *subset, skinslide_error *error);
 
-/* Sorts names [count] of properties so that those which differ in case, and in underscores for colons, alone are next to each
+/* Sorts names [count] of properties so that names that differ only in case, or in underscores for colons, are next to each
  * other. */
 SKINSLIDE_API void skinslide_stage_sort_names(const char **names, int32_t count);
 
-/* Paint counts under the schema's name, else under that with underscores for colons, as tools leave it that know no namespaces
- * (primvars:skinSlide_elbow_L_weight); else, where skinSlide:foldCase is on, under either in another case.
+/* Finds the property that an input of a patch is. Paint may have the schema's name, else that name with underscores for colons,
+ * as written by tools that know no namespaces (primvars:skinSlide_elbow_L_weight), else, if skinSlide:foldCase is on, either of
+ * these in another case.
  *   input  in  of the group PATCH or CONTROLS
  *   names  in  [count] the properties of a prim that have values or are blocked, sorted by skinslide_stage_sort_names
- * Returns which of them the input is; -1: none, and always where it is no primvar. */
+ * Returns its index in names; -1 where it is none of them, and always if the input is no primvar. */
 SKINSLIDE_API int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const skinslide_stage_input *input,
                                                      const char *const *names, int32_t count);
 
-/* What there is to say of paint that is not as the schema has it: its name, its type, the channel that counts, its mean.
+/* Describes paint that is not as the schema has it: its name, its type, the channel that counts, that its mean counts.
  *   value  in   of an input of the group PATCH or CONTROLS
  *   text   out  [512] "weight comes from primvars:skinSlide_elbow_L_weight, color3f[], channel r"
- * Returns 0, and leaves text alone, where it is as the schema has it, or no primvar. */
+ * Returns 0, and leaves text alone, if it is as the schema has it, or no primvar. */
 SKINSLIDE_API skinslide_bool skinslide_stage_patch_describe(const skinslide_stage_patch *patch,
                                                             const skinslide_stage_input *input, const skinslide_value *value,
                                                             char text[512]);
 
-/* The faces of the patch so far, ascending, as long as the patch lives and no others are taken; NULL and 0 before. They are
- * those chosen and, once its grow and its rule are taken, those that join them.
- *   face_count  out or NULL */
+/* The faces of the patch so far, ascending: those chosen and, once its grow and its rule are taken, those that join them. They
+ * live as long as the patch, until other faces are taken. NULL and 0 before the first are.
+ *   face_count  out, or NULL */
 SKINSLIDE_API const int32_t *skinslide_stage_patch_faces(const skinslide_stage_patch *patch, int32_t *face_count);
 
-/* What to warn of once its faces are there: rest points that resemble the cache poorly; NULL: nothing. Lives as long as the
- * patch, until faces are taken again. */
+/* A warning, once its faces are there, of rest points that resemble the cache poorly; NULL: none. Lives as long as the patch,
+ * until faces are taken again. */
 SKINSLIDE_API const char *skinslide_stage_patch_warning(const skinslide_stage_patch *patch);
 
-/* Whether borders of the patch may slide, and are to stay where another mesh meets them: its holes are free, and skinSlide:weld
+/* Whether borders of the patch could slide, but must stay where another mesh meets them: `holes` frees them, and skinSlide:weld
  * is on. */
 SKINSLIDE_API skinslide_bool skinslide_stage_patch_wants_neighbours(const skinslide_stage_patch *patch);
 
-/* Takes another mesh in the same space, such as a head above a body: where it has points in the place of the patch's, as near
- * as skinSlide:weldTolerance says, borders stay. One that has a point at each of the patch's is a copy of it, and counts for
- * nothing.
+/* Takes another mesh in the same space, such as a head above a body: borders stay where it has points in the same places as the
+ * patch, to within skinSlide:weldTolerance. A mesh that has a point at each of the patch's is a copy of it, and is ignored.
  *   others  in  [count][3] at the time at which the points of the patch's mesh were taken; those that are not finite are passed
  *               over
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
@@ -441,13 +441,13 @@ SKINSLIDE_API skinslide_bool skinslide_stage_patch_needs_subdivision(const skins
 
 /* ---- Controls ------------------------------------------------------------------------------------------------------------ */
 
-/* What is painted and animated on a patch, at one time: memory that one frame after another uses. */
+/* What is painted and animated on a patch, at one time. The memory is used again for one frame after another. */
 typedef struct skinslide_stage_controls skinslide_stage_controls;
 
 /* Makes controls with the fallbacks of the schema.
- *   patch  in  has its faces and settings; must outlive the controls. Without faces every one counts as the patch's
- *   base   in  controls of the patch whose values these begin with, and which must outlive them and stay as they are; or NULL.
- *              Nothing is copied, so a thread's own controls cost what varies
+ *   patch  in  has its faces and settings; must outlive the controls. Without faces, all of the mesh's count as its own
+ *   base   in  controls of the patch from whose values these begin, which must outlive them and not change; or NULL. Nothing
+ *              is copied, so controls of a thread's own take memory only for what varies
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_create(const skinslide_stage_patch *patch,
                                                                const skinslide_stage_controls *base,
@@ -456,17 +456,17 @@ SKINSLIDE_API skinslide_status skinslide_stage_controls_create(const skinslide_s
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_controls_destroy(skinslide_stage_controls *controls);
 
-/* Takes the value of an input of the group CONTROLS, or of the one of texture coordinates. Paint is expanded into memory that
+/* Takes the value of an input of the group CONTROLS, or of the input of texture coordinates. Paint is expanded into memory that
  * the controls keep; off the patch, where it is often 0, it does not count.
- * Fails with BAD_CONTROL (names what it cannot use; of texture coordinates skinslide_stage_controls_need says it),
- * BAD_ARGUMENT, OUT_OF_MEMORY. */
+ * Fails with BAD_CONTROL (names what it cannot use; what is wrong with texture coordinates skinslide_stage_controls_need
+ * reports), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls,
                                                              const skinslide_stage_input *input, const skinslide_value *value,
                                                              skinslide_error *error);
 
-/* Textures are sampled once all this is there: the asset, taken as an input; the primvar with texture coordinates, which this
- * gives as one more input, primvars:st for one, or NULL where no asset is authored; and each file that
- * skinslide_stage_controls_need asks for. A frame brings what varies of them. The input lives as long as the patch. */
+/* The primvar with texture coordinates, such as primvars:st, as one more input; NULL if no texture is authored. Textures are
+ * sampled once there are the asset, which is an input, this primvar, and each file that skinslide_stage_controls_need asks for;
+ * for a frame, those of them that vary. The input lives as long as the patch. */
 SKINSLIDE_API const skinslide_stage_input *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls);
 
 /* A file that a texture is made of. */
@@ -474,36 +474,35 @@ typedef struct skinslide_stage_need {
     const skinslide_stage_input *input; /* the texture's */
     const char *path;                   /* that of the asset, with the tile's number where it says <UDIM> */
     int32_t tile;                       /* that number; 0 of a file without tiles */
-    int64_t largest;                    /* bytes of a file; those of larger ones need not be read, which are refused */
+    int64_t largest;                    /* bytes of the largest file that is accepted: larger ones need not be read */
 } skinslide_stage_need;
 
-/* The next file that is wanted, until it is given. Ask once a frame's values are taken.
- *   need  out  NULL where there is none; it lives until the next call that changes the controls
- * Fails with BAD_CONTROL (no texture coordinates: says which setting names them; as skinslide_stage_coordinates; coordinates
- * that are in no tile), BAD_ARGUMENT, OUT_OF_MEMORY. */
+/* The next file that is needed: the same one until it is given. Ask when all values of a frame are taken.
+ *   need  out  NULL if there is none; it lives until the next call that changes the controls
+ * Fails with BAD_CONTROL (no texture coordinates: says which setting names them; what skinslide_stage_coordinates fails with;
+ * coordinates that are in no tile), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_need(skinslide_stage_controls *controls,
                                                              const skinslide_stage_need **need, skinslide_error *error);
 
-/* A file that was asked for. Start from SKINSLIDE_STAGE_FILE_DEFAULT: there is none. */
+/* A file that was asked for. Start from SKINSLIDE_STAGE_FILE_DEFAULT: a missing one. */
 typedef struct skinslide_stage_file {
     size_t size;          /* sizeof(skinslide_stage_file) */
     const char *path;     /* as it was resolved; NULL: there is no such file */
-    const uint8_t *bytes; /* [byte_count] all of it; NULL: it is open, cannot be read, is too large, or its image is held */
+    const uint8_t *bytes; /* [byte_count] all of it; NULL: it is open, unreadable or too large, or its image is held */
     int64_t byte_count;
-    const char *reason;        /* why it cannot be read; NULL: nobody knows, or it was read */
+    const char *reason;        /* why it cannot be read; NULL: that is not known, or it was read */
     const int32_t *descriptor; /* of an open file that has the bytes, as for skinslide_exr_read; NULL: there is none */
-    int64_t offset;            /* where they begin in it */
+    int64_t offset;            /* where the bytes begin in it */
 } skinslide_stage_file;
 
 #define SKINSLIDE_STAGE_FILE_DEFAULT                                                                                           \
     { sizeof(skinslide_stage_file), 0, 0, 0, 0, 0, 0 }
 
-/* Whether the image of a file is held from the time before, for the texture that is asked for: its bytes are then not
- * needed. */
+/* Whether the texture that is asked for still holds the image of a file from an earlier time: its bytes are then not needed. */
 SKINSLIDE_API skinslide_bool skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path);
 
-/* Takes the file that is asked for, and with its last file samples the texture. Where that fails, its others are asked for no
- * more.
+/* Takes the file that is asked for; with the last file of a texture, samples it. If that fails, its other files are no longer
+ * asked for.
  * Fails with BAD_CONTROL (no such file, not readable, too large, coordinates that are not finite, a texture that is not finite
  * or not a force density somewhere), BAD_IMAGE, UNSUPPORTED (as skinslide_exr_decode), BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *controls,
@@ -535,31 +534,31 @@ SKINSLIDE_API const skinslide_stage_texture *skinslide_stage_controls_texture(co
 SKINSLIDE_API skinslide_status skinslide_stage_controls_get(skinslide_stage_controls *controls, skinslide_controls *out,
                                                             skinslide_error *error);
 
-/* What is said of a patch that its rule has no use for, such as corners under the rule even: the first of its inputs, of the
- * groups PATCH and CONTROLS, for NULL; then the one after each; NULL after the last. What says the schema's fallback says
- * nothing. */
+/* The inputs of a patch, of the groups PATCH and CONTROLS, that are set but that its rule does not read, such as corners under
+ * the rule even: the first for NULL, else the one after `before`; NULL after the last. Inputs with the schema's fallback do not
+ * count as set. */
 SKINSLIDE_API const skinslide_stage_input *skinslide_stage_next_unread(const skinslide_stage_patch *patch,
                                                                        const skinslide_stage_controls *controls,
                                                                        const skinslide_stage_input *before);
 
 /* The set-up as the slider takes it, with these controls; its arrays, its name and its controls are those of the handles.
- * Fails as skinslide_stage_controls_get, with BAD_POINTS where rest is so unlike the cache over its faces that sliding is
- * senseless, and with BAD_ARGUMENT where the patch has no faces, or refused a value. */
+ * Fails as skinslide_stage_controls_get does, with BAD_POINTS if rest is so unlike the cache over its faces that sliding would
+ * be senseless, and with BAD_ARGUMENT if the patch has no faces, or refused a value. */
 SKINSLIDE_API skinslide_status skinslide_stage_patch_get(const skinslide_stage_patch *patch, skinslide_stage_controls *controls,
                                                          skinslide_patch_setup *out, skinslide_error *error);
 
 /* ---- Times --------------------------------------------------------------------------------------------------------------- */
 
-/* Puts times in order; of those that differ by no more than the noise that layer offsets leave, 1e-6, the one given first
- * stays. Give the samples of points first, then those of each patch's controls that vary in the order of its inputs, with the
- * samples of indices and of texture coordinates.
+/* Sorts times; of those that differ by no more than the noise that layer offsets leave, 1e-6, the one given first stays. Give
+ * the samples of points first, then those of each patch's controls that vary, in the order of its inputs, with the samples of
+ * indices and of texture coordinates.
  *   times  in, out  [count], finite; then those that stay
  *   count  in, out
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_merge_times(double *times, int64_t *count, skinslide_error *error);
 
-/* The frames between samples. Slid points do not go straight from one sample to the next, as cached ones do: where samples lie
- * more than 1 apart, the whole times between are to be slid too.
+/* The frames between samples. Cached points go straight from one sample to the next, but slid points do not: where samples are
+ * more than 1 apart, the whole times between must be slid too.
  *   times          in   [count] as skinslide_stage_merge_times leaves them
  *   between        out  [*between_count], ascending; NULL: they are only counted
  *   between_count  out
@@ -567,17 +566,17 @@ SKINSLIDE_API skinslide_status skinslide_stage_merge_times(double *times, int64_
 SKINSLIDE_API skinslide_status skinslide_stage_times_between(const double *times, int64_t count, double *between,
                                                              int64_t *between_count, skinslide_error *error);
 
-/* "1012" for 1012.0 and "1012.25" for 1012.25, without the noise of layer offsets: how sentences write a frame.
+/* "1012" for 1012.0 and "1012.25" for 1012.25, without the noise of layer offsets: how messages write a frame.
  *   text  out [32] */
 SKINSLIDE_API void skinslide_stage_frame_text(double frame, char *text);
 
 /* ---- What follows from points -------------------------------------------------------------------------------------------- */
 
-/* What a mesh has beside its points that follows from them: normals, tangents and other vectors on the skin, which are carried
- * with it; velocities and accelerations, which are recomputed. */
+/* What a mesh has, beside its points, that follows from them: normals, tangents and other vectors on the skin, which are
+ * carried with it; velocities and accelerations, which are recomputed. */
 typedef struct skinslide_stage_derived skinslide_stage_derived;
 
-/* Makes what follows from the points of a mesh: nothing yet.
+/* Makes a handle for what follows from the points of a mesh, which is nothing yet.
  *   mesh         in  has its points and faces; must outlive this
  *   point_times  in  [point_time_count] the samples of points, ascending; copied
  *   rate         in  time codes per second
@@ -586,30 +585,30 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_create(const skinslide_st
                                                               int64_t point_time_count, double rate,
                                                               skinslide_stage_derived **out, skinslide_error *error);
 
-/* Takes the frames between samples of points, as skinslide_stage_times_between has them, for slid too: rates of change are then
- * those from frame to frame.
+/* Says that the frames between samples of points, as skinslide_stage_times_between lists them, are slid too: rates of change
+ * are then those from frame to frame.
  * Fails as skinslide_stage_times_between, and with OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_fill(skinslide_stage_derived *derived, skinslide_error *error);
 
 /* NULL does nothing. */
 SKINSLIDE_API void skinslide_stage_derived_destroy(skinslide_stage_derived *derived);
 
-/* Asks whether a primvar of the mesh itself follows from points, by its name or the role of its type. Offer each that has a
+/* Finds whether a primvar of the mesh itself follows from points, by its name or the role of its type. Offer each that has a
  * value, in the order of their names.
  *   name           in  "primvars:tangents"
  *   type_name      in  as the scene declares it: "vector3f[]"
  *   interpolation  in  as authored; NULL: it is not
  *   element_size   in  its elementSize; 1 where that is not authored
  *   input          out  an input to take after those of the group DERIVED, which lives as long as derived; NULL: it does not
- *                  follow, or nobody knows how, of which there is a warning then
+ *                  follow, or is not known how to, of which there is then a warning
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_offer(skinslide_stage_derived *derived, const char *name,
                                                              const char *type_name, const char *interpolation,
                                                              int32_t element_size, const skinslide_stage_input **input,
                                                              skinslide_error *error);
 
-/* Takes an input of the group DERIVED, in the order of its inputs, or one that was offered: each makes outputs or, where it
- * does not count, none.
+/* Takes an input of the group DERIVED, in the order of its inputs, or one that was offered. Each makes outputs, or none if it
+ * does not count.
  *   value  in  at its first time
  *   times  in  [time_count] its samples and those of its indices, each once, ascending
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY: what cannot be recomputed becomes an output that is blocked. */
@@ -617,12 +616,12 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_take(skinslide_stage_deri
                                                             const skinslide_stage_input *input, const skinslide_value *value,
                                                             const double *times, int64_t time_count, skinslide_error *error);
 
-/* What to warn of, of a number from 0 on; NULL beyond the last: vectors of one pose on points that move, and primvars that
- * nobody knows how to carry, but that follow the skin by their names. Lives as long as derived. */
+/* Warning `number`, from 0; NULL beyond the last: vectors of one pose on points that move, and primvars whose names say that
+ * they follow the skin, but that cannot be carried. Lives as long as derived. */
 SKINSLIDE_API const char *skinslide_stage_derived_warning(const skinslide_stage_derived *derived, int32_t number);
 
-/* Looks at a later sample of an input, once all inputs are taken: what it cannot be, such as of another length, or vectors too
- * long to be turned, blocks its output, at all times.
+/* Checks a later sample of an input, once all inputs are taken: one that cannot be used, since it has another length, or
+ * vectors too long to be turned, blocks its output at all times.
  * Fails with BAD_ARGUMENT, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_check(skinslide_stage_derived *derived,
                                                              const skinslide_stage_input *input, const skinslide_value *value,
@@ -634,18 +633,18 @@ typedef struct skinslide_stage_output {
     const char *type_name;     /* "normal3f[]"; of a primvar, as its record says */
     int32_t pose_count;        /* poses that a value of it takes: 1, 2 or 3; 0: it is blocked at all times */
     int32_t count;             /* elements of a value */
-    const char *reason;        /* why it is blocked; NULL of what is blocked without a warning, and of what is not */
-    const char *hidden;        /* what would be read in its place were it blocked alone: block that with it; or NULL */
+    const char *reason;        /* why it is blocked; NULL if it is not, or is without a warning */
+    const char *hidden;        /* what would be read in its place if only it were blocked: block that too; or NULL */
     skinslide_bool is_carried; /* its pose needs turns */
-    skinslide_bool is_double;  /* its values are of doubles; of floats else */
+    skinslide_bool is_double;  /* its values are doubles, and not floats */
 } skinslide_stage_output;
 
-/* The output of a number from 0 on; NULL beyond the last. Lives as long as derived. */
+/* Output `number`, from 0; NULL beyond the last. Lives as long as derived. */
 SKINSLIDE_API const skinslide_stage_output *skinslide_stage_derived_output(const skinslide_stage_derived *derived,
                                                                            int32_t number);
 
-/* The times of the poses that the value of an output at a time takes: the time itself or, of rates, the samples of points next
- * to it on either side, with it between them for a second difference; at an end it and those nearest to it.
+/* The times of the poses that the value of an output at a time needs: the time itself or, for rates, the samples of points next
+ * to it on either side, with the time itself between them for a second difference; at an end, it and those nearest to it.
  *   times  out [pose_count] ascending. Returns how many there are: fewer where there are too few samples. */
 SKINSLIDE_API int32_t skinslide_stage_derived_times(const skinslide_stage_derived *derived,
                                                     const skinslide_stage_output *output, double time, double times[3]);
@@ -667,17 +666,17 @@ typedef struct skinslide_stage_pose {
  *   poses  in  [pose_count] at the times that skinslide_stage_derived_times gives
  *   out    out [count][3] floats, or doubles where the output says so; indices are applied. Values that do not change keep
  *          their bits
- * Fails with BAD_POINTS (no value, of a wrong type or length, too few samples of points), BAD_ARGUMENT, OUT_OF_MEMORY. It is
- * then to be blocked at all times: where a sample is missing, its neighbours would be taken instead. */
+ * Fails with BAD_POINTS (no value, of a wrong type or length, too few samples of points), BAD_ARGUMENT, OUT_OF_MEMORY. Block
+ * the output at all times then: if only one sample were missing, its neighbours would be used instead. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_stage_derived *derived,
                                                              const skinslide_stage_output *output, const skinslide_value *value,
                                                              const skinslide_stage_pose *poses, int32_t pose_count, void *out,
                                                              skinslide_error *error);
 
-/* Looks for vectors or rates in a value of an output that are not finite: they pass as they are.
+/* Counts the vectors or rates in a value of an output that are not finite: they are copied as they are.
  *   value   in  the cache's, of the input that the output is of
  *   faults  out how many there are; 0 of a value that cannot be used
- *   told    out where there are any, what to warn of: names the property, and the first; or NULL
+ *   told    out, or NULL: if there are any, a warning that names the property and the first
  * Fails with BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_stage_derived_look(const skinslide_stage_derived *derived,
                                                             const skinslide_stage_output *output, const skinslide_value *value,
@@ -685,11 +684,11 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_look(const skinslide_stag
 
 /* ---- Text ---------------------------------------------------------------------------------------------------------------- */
 
-/* Whether the text of a .skinslide file may be given to USD, whose parser runs out of stack where brackets nest too deep, and
- * takes what is before a zero byte for the whole.
+/* Checks that the text of a .skinslide file may be given to USD, whose parser runs out of stack where brackets nest too deep,
+ * and ends at a zero byte as if that were the end.
  *   text  in  [byte_count] USDA, which need not end with 0
  * Fails with BAD_ARGUMENT (it does not begin as USDA does, or holds a zero byte), UNSUPPORTED (brackets nest more than 500
- * deep: names the line). The sentence goes behind the name of the file. */
+ * deep: names the line). The message goes behind the name of the file. */
 SKINSLIDE_API skinslide_status skinslide_stage_text(const char *text, int64_t byte_count, skinslide_error *error);
 
 #ifndef SKINSLIDE_CDEF
