@@ -1,4 +1,5 @@
-/* Memory, errors, clocks, callers' structs, vectors. Names begin with ss_, so that the static library can be linked into any program. */
+/* Memory, errors, clocks, callers' structs, vectors. Internal names begin with ss_, so that the static library can be linked
+ * into any program. */
 #ifndef SKINSLIDE_BASE_H
 #define SKINSLIDE_BASE_H
 
@@ -21,21 +22,22 @@ typedef struct ss_memory {
     bool failed; /* an allocation failed: checked once, after all of them */
 } ss_memory;
 
-/* count * size bytes of zeros, or NULL with memory->failed set. A count of 0 gives a pointer all the same. */
+/* count * size bytes of zeros, or NULL with memory->failed set. Never NULL for a count of 0. */
 void *ss_new(ss_memory *memory, int64_t count, size_t size);
 void ss_free(ss_memory *memory);
-/* Takes what another has, which has nothing then. */
+/* Takes over all that another has. */
 void ss_adopt(ss_memory *memory, ss_memory *other);
 #define SS_NEW(memory, type, count) ((type *)ss_new((memory), (count), sizeof(type)))
 
 /* ---- memory.c: room for arrays of several objects that are at work by turns ---- */
 
-/* An object takes its arrays one after the other whenever its turn comes: what is in them then is anything. Before, it takes them
- * of a room of its own without bytes, which gives NULL and counts; so the shared one is made for the largest. */
+/* Scratch memory that several objects use by turns: whenever an object's turn comes, it takes its arrays one after the other,
+ * with anything in them. To find out how much it needs, it first takes them from a room without bytes, which returns NULL and
+ * counts; the shared room is then made for the largest of them. */
 typedef struct ss_room {
     ss_memory memory;
     char *bytes;
-    int64_t size, taken; /* there are, or are asked for; of the turn so far */
+    int64_t size, taken; /* bytes that there are, or are asked for; bytes taken so far in this turn */
 } ss_room;
 
 static inline void ss_begin_turn(ss_room *room) {
@@ -44,16 +46,17 @@ static inline void ss_begin_turn(ss_room *room) {
 /* The next array of a turn. */
 void *ss_take_room(ss_room *room, int64_t count, size_t size);
 #define SS_TAKE(room, type, count) ((type *)ss_take_room((room), (count), sizeof(type)))
-/* Asks for as much as was counted. */
+/* Asks for at least as much as was counted. */
 void ss_ask_room(ss_room *room, const ss_room *counted);
 /* Makes what was asked for. False where memory is short. */
 bool ss_make_room(ss_room *room);
-/* Asks the shared room for as much as was counted; where there is none, makes an object's own of it. False where memory is short. */
+/* Asks the shared room for as much as was counted or, if that is NULL, makes the object's own of that size. False where memory
+ * is short. */
 bool ss_find_room(ss_room *shared, ss_room *own, const ss_room *counted);
 
 /* ---- error.c ---- */
 
-/* Fills error, where there is one, and returns status: `return ss_fail(error, SKINSLIDE_BAD_PATCH, "...", ...);` */
+/* Fills error, if it is not NULL, and returns status: `return ss_fail(error, SKINSLIDE_BAD_PATCH, "...", ...);` */
 __attribute__((format(printf, 3, 4))) skinslide_status ss_fail(skinslide_error *error, skinslide_status status,
                                                                const char *format, ...);
 skinslide_status ss_out_of_memory(skinslide_error *error);
@@ -70,16 +73,16 @@ static inline void ss_set(int *flag, int to) {
 
 /* ---- logarithm.c: the same bytes on every machine ---- */
 
-/* Of finite x > 0: exactly 0 of 1. */
+/* The logarithm of finite x > 0; of 1 exactly 0. */
 double ss_log(double x);
-/* Of each of several, in their place: the same bits, and quicker. */
+/* The logarithms of several numbers, in place: the same bits, faster. */
 void ss_logs(int32_t count, double *x);
-/* The sum of log^2(x / y), in their order. */
+/* The sum of log^2(x / y), added in order. */
 double ss_sum_squared_logs(int32_t count, const double *x, const double *y);
 /* The same as processors without AVX2 do them. */
 void ss_logs_plain(int32_t count, double *x);
 double ss_sum_squared_logs_plain(int32_t count, const double *x, const double *y);
-/* Of |x| under 700. */
+/* The exponential of x, |x| under 700. */
 double ss_exp(double x);
 
 /* ---- clock.c ---- */
@@ -91,22 +94,23 @@ void ss_lap(double *since, double *sum);
 
 /* ---- sized.c: structs of callers, which begin with a size_t, their size. name is for messages ---- */
 
-/* BAD_ARGUMENT where the size cannot be one. */
+/* Fails with BAD_ARGUMENT if the size cannot be that of a struct. */
 skinslide_status ss_check_size(const void *given, const char *name, skinslide_error *error);
-/* What the caller's struct has, over own, which holds its defaults; NULL: nothing. Fails also with UNSUPPORTED, where it has more
- * than own, and that is not 0. */
+/* Copies the caller's struct over own, which holds the defaults of members that it lacks; given may be NULL. Fails also with
+ * UNSUPPORTED if it has members that own lacks, and these are not 0. */
 skinslide_status ss_take(const void *given, const char *name, void *own, size_t own_size, skinslide_error *error);
-/* The same for arrays, whose elements have the size of the first. own is [count]; standard is the default of one. */
+/* The same for an array, whose elements all have the size of the first. own is [count]; standard is the default of an
+ * element. */
 skinslide_status ss_take_all(const void *given, int64_t count, const char *name, void *own, size_t own_size,
                              const void *standard, skinslide_error *error);
-/* What the caller's struct has room for, whose size was checked; what it has more is 0. */
+/* Copies as much of own as the caller's struct has room for; members that own lacks become 0. Its size is checked. */
 void ss_give(const void *own, size_t own_size, void *given);
-/* The same for arrays, of which only the first element need have its size. */
+/* The same for an array, of which only the first element need have its size set. */
 void ss_give_all(const void *own, int64_t count, size_t own_size, void *given);
 
 /* ---- Halves: IEEE 754 binary16, as bits ---- */
 
-/* Sign, 5 bits of exponent, 10 of fraction; exact as a float. */
+/* Exact: a half has a sign, 5 bits of exponent and 10 of fraction. */
 static inline float ss_half_to_float(uint16_t half) {
     int exponent = half >> 10 & 31, fraction = half & 1023;
     float size = exponent == 31 ? (fraction ? NAN : INFINITY)
@@ -115,7 +119,7 @@ static inline float ss_half_to_float(uint16_t half) {
     return half & 0x8000 ? -size : size;
 }
 
-/* Of a point as a mesh has it. */
+/* Whether all three coordinates of a point are finite. */
 static inline bool ss_is_finite(const float point[3]) {
     return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
 }
@@ -124,7 +128,7 @@ static inline bool ss_is_finite(const float point[3]) {
 
 #define SS_PI 3.14159265358979323846
 
-/* As fmin and fmax are, but without a call. Where a is not a number, b. */
+/* Like fmin and fmax, but inline. If a is NaN, b. */
 static inline double ss_least(double a, double b) {
     return a < b ? a : b;
 }
@@ -141,7 +145,7 @@ static inline double ss_length(const double a[3]) {
     return sqrt(ss_dot(a, a));
 }
 
-/* Between two of points [][3]. */
+/* The distance between two of points [][3]. */
 static inline double ss_distance(const float *points, int32_t a, int32_t b) {
     double way[3];
     for (int k = 0; k < 3; k++)
@@ -164,7 +168,7 @@ static inline void ss_cross(const double a[3], const double b[3], double out[3])
     out[0] = a[1] * b[2] - a[2] * b[1], out[1] = a[2] * b[0] - a[0] * b[2], out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* A vector of no length stays. */
+/* Makes a vector's length 1; one of no length stays. */
 static inline void ss_normalise(double a[3]) {
     double length = ss_length(a);
     for (int k = 0; k < 3 && length > 0; k++)

@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Bytes of the character of UTF-8 that begins at text; 0 where none does, or a control. */
+/* How many bytes the UTF-8 character at text has; 0 if none begins there, or it is a control character. */
 static int character_size(const char *text) {
     const unsigned char *c = (const unsigned char *)text;
     int size = c[0] < 0x80                   ? 1
@@ -17,12 +17,12 @@ static int character_size(const char *text) {
             return 0;
     bool is_control = size == 1 ? c[0] < ' ' || c[0] == 127 : c[0] == 0xC2 && c[1] < 0xA0;
     bool is_longer_than_need_be = (c[0] == 0xE0 && c[1] < 0xA0) || (c[0] == 0xF0 && c[1] < 0x90);
-    bool is_none = (c[0] == 0xED && c[1] >= 0xA0) || (c[0] == 0xF4 && c[1] >= 0x90); /* a surrogate, or above all */
+    bool is_none = (c[0] == 0xED && c[1] >= 0xA0) || (c[0] == 0xF4 && c[1] >= 0x90); /* a surrogate, or beyond the last */
     return is_control || is_longer_than_need_be || is_none ? 0 : size;
 }
 
-/* One line of what a caller may print: names that a message quotes can hold what moves a terminal's cursor, and those that come
- * from files any bytes. */
+/* Copies text as one line that is safe to print: names that a message quotes may hold control characters, and those from files
+ * any bytes. */
 static void copy_line(char *out, size_t size, const char *text) {
     size_t end = 0;
     for (int whole; *text; text += whole ? whole : 1) {

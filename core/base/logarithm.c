@@ -1,4 +1,5 @@
-/* Logarithm and exponential by + - * / alone, which every machine rounds alike; the C library's choose by what a processor has. */
+/* Logarithm and exponential by + - * / alone, which every machine rounds alike; the C library's differ by what the processor
+ * has. */
 #include "base.h"
 
 #include <float.h>
@@ -21,7 +22,7 @@ INLINE double log_of(double m, double exponent) {
     return exponent * ln2_high + (2 * s + (2 * s * sum + exponent * ln2_low));
 }
 
-/* Any: also of what is too small for all its digits. */
+/* Of any x, subnormal numbers too. */
 double ss_log(double x) {
     int exponent;
     double m = frexp(x, &exponent);

@@ -41,7 +41,7 @@ void ss_adopt(ss_memory *memory, ss_memory *other) {
 }
 
 void *ss_take_room(ss_room *room, int64_t count, size_t size) {
-    enum { LINE = 64 }; /* bytes of a line of a cache, which no two arrays share */
+    enum { LINE = 64 }; /* bytes of a cache line, which no two arrays share */
     char *array = room->bytes ? room->bytes + room->taken : NULL;
     room->taken += (count * (int64_t)size + LINE - 1) / LINE * LINE;
     return array;

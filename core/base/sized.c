@@ -1,13 +1,13 @@
-/* Structs that grow. A caller's begin with the size that they had in the version which it was compiled with: a member that it
- * lacks has its default, and one that we lack must be 0.
+/* Structs that may grow. A caller's begins with the size that it had in the version that the caller was compiled with: a member
+ * that it lacks has its default, and one that we lack must be 0.
  *
- * Sizes tell versions apart as long as what a version adds to a struct begins where the struct ended, padding included, and
- * leaves no padding of its own. tests/install/test_abi.py watches over that. */
+ * Sizes tell versions apart if what a version adds to a struct begins where the struct ended, padding included, and leaves no
+ * padding of its own. tests/install/test_abi.py watches over that. */
 #include "base.h"
 
 #include <string.h>
 
-enum { LARGEST = 4096 }; /* no struct is: such a size was never set */
+enum { LARGEST = 4096 }; /* no struct is larger: such a size was never set */
 
 static size_t size_of(const void *given) {
     size_t size;

@@ -1,5 +1,6 @@
-/* Systems of two unknowns a vertex: positive definite, of any signs. Pivots are numbers and not blocks, so that no more digits are
- * lost than the matrix costs, however far apart the two unknowns of a vertex are. */
+/* Systems of two unknowns for each vertex: positive definite, with entries of any sign. Pivots are numbers and not blocks, so
+ * that no more digits are lost than the condition of the matrix costs, even where the two unknowns of a vertex differ much in
+ * scale. */
 #include "linear.h"
 
 #include <stdlib.h>

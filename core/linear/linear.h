@@ -32,7 +32,7 @@ typedef struct ss_entry {
     int32_t column, row; /* of the front: rows are those of its columns, then those below */
 } ss_entry;
 
-/* A symmetric system with an unknown a free vertex of a net and an entry an edge: immutable. */
+/* A symmetric system with an unknown for each free vertex of a net and an entry for each edge. Immutable. */
 typedef struct ss_system {
     ss_memory memory;
     char label[160];
@@ -59,9 +59,9 @@ typedef struct ss_graph {
     int32_t *neighbour;
 } ss_graph;
 
-/* Of unknowns as they are numbered now. */
+/* Fills the graph of a system, by the current numbers of its unknowns. */
 void ss_fill_graph(const ss_system *system, ss_graph *graph);
-/* Gives each unknown the number at its own in place [n]. */
+/* Renumbers the unknowns: unknown i becomes place[i]. */
 void ss_renumber(ss_system *system, const int32_t *place);
 
 /* ---- dissect.c ---- */
@@ -113,7 +113,8 @@ const ss_kernels *ss_kernels_of(bool fastest);
 
 /* ---- frontal.c, substitute.c: L D L' ---- */
 
-/* Numbers that there are in all panels, in the largest, and in each stack at most; columns of a front and rows below, at most. */
+/* How many numbers there are in all panels, in the largest, and at most in each stack; and the most columns of a front, and
+ * rows below. */
 typedef struct ss_extent {
     int64_t panels, panel, stack[2];
     int32_t columns, below;
@@ -138,7 +139,7 @@ typedef struct ss_frontal {
     double *x, *below;       /* [2][columns], [2][below] */
 } ss_frontal;
 
-/* keeps: what it factored is there at its next turn. */
+/* keeps: whether the factor stays from one turn to the next. */
 skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool dominant, bool keeps, ss_frontal **out,
                                    skinslide_error *error);
 void ss_frontal_destroy(ss_frontal *frontal);
@@ -168,12 +169,12 @@ typedef struct ss_factor {
     double (*right)[2]; /* [n] right sides, then solutions */
 } ss_factor;
 
-/* Asks a room for its part; NULL: it has a room of its own, and a single turn. */
+/* Asks the room for its part; if that is NULL, it has a room of its own, and a single turn. */
 skinslide_status ss_factor_create(const ss_system *system, ss_room *room, ss_factor **out, skinslide_error *error);
 void ss_factor_destroy(ss_factor *factor);
 /* Begins a turn. */
 void ss_factor_lay_out(ss_factor *factor, ss_room *room);
-/* Empties slack and right, to be filled as entry is. */
+/* Sets slack and right to 0, to be filled as entry is. */
 void ss_factor_clear(ss_factor *factor);
 /* False where a pivot is not a number to divide by. */
 bool ss_factorise(ss_factor *factor);

@@ -1,4 +1,4 @@
-/* Which lookup a workspace has: what its options come to on this machine. */
+/* Which lookup a workspace has: what its options lead to on this machine. */
 #include "slide.h"
 
 #include <stdio.h>
@@ -12,8 +12,8 @@ static skinslide_status check_options(const skinslide_workspace_options *options
     return ss_egl_check_device(options->device, error);
 }
 
-/* Makes the buffer that options ask for, none where AUTO comes to EXACT, and says so in info. AUTO takes whatever is wrong with
- * EGL for its absence, and so a resolution that its device does not have; a lack of memory is no choice. */
+/* Makes the buffer that options ask for, or none if AUTO leads to EXACT, and says so in info. For AUTO, any fault of EGL is as
+ * if there were none, and so is a resolution that its device lacks; but a lack of memory is an error. */
 static skinslide_status open_lookup(const skinslide_workspace_options *options, ss_egl_loader load, const ss_id_patch *patches,
                                     int32_t patch_count, ss_idbuffer **out, skinslide_lookup_info *info,
                                     skinslide_error *error) {
@@ -85,7 +85,7 @@ skinslide_status skinslide_workspace_lookup(const skinslide_workspace *workspace
     return status;
 }
 
-/* The part of each patch that is drawn: [part_count]. Without a plane nothing is, in the least texture. */
+/* Of each patch what is drawn: [part_count]. A patch without a plane has the smallest texture, and nothing in it. */
 static void describe_patches(const skinslide_slider *slider, ss_id_patch *patches) {
     for (int32_t p = 0; p < slider->part_count; p++) {
         const ss_part *part = &slider->parts[p];

@@ -37,7 +37,7 @@ static float corrected(const skinslide_sample *samples, int count, float rate, i
     return change == 0 ? rate : (float)(rate + change);
 }
 
-/* What was not finite in the cache may stay so. */
+/* Rates that are not finite in the cache may stay so. */
 static skinslide_status check_rates(int32_t vertex_count, const skinslide_sample *samples, int count, const float *rates,
                                     skinslide_error *error) {
     for (int64_t i = 0; i < 3 * (int64_t)vertex_count; i++) {

@@ -102,7 +102,7 @@ static void paint_faces(const ss_patch *patch, const float *density, double *pai
     }
 }
 
-/* Edges of other pieces of the set-up are passed over here: the slider checks that every edge is in some piece. */
+/* Edges of other pieces of the set-up are skipped here: the slider checks that every edge is in some piece. */
 static void paint_edges(const ss_patch *patch, const skinslide_controls *controls, ss_edge_paint *edges, double *paint) {
     for (int32_t e = 0; e < patch->faces.edge_count; e++)
         edges[e] = (ss_edge_paint){0, 0};

@@ -1,5 +1,5 @@
-/* Which points of a mesh a slide reads: those of the faces at its patches, which slide, or have a say in normals and limits. Others
- * pass as they are, whatever they hold, and cost a frame nothing. */
+/* Which points of a mesh sliding reads: those of the faces that touch its patches, which slide, or on which normals and limit
+ * points depend. Others are copied as they are, whatever they hold, and cost a frame nothing. */
 #include "slide.h"
 
 #include <stdio.h>

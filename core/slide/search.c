@@ -77,7 +77,7 @@ static void try_around(const search *s, int32_t vertex, const double target[3], 
     } while (t >= 0 && t != first);
 }
 
-/* From triangle to triangle around it while that leads nearer. */
+/* Moves from triangle to triangle as long as a nearer one is around. */
 static void go_nearest(const search *s, const double target[3], ss_place *place) {
     double square = INFINITY, before;
     do {
@@ -137,7 +137,7 @@ static void find_gradient(search *s) {
     }
 }
 
-/* Two coordinates at once, of which the last has none beside it. */
+/* Solves for two coordinates at once; the last one is solved alone. */
 static void precondition(search *s, int first, int count) {
     for (int32_t v = 0; v < s->patch->vertex_count; v++)
         for (int k = 0; k < 2 && s->system->unknown[v] >= 0; k++)

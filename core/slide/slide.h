@@ -1,4 +1,4 @@
-/* What is made once a shot, once a thread, and used in every frame. */
+/* What is made once for a shot, what is made once for each thread, and what a frame uses of them. */
 #ifndef SKINSLIDE_SLIDE_H
 #define SKINSLIDE_SLIDE_H
 
@@ -14,10 +14,10 @@ typedef struct ss_part {
     double *weights; /* [free_count] weight times envelope of the set-up's controls */
     double *limits;  /* [free_count] largest distances of the set-up's controls; NULL where they have none */
     double *holds;   /* [vertex_count] of the set-up's controls */
-    bool limited;    /* whether any is finite */
+    bool limited;    /* whether any largest distance is finite */
     double stretch_response, compression_response;
     int32_t clamped_weights;
-    ss_layout rest_layout; /* of no faces where the rule has no plane */
+    ss_layout rest_layout; /* of U0; all 0 if the rule has no plane */
     ss_cage *cage;         /* NULL unless its interpolation is LIMIT */
 } ss_part;
 
@@ -26,7 +26,7 @@ typedef struct ss_list {
     int32_t *vertex; /* [count] of the mesh, ascending */
 } ss_list;
 
-/* Where lengths are taken, and the way back. */
+/* The matrices to where lengths are measured, and back. */
 typedef struct ss_space {
     double to[9], back[9];
 } ss_space;
@@ -41,7 +41,7 @@ struct skinslide_slider {
     int32_t *weld;       /* [vertex_count] the mesh's; NULL: none */
     ss_around around;    /* the patches' vertices, for smooth normals */
     ss_list own;         /* the patches' vertices, and what is one with them */
-    ss_list reads;       /* vertices of a face at a patch */
+    ss_list reads;       /* vertices of all faces that touch a patch */
     ss_space *space;     /* NULL: the mesh's own */
 };
 
@@ -64,7 +64,7 @@ struct skinslide_build {
     ss_built *built; /* [setup_count] */
 };
 
-/* What is painted on an edge by name, maybe on several copies of it. */
+/* What is painted on an edge by its vertices, perhaps on several copies of it. */
 typedef struct ss_edge_paint {
     double sum;
     int32_t count;
@@ -73,9 +73,9 @@ typedef struct ss_edge_paint {
 /* What one thread needs to slide one patch. */
 typedef struct ss_patch_work {
     ss_slide *slide;
-    ss_frame frame;                   /* paint, weights, limits and holds are the part's, or its own */
+    ss_frame frame;                   /* paint, weights, limits and holds are the part's, or those below */
     double *lengths;                  /* [edge_count] */
-    double *own_paint;                /* [edge_count] what is its own is there once a frame has had controls */
+    double *own_paint;                /* [edge_count] this and what follows is there once a frame has had controls of its own */
     double *own_weights, *own_limits; /* [free_count] */
     double *own_holds;                /* [vertex_count] */
     double (*displacement)[3];        /* [free_count] in the room, once the rule has finished */
@@ -87,7 +87,7 @@ struct skinslide_workspace {
     ss_memory memory;
     const skinslide_slider *slider;
     ss_patch_work *patches;          /* [part_count] */
-    ss_room room;                    /* for one patch after the other */
+    ss_room room;                    /* scratch of one patch after the other */
     skinslide_patch_result *results; /* [part_count] */
     skinslide_controls *controls;    /* [setup_count] of the frame */
     double (*sum)[4];                /* [vertex_count] weighted displacement, weight */
@@ -98,14 +98,14 @@ struct skinslide_workspace {
     ss_idbuffer *idbuffer; /* NULL with lookup EXACT */
     skinslide_lookup_info lookup;
     ss_memory controlling;             /* the patches' own paint and the like */
-    bool has_controls;                 /* that is there */
-    ss_memory turning;                 /* of nothing before turns are first asked for: */
+    bool has_controls;                 /* whether controlling is made */
+    ss_memory turning;                 /* made when turns are first asked for: */
     double (*normal)[3], (*target)[3]; /* [vertex_count] the cache's, and where each vertex slid to; normals of unit length */
 };
 
-/* How much the displacement of a free vertex, or its normal, counts where patches overlap. One of no weight keeps its limit point,
- * for which it follows its neighbours, but has no say there. */
-static inline double ss_say(const ss_patch_work *work, int32_t i) {
+/* How much the displacement of a free vertex, or its normal, counts where patches overlap. A vertex of weight 0 follows its
+ * neighbours so that its limit point stays, but then counts next to nothing. */
+static inline double ss_blend_weight(const ss_patch_work *work, int32_t i) {
     return ss_most(work->frame.weights[i], 1e-30);
 }
 
@@ -116,10 +116,10 @@ static inline int32_t ss_welded(const skinslide_slider *slider, int32_t vertex) 
 
 /* ---- painted.c ---- */
 
-/* Values of controls: names the mesh element whose value is not one. */
+/* Checks the values of controls: names the mesh element of a bad one. */
 skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name, const skinslide_controls *controls,
                                    skinslide_error *error);
-/* Of vertices that are one, and of edges that are, what is painted on each counts as its mean, and the smallest of largest
+/* Where several vertices, or edges, are one, the mean of what is painted on each counts, and the smallest of largest
  * distances. */
 
 /* The painted multiplier of every edge: [edge_count]. Controls are checked. edges is scratch [edge_count]. */
@@ -128,7 +128,7 @@ void ss_paint(const ss_patch *patch, const skinslide_controls *controls, ss_edge
 int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
 /* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */
 bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits);
-/* How much every vertex keeps to its neighbours: [vertex_count]. */
+/* How closely every vertex follows its neighbours: [vertex_count]. */
 void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls, double *holds);
 
 /* ---- setup.c ---- */
@@ -136,7 +136,7 @@ void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls,
 /* Leaves out as it was where it fails. Any thread, for each set-up one. */
 skinslide_status ss_build_setup(const skinslide_build *build, int32_t setup, ss_built *out, skinslide_error *error);
 
-/* The caller's controls of one frame, in controls [setup_count], and checked. */
+/* Copies the caller's controls of one frame to controls [setup_count], and checks them. */
 skinslide_status ss_take_frame_controls(const skinslide_slider *slider, const skinslide_controls *given,
                                         skinslide_controls *controls, skinslide_error *error);
 
@@ -148,22 +148,22 @@ void ss_destroy_parts(ss_part *parts, int32_t count);
 
 /* Fills slider->own and slider->reads, for patches of the vertices chosen [vertex_count]. False where memory is short. */
 bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen);
-/* Names the first point that a slide reads, and that is not finite. */
+/* Names the first point that sliding reads and that is not finite. */
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error);
 
 /* ---- space.c ---- */
 
 /* Fills slider->space, where the mesh has one. */
 skinslide_status ss_take_space(skinslide_slider *slider, const skinslide_mesh *mesh, skinslide_error *error);
-/* Puts points where lengths are taken in the place of a mesh's own: in room [vertex_count][3], which need not be there where that is
- * its own space. */
+/* Makes *points point to the points where lengths are measured: in room [vertex_count][3], which may be NULL if that is the
+ * mesh's own space. */
 void ss_bring(const skinslide_slider *slider, const float **points, float *room);
-/* A displacement there as one in the mesh's own space. */
+/* Takes a displacement from there to the mesh's own space. */
 void ss_take_back(const skinslide_slider *slider, const double displacement[3], double out[3]);
 
 /* ---- motion.c ---- */
 
-/* The caller's samples, in samples [count], and checked: each has points, and times ascend. */
+/* Copies the caller's samples to samples [count], and checks that each has points and times ascend. */
 skinslide_status ss_take_samples(const skinslide_sample *given, int count, skinslide_sample *samples, skinslide_error *error);
 
 /* ---- inspect.c ---- */
@@ -173,13 +173,13 @@ skinslide_status ss_check_frame(const skinslide_workspace *workspace, skinslide_
 
 /* ---- slider.c ---- */
 
-/* Whether a frame goes on: status, or that another thread wants no more of it, for which a stage may have failed. Once it is said,
- * the next one may. */
+/* Whether a frame goes on: status or, if another thread has asked for it, INTERRUPTED, for which a stage may also have failed.
+ * Clears the request, so that the next frame can go on. */
 skinslide_status ss_go_on(skinslide_workspace *workspace, skinslide_status status, skinslide_error *error);
 
 /* ---- workspace.c ---- */
 
-/* Makes room for controls of frames, where there is none yet. */
+/* Makes memory for controls of frames, if there is none yet. */
 skinslide_status ss_need_controls(skinslide_workspace *workspace, skinslide_error *error);
 
 void ss_lay_out_displacement(ss_patch_work *work, const ss_patch *patch, ss_room *room);
@@ -190,7 +190,7 @@ skinslide_status ss_workspace_create(const skinslide_slider *slider, const skins
 
 /* ---- lookup.c ---- */
 
-/* Makes the workspace's ID buffer, where its options come to EGL. */
+/* Makes the workspace's ID buffer, if its options lead to EGL. */
 skinslide_status ss_workspace_open_lookup(skinslide_workspace *workspace, const skinslide_workspace_options *options,
                                           ss_egl_loader load, skinslide_error *error);
 

@@ -51,7 +51,7 @@ static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, c
 /* Sums weight times displacement, and weight, over the patches of each vertex. */
 static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = ss_say(work, i);
+        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = ss_blend_weight(work, i);
         for (int k = 0; k < 3; k++)
             total[k] += weight * work->displacement[i][k];
         total[3] += weight;

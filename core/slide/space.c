@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* By cofactors. False where there is none, or it is not finite. */
+/* The inverse, by cofactors. False if there is none, or it is not finite. */
 static bool invert(const double m[9], double out[9]) {
     double determinant = 0;
     bool finite = true;
