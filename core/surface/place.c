@@ -77,9 +77,16 @@ void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle,
 }
 
 void ss_place_settle(const ss_patch *patch, const double (*uv)[2], ss_place *place) {
+    static const double most_off = 1e-6;
+    ss_place found;
     double at[2];
     ss_place_in_plane(patch, uv, place, at);
-    ss_place_at(patch, uv, place->triangle, at, place);
+    ss_place_at(patch, uv, place->triangle, at, &found);
+    memcpy(place->uv, at, sizeof at);
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(found.weight[k] - place->weight[k]) <= most_off))
+            return;
+    *place = found;
 }
 
 void ss_ask_where_found(ss_slide *slide) {

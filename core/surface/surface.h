@@ -30,7 +30,7 @@ void ss_place_at(const ss_patch *patch, const double (*uv)[2], int32_t triangle,
 void ss_place_between(const double *corners[3], int32_t triangle, const double p[2], ss_place *out);
 /* Where the weights are in the plane. */
 void ss_place_in_plane(const ss_patch *patch, const double (*uv)[2], const ss_place *place, double out[2]);
-/* Ends a walk: sets uv, and the weights to what a place found at that point has. */
+/* Ends a walk: sets uv, and the weights to what a place found at that point has, unless the triangle is too thin to tell them. */
 void ss_place_settle(const ss_patch *patch, const double (*uv)[2], ss_place *place);
 /* Which vertex of its triangle the place is, or -1. */
 int ss_place_corner(const ss_place *place);
