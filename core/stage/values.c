@@ -132,8 +132,13 @@ double ss_number(const ss_record *record, int64_t element, int32_t k) {
 }
 
 void ss_mark_positive(const ss_record *record, uint8_t *marked) {
-    for (int64_t i = 0; i < record->length; i++)
-        marked[i] = ss_number(record, i, 0) > 0;
+    const skinslide_value *value = &record->value;
+    if (value->type == SKINSLIDE_VALUE_BOOL && value->width == 1 && record->indices.type == SKINSLIDE_VALUE_NONE)
+        for (int64_t i = 0; i < record->length; i++) /* as faces are mostly chosen; many at once */
+            marked[i] = ((const uint8_t *)value->data)[i] > 0;
+    else
+        for (int64_t i = 0; i < record->length; i++)
+            marked[i] = ss_number(record, i, 0) > 0;
 }
 
 /* ---- Checks ---- */
