@@ -447,6 +447,18 @@ def test_the_first_of_what_calls_together_raise(jobs):
         together(lambda number: number if number < 3 else [].index(str(number)), 8, jobs)
 
 
+def test_ctrl_c_ends_calls_together():
+    called = []
+
+    def interrupted(number):
+        called.append(number)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        together(interrupted, 8, 1)
+    assert called == [0]
+
+
 def test_calls_together_where_there_are_no_more_threads(monkeypatch):
     def start(_thread):
         raise RuntimeError("can't start new thread")

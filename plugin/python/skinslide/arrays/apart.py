@@ -61,3 +61,5 @@ def _fulfil(future: Future[T], make: Callable[..., T], *arguments: Any) -> None:
         future.set_result(make(*arguments))
     except BaseException as error:
         future.set_exception(error)
+        if not isinstance(error, Exception):  # such as Ctrl-C
+            raise
