@@ -152,6 +152,20 @@ def test_numpy_starts_no_threads_in_a_command():
     assert said.split() == ["numpy", "1"]
 
 
+def test_garbage_is_collected_once_a_command_is_loaded(tmp_path):
+    """And not before: nothing that is loaded is garbage, nor looked at again."""
+    said = run_python(f"""
+        import gc, sys
+        from skinslide.command.start import main
+        early = []
+        gc.callbacks.append(lambda *_: gc.get_freeze_count() or early.append("early"))
+        sys.argv = ["skinslide", "check", {str(tmp_path / "shot.usda")!r}]
+        main()
+        print(gc.isenabled(), gc.get_freeze_count() > 10000, *early)
+    """)
+    assert said.split() == ["True", "True"]
+
+
 def test_an_interruption_while_the_command_is_loaded(tmp_path):
     code = """
         import os, signal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import glob
 import os
 import signal
@@ -38,6 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     before, json = _state(given), given.get("json", False)
     try:
         function = _loaded(home, name)  # uninterrupted, as USD must be while it loads
+        gc.freeze()
+        gc.enable()  # disabled by start.py
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # blocked by start.py
         result = run(function, **given)
         json = False  # a document that breaks off is not followed by another

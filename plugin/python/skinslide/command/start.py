@@ -6,6 +6,7 @@ USD and the core hold would take as long as some frames, for nothing.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -28,6 +29,7 @@ def run() -> NoReturn:
 def main() -> int:
     """Runs one command; returns its exit code."""
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # until cli.main can say what became of it
+    gc.disable()  # until cli.main has loaded the command, of which nothing is garbage
     from skinslide.command import cli
 
     return cli.main()
