@@ -74,12 +74,36 @@ static void place_fronts(ss_frontal *frontal) {
     }
 }
 
+static void place_entries(ss_frontal *frontal) {
+    const ss_system *system = frontal->system;
+    for (int32_t f = 0; f < system->front_count; f++) {
+        const ss_front *front = &system->fronts[f];
+        ss_shape s = ss_shape_of(frontal, front);
+        for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++) {
+            size_t row = place_in_panel(front, &s, frontal->block, system->entries[i].row);
+            frontal->entry_place[i] = (int32_t)row + 4 * frontal->block * system->entries[i].column;
+        }
+    }
+}
+
+static void place_rows(ss_frontal *frontal) {
+    const ss_system *system = frontal->system;
+    for (int32_t f = 0; f < system->front_count; f++) {
+        const ss_front *own = &system->fronts[f], *parent = &system->fronts[own->parent < 0 ? f : own->parent];
+        ss_shape s = ss_shape_of(frontal, parent);
+        for (int32_t i = own->row_start; i < own->row_start + own->row_count; i++)
+            frontal->row_place[i] = (int32_t)place_in_panel(parent, &s, frontal->block, system->place[i]);
+    }
+}
+
 static bool allocate(ss_frontal *frontal) {
     ss_memory *memory = &frontal->memory;
     int32_t count = frontal->system->front_count;
     frontal->panel = SS_NEW(memory, int64_t, count);
     frontal->update = SS_NEW(memory, int64_t, count);
     frontal->odd = SS_NEW(memory, uint8_t, count);
+    frontal->entry_place = SS_NEW(memory, int32_t, frontal->system->edge_count);
+    frontal->row_place = SS_NEW(memory, int32_t, frontal->system->row_count);
     return !memory->failed;
 }
 
@@ -90,8 +114,6 @@ void ss_frontal_lay_out(ss_frontal *frontal, ss_room *room) {
     frontal->force = SS_TAKE(room, double, extent->panel);
     for (int k = 0; k < 2; k++)
         frontal->stack[k] = SS_TAKE(room, double, extent->stack[k]);
-    frontal->to_panel = SS_TAKE(room, ptrdiff_t, extent->below);
-    frontal->to_update = SS_TAKE(room, ptrdiff_t, extent->below);
     frontal->x = SS_TAKE(room, double, 2 * (int64_t)extent->columns);
     frontal->below = SS_TAKE(room, double, 2 * (int64_t)extent->below);
 }
@@ -105,6 +127,8 @@ skinslide_status ss_frontal_create(const ss_system *system, int32_t block, bool 
     frontal->kernels = ss_kernels_of(true);
     if (allocate(frontal)) {
         place_fronts(frontal);
+        place_entries(frontal);
+        place_rows(frontal);
         if (keeps)
             frontal->L = SS_NEW(&frontal->memory, double, frontal->extent.panels);
     }
@@ -127,15 +151,9 @@ void ss_frontal_destroy(ss_frontal *frontal) {
 
 #define INLINE static inline __attribute__((always_inline)) /* so that block is a constant */
 
-INLINE size_t place_of_entry(const ss_front *front, const ss_shape *s, int block, const ss_entry *entry) {
-    return place_in_panel(front, s, block, entry->row) + (size_t)(4 * block * entry->column);
-}
-
-static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, const double *entries,
-                             double *panel) {
-    const ss_entry *own = frontal->system->entries + front->entry_start;
-    for (int32_t i = 0; i < front->entry_count; i++)
-        panel[place_of_entry(front, s, 1, &own[i])] = entries[own[i].edge];
+static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const double *entries, double *panel) {
+    for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++)
+        panel[frontal->entry_place[i]] = entries[frontal->system->entries[i].edge];
 }
 
 static void assemble_extras(const ss_front *front, const ss_shape *s, const double *slack, const double (*right)[2],
@@ -147,50 +165,47 @@ static void assemble_extras(const ss_front *front, const ss_shape *s, const doub
     }
 }
 
-/* Lists where the rows of a child are in its parent: those that are columns there come first. Returns how many those are. */
-static int32_t list_rows(ss_frontal *frontal, const ss_front *child, const ss_front *front, const ss_shape *s) {
-    const int32_t *place = frontal->system->place + child->row_start;
-    int32_t block = frontal->block, inside = 0;
-    for (int32_t i = 0; i < child->row_count; i++) {
-        frontal->to_panel[i] = (ptrdiff_t)place_in_panel(front, s, block, place[i]);
-        frontal->to_update[i] = block * ((ptrdiff_t)place[i] - front->count);
-        inside += place[i] < front->count;
-    }
-    return inside;
-}
-
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
 
-/* Adds the columns of a row of a child's update, from that row on: they begin from_next and to_next after each other. What is above
- * the diagonal of a block is added, too, and not read. */
-INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const ptrdiff_t *place,
-                        double *to, ptrdiff_t to_next) {
-    for (int32_t i = begin; i < end; i++)
+/* Adds the columns of a row of a child's update, from that row on: they begin from_next and to_next after each other, and a row is
+ * step times its place further. What is above the diagonal of a block is added, too, and not read. */
+INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const int32_t *place,
+                        int step, double *to, ptrdiff_t to_next) {
+    for (int32_t i = begin; i < end; i++) {
+        ptrdiff_t at = step * (ptrdiff_t)place[i];
         if (block == 2) {
-            *(pair *)(to + place[i]) += *(const pair *)(from + 2 * i);
-            *(pair *)(to + to_next + place[i]) += *(const pair *)(from + from_next + 2 * i);
+            *(pair *)(to + at) += *(const pair *)(from + 2 * i);
+            *(pair *)(to + to_next + at) += *(const pair *)(from + from_next + 2 * i);
         } else {
-            to[place[i]] += from[i];
+            to[at] += from[i];
         }
+    }
 }
 
-/* Adds a child's update where its rows are, column by column. */
+/* Adds a child's update where its rows are, column by column: those that are columns of its parent come first. */
 INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
                    double *update) {
     const ss_front *own = &frontal->system->fronts[child];
+    const int32_t *place = frontal->system->place + own->row_start, *in_panel = frontal->row_place + own->row_start;
     ss_shape from = ss_shape_of(frontal, own);
-    int32_t inside = list_rows(frontal, own, front, s);
     const double *origin = frontal->stack[frontal->odd[child]] + frontal->update[child];
     for (int32_t row = 0; row < own->row_count; row++) {
-        bool is_inside = row < inside;
-        const double *column = origin + place_in_update(&from, block * row);
-        ptrdiff_t there = frontal->to_update[row], next = is_inside ? 4 : next_in_update(s, (int32_t)there);
-        double *to = is_inside ? panel + 4 * (block * front->count + there) : update + place_in_update(s, (int32_t)there);
-        add_columns(block, column, next_in_update(&from, block * row), row, own->row_count,
-                    is_inside ? frontal->to_panel : frontal->to_update, to, next);
-        double *extras = is_inside ? to + ss_tile_start(s, s->tiles - 1) : to + s->height - 4;
+        const double *column = origin + place_in_update(&from, block * row), *extra = column + from.height - 4;
+        ptrdiff_t from_next = next_in_update(&from, block * row);
+        double *to, *extras;
+        if (place[row] < front->count) {
+            to = panel + 4 * block * (ptrdiff_t)place[row];
+            extras = to + ss_tile_start(s, s->tiles - 1);
+            add_columns(block, column, from_next, row, own->row_count, in_panel, 1, to, 4);
+        } else {
+            int32_t there = block * (place[row] - front->count);
+            to = update + place_in_update(s, there);
+            extras = to + s->height - 4;
+            add_columns(block, column, from_next, row, own->row_count, place, block, to - block * (ptrdiff_t)front->count,
+                        next_in_update(s, there));
+        }
         for (int k = 0; k < 3 && frontal->dominant; k++)
-            extras[k] += column[from.height - 4 + (size_t)k];
+            extras[k] += extra[k];
     }
 }
 
@@ -217,7 +232,7 @@ bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double 
         ss_shape s = ss_shape_of(frontal, front);
         double *panel = frontal->L + frontal->panel[f];
         memset(panel, 0, ss_tile_start(&s, s.tiles) * sizeof *panel);
-        assemble_numbers(frontal, front, &s, entries, panel);
+        assemble_numbers(frontal, front, entries, panel);
         assemble_extras(front, &s, slack, right, panel);
         good = eliminate(frontal, f, &s) && good;
     }
@@ -232,10 +247,9 @@ static void assemble_blocks(const ss_frontal *frontal, const ss_front *front, co
         const double *block = own[front->first + k];
         at[0] = -block[0], at[1] = -block[2], at[5] = -block[3];
     }
-    const ss_entry *entries = frontal->system->entries + front->entry_start;
-    for (int32_t i = 0; i < front->entry_count; i++) {
-        double *at = panel + place_of_entry(front, s, 2, &entries[i]);
-        const double *block = between[entries[i].edge];
+    for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++) {
+        double *at = panel + frontal->entry_place[i];
+        const double *block = between[frontal->system->entries[i].edge];
         at[0] = -block[0], at[4] = -block[1], at[1] = -block[2], at[5] = -block[3];
     }
 }

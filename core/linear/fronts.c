@@ -269,11 +269,10 @@ skinslide_status ss_find_fronts(ss_system *system, ss_graph *graph, skinslide_er
     system->fronts = SS_NEW(memory, ss_front, system->front_count);
     if (system->fronts)
         memcpy(system->fronts, fronts, (size_t)system->front_count * sizeof *fronts);
-    int64_t rows = 0;
     for (int32_t f = 0; f < system->front_count && system->fronts; f++)
-        rows += system->fronts[f].row_count, system->fronts[f].row_count = 0;
-    system->rows = SS_NEW(memory, int32_t, rows);
-    system->place = SS_NEW(memory, int32_t, rows);
+        system->row_count += system->fronts[f].row_count, system->fronts[f].row_count = 0;
+    system->rows = SS_NEW(memory, int32_t, system->row_count);
+    system->place = SS_NEW(memory, int32_t, system->row_count);
     if (!memory->failed) {
         ss_renumber(system, place);
         ss_fill_graph(system, graph);

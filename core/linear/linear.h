@@ -40,10 +40,13 @@ typedef struct ss_system {
     int32_t block;                       /* rows of an entry that the fronts are for: 1 or 2 */
     const int32_t (*edge_vertex)[2];     /* the net's */
     int32_t *unknown;                    /* [vertex_count] place in the ordered system, -1 where fixed */
+    int32_t held_count;
+    int32_t *held; /* [held_count] edges of which one end is fixed, ascending */
     int32_t front_count;
     ss_front *fronts; /* children before parents */
-    int32_t *rows;    /* unknowns below each front, ascending ... */
-    int32_t *place;   /* ... and where each is among the rows of the parent */
+    int64_t row_count;
+    int32_t *rows;  /* [row_count] unknowns below each front, ascending ... */
+    int32_t *place; /* ... and where each is among the rows of the parent */
     ss_entry *entries;
 } ss_system;
 
@@ -129,13 +132,13 @@ typedef struct ss_frontal {
     const ss_kernels *kernels;
     ss_extent extent;
     int64_t *panel, *update; /* [front_count] where the columns of each front are in L, and its update is in a stack */
+    int32_t *entry_place;    /* [edge_count] where each of the system's entries is in the panel of its front */
+    int32_t *row_place;      /* [row_count] where each of the system's rows begins in the panel of its front's parent */
     uint8_t *odd;            /* [front_count] in which of the two */
     bool keeps;              /* L is in memory of its own */
     double *L;               /* [panels] */
     double *stack[2];        /* [stack] */
     double *force;           /* [panel] a panel before it was divided by its pivots */
-    ptrdiff_t *to_panel;     /* [below] where rows of a child go, in a panel ... */
-    ptrdiff_t *to_update;    /* ... and in an update, below 0 where they are columns */
     double *x, *below;       /* [2][columns], [2][below] */
 } ss_frontal;
 

@@ -106,6 +106,21 @@ static void number_free(ss_system *system, const ss_net *net) {
         system->unknown[v] = net->fixed[v] ? -1 : system->n++;
 }
 
+static bool is_held(const ss_system *system, int32_t edge) {
+    const int32_t *v = system->edge_vertex[edge];
+    return (system->unknown[v[0]] < 0) != (system->unknown[v[1]] < 0);
+}
+
+static bool list_held(ss_system *system) {
+    for (int32_t e = 0; e < system->edge_count; e++)
+        system->held_count += is_held(system, e);
+    system->held = SS_NEW(&system->memory, int32_t, system->held_count);
+    for (int32_t e = 0, i = 0; e < system->edge_count && system->held; e++)
+        if (is_held(system, e))
+            system->held[i++] = e;
+    return system->held;
+}
+
 static skinslide_status create(const ss_net *net, int32_t block, const char *label, ss_system **out, skinslide_error *error) {
     ss_system *system = calloc(1, sizeof *system);
     if (!system)
@@ -118,7 +133,7 @@ static skinslide_status create(const ss_net *net, int32_t block, const char *lab
     skinslide_status status = system->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
     if (!status) {
         number_free(system, net);
-        status = analyse(system, error);
+        status = list_held(system) ? analyse(system, error) : ss_out_of_memory(error);
     }
     if (status)
         ss_system_destroy(system);

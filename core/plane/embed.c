@@ -13,25 +13,17 @@ ss_net ss_net_of(const ss_patch *patch, const uint8_t *fixed) {
     return (ss_net){patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, fixed};
 }
 
-/* One end of an edge whose other end is fixed. */
-static void hold(const ss_system *system, ss_factor *factor, int32_t vertex, const double at[2], double density) {
-    int32_t k = system->unknown[vertex];
-    if (k < 0)
-        return;
-    factor->slack[k] += density;
-    factor->right[k][0] += density * at[0];
-    factor->right[k][1] += density * at[1];
-}
-
 static void assemble(const ss_system *system, ss_factor *factor, const double *density, const double (*uv)[2]) {
     ss_factor_clear(factor);
-    for (int32_t e = 0; e < system->edge_count; e++) {
-        int32_t a = system->edge_vertex[e][0], b = system->edge_vertex[e][1];
-        factor->entry[e] = density[e];
-        if (system->unknown[a] < 0 || system->unknown[b] < 0) {
-            hold(system, factor, a, uv[b], density[e]);
-            hold(system, factor, b, uv[a], density[e]);
-        }
+    memcpy(factor->entry, density, (size_t)system->edge_count * sizeof *density);
+    for (int32_t i = 0; i < system->held_count; i++) {
+        int32_t edge = system->held[i], a = system->edge_vertex[edge][0], b = system->edge_vertex[edge][1];
+        bool first_is_free = system->unknown[a] >= 0;
+        int32_t k = system->unknown[first_is_free ? a : b];
+        const double *at = uv[first_is_free ? b : a];
+        factor->slack[k] += density[edge];
+        factor->right[k][0] += density[edge] * at[0];
+        factor->right[k][1] += density[edge] * at[1];
     }
 }
 
