@@ -36,16 +36,35 @@ static void count_face(const ss_faces *faces, int32_t face, const double (*uv)[2
     layout->collapsed += collapsed;
 }
 
+typedef double pair __attribute__((vector_size(16)));
+typedef double loose_pair __attribute__((vector_size(16), aligned(8), may_alias)); /* wherever it is */
+typedef int64_t pair_bits __attribute__((vector_size(16)));
+
+static inline pair size_of(pair x) {
+    return (pair)((pair_bits)x & INT64_MAX);
+}
+
+/* Of two triangles: areas and roundings are those of doubled_area, to the bit. */
+static inline pair_bits two_turn_left(const int32_t (*v)[3], const double (*uv)[2]) {
+    pair way[2][2];
+    for (int t = 0; t < 2; t++)
+        for (int k = 0; k < 2; k++)
+            way[t][k] = *(const loose_pair *)uv[v[t][k + 1]] - *(const loose_pair *)uv[v[t][0]];
+    pair x1 = {way[0][0][0], way[1][0][0]}, y1 = {way[0][0][1], way[1][0][1]};
+    pair x2 = {way[0][1][0], way[1][1][0]}, y2 = {way[0][1][1], way[1][1][1]};
+    return x1 * y2 - y1 * x2 > 8 * DBL_EPSILON * (size_of(x1) + size_of(y1) + size_of(x2) + size_of(y2));
+}
+
 /* Whether all triangles turn left beyond doubt: each area is above a rounding that, in an embedding of size 1, is also above that of
  * the area itself. */
 static bool clearly_turn_left(const ss_triangles *triangles, const double (*uv)[2]) {
-    int32_t doubtful = 0;
-    for (int32_t t = 0; t < triangles->count; t++) {
-        const int32_t *v = triangles->vertex[t];
-        double rounding, area = doubled_area(uv[v[0]], uv[v[1]], uv[v[2]], &rounding);
-        doubtful += !(area > rounding);
-    }
-    return doubtful == 0;
+    const int32_t(*v)[3] = (const int32_t(*)[3])triangles->vertex;
+    pair_bits left = {-1, -1};
+    int32_t t = 0;
+    for (; t + 2 <= triangles->count; t += 2)
+        left &= two_turn_left(v + t, uv);
+    double rounding = 0, area = t < triangles->count ? doubled_area(uv[v[t][0]], uv[v[t][1]], uv[v[t][2]], &rounding) : 1;
+    return left[0] && left[1] && area > rounding;
 }
 
 /* Exactly, or straight on, every triangle of the fan: so the face does not go round twice. */
@@ -77,7 +96,8 @@ ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]) {
         count_face(faces, f, uv, &layout);
         layout.regular = layout.regular && fan_turns_left(faces, f, uv);
     }
-    for (int32_t f = 0; f < faces->face_count && layout.regular; f++)
+    bool of_triangles = patch->triangles.count == faces->face_count; /* whose corners have been looked at */
+    for (int32_t f = 0; f < faces->face_count && layout.regular && !of_triangles; f++)
         layout.regular = corners_turn_left(faces, f, uv);
     return layout;
 }

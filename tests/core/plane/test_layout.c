@@ -53,6 +53,50 @@ static void folds_by_hand(void **state) {
     free_mesh(&mesh);
 }
 
+/* A strip of triangles i, i + 1, i + 2 with its vertices in two rows. */
+static test_mesh strip(int32_t count) {
+    int32_t counts[16], indices[3 * 16];
+    float points[3 * 18] = {0};
+    for (int32_t v = 0; v < count + 2; v++)
+        points[3 * v] = (float)(v / 2), points[3 * v + 1] = (float)(v % 2);
+    for (int32_t t = 0; t < count; t++) {
+        counts[t] = 3;
+        indices[3 * t] = t, indices[3 * t + 1] = t + 2 - t % 2, indices[3 * t + 2] = t + 1 + t % 2;
+    }
+    return copy_mesh(count + 2, count, counts, indices, points);
+}
+
+static int32_t count_turned(const test_mesh *mesh, const double (*uv)[2]) {
+    int32_t turned = 0;
+    for (int32_t t = 0; t < mesh->face_count; t++) {
+        const int32_t *v = mesh->face_indices + 3 * t;
+        long double x1 = uv[v[1]][0] - uv[v[0]][0], y1 = uv[v[1]][1] - uv[v[0]][1];
+        long double x2 = uv[v[2]][0] - uv[v[0]][0], y2 = uv[v[2]][1] - uv[v[0]][1];
+        turned += x1 * y2 < y1 * x2;
+    }
+    return turned;
+}
+
+/* Wherever they are, among triangles of an odd number or an even one. */
+static void each_fold_is_counted(void **state) {
+    (void)state;
+    dice d = {8};
+    for (int32_t count = 1; count <= 16; count++) {
+        test_mesh mesh = strip(count);
+        ss_patch *patch = patch_of(&mesh, (skinslide_patch_setup){0});
+        for (int32_t moved = 0; moved < 10 * (count + 2); moved++) {
+            double uv[18][2];
+            for (int32_t v = 0; v < count + 2; v++)
+                for (int k = 0; k < 2; k++)
+                    uv[v][k] = v == moved % (count + 2) ? roll_share(&d) : mesh.points[3 * v + k] / 9.0;
+            int32_t turned = count_turned(&mesh, (const double(*)[2])uv);
+            expect_layout(patch, (const double(*)[2])uv, turned, 0, turned == 0);
+        }
+        ss_patch_destroy(patch);
+        free_mesh(&mesh);
+    }
+}
+
 /* A pentagram turns left at every corner and yet covers its middle twice; a bow-tie and a dart turn both ways. */
 static void polygons_that_overlap_are_not_regular(void **state) {
     (void)state;
@@ -84,6 +128,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_triangle_holds_the_diagonal),
         cmocka_unit_test(folds_by_hand),
+        cmocka_unit_test(each_fold_is_counted),
         cmocka_unit_test(polygons_that_overlap_are_not_regular),
         cmocka_unit_test(free_holes_are_never_regular),
     };
