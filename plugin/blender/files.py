@@ -29,7 +29,7 @@ _PRIM = {"name": "Prim", "description": "The mesh in the stage; empty: the one w
 
 
 class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
-    """Takes the patches of a .skinslide file for those of the active mesh, in place of its own."""
+    """Imports the patches of a .skinslide file to the active mesh, in place of its own."""
 
     bl_idname, bl_label = "skinslide.import_setup", "Import Set-up"
     filename_ext = EXTENSION
@@ -155,18 +155,18 @@ def _times(curve: bpy.types.FCurve) -> list[float]:
 
 
 class SKINSLIDE_OT_export_setup(Waiting, ExportHelper):
-    """Writes the patches of the active mesh beside a USD cache; what else is in that file stays."""
+    """Exports the patches of the active mesh, to a file beside a USD cache; everything else in that file stays."""
 
     bl_idname, bl_label = "skinslide.export_setup", "Export Set-up"
     filename_ext = EXTENSION
     filter_glob: bpy.props.StringProperty(default=f"*{EXTENSION}", options={"HIDDEN"})  # type: ignore[valid-type]
     cache: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="Cache", subtype="FILE_PATH", description="The USD cache; empty: of the same name, beside it"
+        name="Cache", subtype="FILE_PATH", description="The USD cache; empty: the one of the same name beside the file"
     )
     with_cache: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Export Cache",
         default=True,
-        description="Exports the animated mesh there too, frame by frame, by Blender's own exporter",
+        description="Also exports the animated mesh there, frame by frame, with Blender's own exporter",
     )
     prim: bpy.props.StringProperty(**_PRIM)  # type: ignore[valid-type]
 

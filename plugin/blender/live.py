@@ -218,7 +218,7 @@ def _stretch_material() -> bpy.types.Material:
 
 
 class SKINSLIDE_OT_live(Waiting):
-    """Shows the skin slid as the timeline moves, on an object beside the mesh; again: no more."""
+    """Shows the skin slid as the timeline moves, on an object beside the mesh; press again to end that."""
 
     bl_idname, bl_label = "skinslide.live", "Live"
 

@@ -23,8 +23,9 @@ from .work import Waiting, asked
 PAINTED = {each.name: each for each in inputs("controls") if each.is_primvar}
 _SAYS = {
     "weight": "How far the skin slides: 0 leaves it where the cache has it, 1 slides it fully",
-    "forceDensity": "How strongly edges pull: skin with more of it stretches less. Only ratios count",
-    "hold": "How alike neighbours must slide, under the rules even and relaxed: 0 not at all, 1 as they would",
+    "forceDensity": "How strongly edges pull: skin with more of it stretches less. Only ratios matter",
+    "hold": "How closely points follow the slide of their neighbours, under the rules even and relaxed: low where "
+    "spare skin may come from, high where it must not",
     "maxDistance": "The farthest that the skin may slide, in the units of the mesh",
 }
 _PAINTED = [(name, settings.title(name), _SAYS.get(name, "")) for name in PAINTED]
@@ -60,7 +61,7 @@ class _Paint(Waiting):
 
 
 class SKINSLIDE_OT_paint(_Paint):
-    """Paints a value, in edit mode on what is selected, else on all. Blender's own brushes go on from there."""
+    """Paints a value: in edit mode on the selection, else everywhere. Blender's own brushes can go on from there."""
 
     bl_idname, bl_label = "skinslide.paint", "Paint"
     what: bpy.props.EnumProperty(name="What", items=_PAINTED, options={"SKIP_SAVE"})  # type: ignore[valid-type]
@@ -79,13 +80,13 @@ class SKINSLIDE_OT_paint(_Paint):
         name="From",
         search=_sources,
         options={"SKIP_SAVE"},
-        description="The vertex group or attribute whose values are taken; empty: the value",
+        description="The vertex group or attribute to copy values from; empty: the value above",
     )
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: Any) -> str:
-        """What is said of a button."""
-        return f"{_SAYS.get(properties.what, '')}.\n{cls.__doc__}"
+        """The tooltip of a button."""
+        return f"{_SAYS.get(properties.what, '')}.\n{cls.bl_description}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Asks for the value. What may be above 1 is painted on an attribute."""
@@ -175,7 +176,7 @@ class _PaintEdges(_Paint):
         name="Force Density",
         default=4.0,
         min=0.0,
-        description="Multiplies what is painted; 0: no longer painted by edge",
+        description="Multiplies painted force density; 0: no longer painted by edge",
     )
 
     def choose(self, context: bpy.types.Context) -> Callable[[Surface, np.ndarray], np.ndarray]:
@@ -242,7 +243,7 @@ class SKINSLIDE_OT_paint_curve(_PaintEdges):
         name="Curve", search=_curves, description="The object that is the curve"
     )
     distance: bpy.props.FloatProperty(  # type: ignore[valid-type]
-        name="Distance", default=0.05, min=0.0, description="From the curve, in the units of the mesh"
+        name="Distance", default=0.05, min=0.0, description="How far edges may be from the curve, in the mesh's units"
     )
     direction: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="Edges",

@@ -116,7 +116,7 @@ def _groups(_operator: Any, context: bpy.types.Context, _text: str) -> list[str]
 
 
 class SKINSLIDE_OT_patch_from_group(_NewPatch):
-    """Makes a patch of the faces whose points are all in a group of vertices, with weights above 0."""
+    """Makes a patch of the faces whose points are all in a vertex group, with weights above 0."""
 
     bl_idname, bl_label = "skinslide.patch_from_group", "Patch from Vertex Group"
     group: bpy.props.StringProperty(  # type: ignore[valid-type]
@@ -141,7 +141,7 @@ class SKINSLIDE_OT_patch_from_group(_NewPatch):
 
 
 class SKINSLIDE_OT_remove_patch(Waiting):
-    """Takes the active patch away, with all that is painted for it."""
+    """Removes the active patch, and all that is painted for it."""
 
     bl_idname, bl_label = "skinslide.remove_patch", "Remove Patch"
 

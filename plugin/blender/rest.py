@@ -25,7 +25,7 @@ class _Rest(Waiting):
 
 
 class SKINSLIDE_OT_rest_from_basis(_Rest):
-    """Takes the basis shape key for rest."""
+    """Takes the basis shape key as the rest pose."""
 
     bl_idname, bl_label = "skinslide.rest_from_basis", "Rest from Basis"
 
@@ -46,7 +46,7 @@ class SKINSLIDE_OT_rest_from_basis(_Rest):
 
 
 class SKINSLIDE_OT_rest_from_frame(_Rest):
-    """Takes the mesh as it is at a frame for rest."""
+    """Takes the mesh as it is at a frame as the rest pose."""
 
     bl_idname, bl_label = "skinslide.rest_from_frame", "Rest from Frame"
     frame: bpy.props.IntProperty(name="Frame", default=1)  # type: ignore[valid-type]

@@ -38,7 +38,10 @@ def _declarations() -> dict[str, dict[str, str]]:
     declared = (
         r'skinSlide:(?:__INSTANCE_NAME__:)?(\w+)(?: = [^\n]*)? \(\n.*?userDocBrief = "(.*?)"\n.*?displayName = "(.*?)"'
     )
-    return {name: {"name": title, "description": said} for name, said, title in re.findall(declared, text, re.DOTALL)}
+    return {
+        name: {"name": title, "description": said.removesuffix(".")}  # Blender ends a tooltip with a full stop
+        for name, said, title in re.findall(declared, text, re.DOTALL)
+    }
 
 
 _DECLARATIONS = _declarations()
@@ -92,7 +95,11 @@ class SkinslideObject(bpy.types.PropertyGroup):
             "Preview shows it, and the Solid view with its Color set to Attribute",
         ),
         "most_stretch": bpy.props.FloatProperty(
-            name="Most Stretch", default=0.5, min=1e-3, update=_changed, description="What has the hottest colour"
+            name="Most Stretch",
+            default=0.5,
+            min=1e-3,
+            update=_changed,
+            description="The stretch that has the hottest colour",
         ),
         "problem": bpy.props.StringProperty(name="Problem", description="Why the skin does not slide"),
         "file": bpy.props.StringProperty(

@@ -86,6 +86,10 @@ class Waiting(bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
     _steps: Steps | None = None
 
+    def __init_subclass__(cls, **words: Any) -> None:
+        super().__init_subclass__(**words)
+        cls.bl_description = (cls.__doc__ or "").removesuffix(".")  # Blender ends a tooltip with a full stop
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether its button is of any use, or why not."""

@@ -81,6 +81,17 @@ def test_it_lists_patches_and_what_is_wrong():
     assert {"one", "two"} <= set(drawn())
 
 
+def test_tooltips_leave_the_full_stop_to_blender():
+    operators = [each for each in bpy.types.Operator.__subclasses__() if each.__module__.startswith(work.__package__)]
+    for each in operators:
+        operators += each.__subclasses__()
+    tips = [each.bl_rna.description for each in operators if each.is_registered]
+    make_patch(thing := sheet())
+    for group in (thing.skinslide, thing.skinslide.patches[0]):
+        tips += [each.description for each in group.bl_rna.properties]
+    assert len(tips) > 40 and not [tip for tip in tips if tip.endswith(".")]
+
+
 def test_it_is_of_meshes_alone():
     assert not SKINSLIDE_PT_panel.poll(type("Context", (), {"active_object": None})())
 
