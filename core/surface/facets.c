@@ -42,19 +42,6 @@ void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]) {
     set_facets(pose);
 }
 
-void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]) {
-    const int32_t *v = pose->patch->triangles.vertex[place->triangle];
-    int corner = ss_place_corner(place);
-    const double *from = pose->point[v[corner < 0 ? 0 : corner]];
-    for (int k = 0; k < 3; k++)
-        out[k] = from[k];
-    if (corner >= 0)
-        return;
-    for (int k = 0; k < 3; k++)
-        out[k] =
-            from[k] + place->weight[1] * (pose->point[v[1]][k] - from[k]) + place->weight[2] * (pose->point[v[2]][k] - from[k]);
-}
-
 double ss_half_angle(const ss_posed *pose, int32_t triangle, int corner) {
     const int32_t *v = pose->patch->triangles.vertex[triangle];
     double a[3], b[3];

@@ -83,7 +83,14 @@ void ss_posed_set(ss_posed *pose, const float *points);
 void ss_posed_set_plane(ss_posed *pose, const double (*uv)[2]);
 /* The sine of half the angle at a corner of a triangle, which plain arithmetic gives. */
 double ss_half_angle(const ss_posed *pose, int32_t triangle, int corner);
-void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]);
+/* At a vertex, that to the bit. */
+static inline void ss_place_point(const ss_posed *pose, const ss_place *place, double out[3]) {
+    const int32_t *v = pose->patch->triangles.vertex[place->triangle];
+    const double *first = pose->point[v[0]], *second = pose->point[v[1]], *third = pose->point[v[2]], *weight = place->weight;
+    const double *from = weight[1] == 1 ? second : weight[2] == 1 ? third : first;
+    for (int k = 0; k < 3; k++)
+        out[k] = from[k] + weight[1] * (second[k] - from[k]) + weight[2] * (third[k] - from[k]);
+}
 
 /* ---- Steps of a walk: inside a triangle as rates at which the weights of a place change, and over a side into the next ---- */
 
