@@ -133,9 +133,9 @@ void ss_measure_stretch(ss_evener *evener);
 /* The sum of the squares of what was measured, over the scale. */
 double ss_sum_stretch(const ss_evener *evener);
 /* s(z), z over the scale, by what answers stretch and compression, and how fast that changes with z. What drives skin apart comes to
- * half at most. Without a branch or a call, so that several are found at once. */
+ * half at most. Without a branch or a call, so that several are found at once: z - |z| is 2 z where it is less than 0, else 0. */
 static inline double ss_drive(double stretch_response, double compression_response, double z, double *slope) {
-    double share = 2 * ss_least(z, 0), inverse = 1 / sqrt(1 + share * share);
+    double share = z - fabs(z), inverse = 1 / sqrt(1 + share * share);
     double bounded = (z < 0 ? compression_response : stretch_response) * inverse;
     *slope = bounded * inverse * inverse;
     return bounded * z;
