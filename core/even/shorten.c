@@ -10,24 +10,29 @@
 #define PASSES 10   /* of easing off, at most: parts of 0 and 1 are as many edges from each other */
 #define EASE   0.1  /* a neighbour may take as much more */
 
-/* ---- One face ---- */
+/* ---- Some faces ---- */
 
-/* What a face has to spare, and what of that a part of the step takes: slope part + bend part^2. What makes it larger is left out. */
-typedef struct loss {
-    double spare, slope, bend;
-} loss;
+enum { AT_ONCE = 256 };
+
+/* What some faces have to spare, and what of that a part of the step takes: slope part + bend part^2. What makes one larger is left
+ * out. reach is the part that takes all there is to spare. */
+typedef struct losses {
+    int32_t count, face[AT_ONCE];
+    double spare[AT_ONCE], slope[AT_ONCE], bend[AT_ONCE], reach[AT_ONCE];
+} losses;
 
 static inline void subtract(const ss_pair a[3], const ss_pair b[3], ss_pair out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = a[k] - b[k];
 }
 
-/* Areas are those of what is seen along the normal. Two triangles of the fan have that between the diagonals of their quad. */
-static inline loss loss_of(const ss_evener *evener, int32_t face) {
+/* The area of a face, and how it grows: areas are those of what is seen along the normal. Two triangles of the fan have that between
+ * the diagonals of their quad. */
+static inline void measure(const ss_evener *evener, int32_t face, double *area, double *slope, double *bend) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     const int32_t *v = faces->corner_vertex + faces->face_start[face];
     int32_t count = faces->face_start[face + 1] - faces->face_start[face];
-    const double *n = evener->sheet->normal[face], rest = evener->sheet->area[face];
+    const double *n = evener->sheet->normal[face];
     const ss_pair(*corner)[3] = (const ss_pair(*)[3])evener->straight, *origin = corner[v[0]];
     ss_pair areas = {0, 0}, slopes = {0, 0};
     for (int32_t c = 2; c < count; c += 2) {
@@ -40,17 +45,37 @@ static inline loss loss_of(const ss_evener *evener, int32_t face) {
             slopes += across * (ss_pair){q[k][1], q[k][0]};
         }
     }
-    double spare = evener->caution.most_lost * ss_most(areas[0] - evener->caution.least_area * rest, 0);
-    return rest > 0 ? (loss){spare, ss_most(-slopes[0] - slopes[1], 0), ss_most(-areas[1], 0)} : (loss){0, 0, 0};
+    *area = areas[0], *slope = slopes[0] + slopes[1], *bend = areas[1];
 }
 
-static inline bool spares(loss own, double part) {
-    return own.slope * part + own.bend * part * part <= own.spare;
+/* Of the faces that are listed. One without area at rest has no normal, and loses nothing. Whether a face grows or shrinks no
+ * processor can tell ahead: so the second loop has no branch. */
+static void find_losses(const ss_evener *evener, losses *l) {
+    const ss_caution caution = evener->caution;
+    const int32_t count = l->count;
+    double least[AT_ONCE];
+    for (int32_t i = 0; i < count; i++) {
+        measure(evener, l->face[i], &l->spare[i], &l->slope[i], &l->bend[i]);
+        least[i] = caution.least_area * evener->sheet->area[l->face[i]];
+    }
+    for (int32_t i = 0; i < count; i++) {
+        l->spare[i] = caution.most_lost * ss_most(l->spare[i] - least[i], 0);
+        l->slope[i] = ss_most(-l->slope[i], 0), l->bend[i] = ss_most(-l->bend[i], 0);
+    }
 }
 
-/* The part of the step that takes all there is to spare. */
-static inline double reach_of(loss own) {
-    return 2 * own.spare / (own.slope + sqrt(own.slope * own.slope + 4 * own.bend * own.spare));
+/* Leaves those on the list that do not spare a part of the step, and finds their reaches. */
+static void find_reaches(losses *l, double part) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < l->count; i++) {
+        bool spares = l->slope[i] * part + l->bend[i] * part * part <= l->spare[i];
+        l->face[count] = l->face[i], l->spare[count] = l->spare[i];
+        l->slope[count] = l->slope[i], l->bend[count] = l->bend[i];
+        count += !spares;
+    }
+    l->count = count;
+    for (int32_t i = 0; i < count; i++)
+        l->reach[i] = 2 * l->spare[i] / (l->slope[i] + sqrt(l->slope[i] * l->slope[i] + 4 * l->bend[i] * l->spare[i]));
 }
 
 /* ---- All of them ---- */
@@ -62,10 +87,10 @@ static void fill_parts(ss_evener *evener, double part) {
 
 static bool is_shorter(const ss_evener *evener, int32_t face) {
     const ss_faces *faces = &evener->sheet->patch->faces;
+    bool shorter = false;
     for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++)
-        if (evener->part[faces->corner_vertex[c]] != 1)
-            return true;
-    return false;
+        shorter |= evener->part[faces->corner_vertex[c]] != 1;
+    return shorter;
 }
 
 static void set_straight(ss_evener *evener) {
@@ -78,21 +103,34 @@ static void set_straight(ss_evener *evener) {
     }
 }
 
-/* Takes the parts of the step; faces none of whose corners have a part keep their reaches. Returns the least. */
-static double scale_step(ss_evener *evener) {
-    double least = 1;
+static void take_parts(ss_evener *evener) {
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++) {
+        if (evener->part[v] == 1)
+            continue;
         for (int j = 0; j < 2; j++)
             evener->step[v][j] *= evener->part[v];
         for (int k = 0; k < 3; k++)
             evener->straight[v][k][1] *= evener->part[v];
     }
-    for (int32_t f = 0; f < evener->sheet->patch->faces.face_count; f++) {
-        if (is_shorter(evener, f)) {
-            loss own = loss_of(evener, f);
-            evener->reach[f] = spares(own, 1) ? 1 : reach_of(own);
+}
+
+/* Takes the parts of the step; faces none of whose corners have a part keep their reaches. Returns the least. */
+static double scale_step(ss_evener *evener) {
+    int32_t faces = evener->sheet->patch->faces.face_count;
+    double least = 1;
+    losses l;
+    take_parts(evener);
+    for (int32_t f = 0; f < faces;) {
+        for (l.count = 0; f < faces && l.count < AT_ONCE; f++) {
+            bool shorter = is_shorter(evener, f);
+            l.face[l.count] = f, l.count += shorter;
+            evener->reach[f] = shorter ? 1 : evener->reach[f];
+            least = ss_least(evener->reach[f], least);
         }
-        least = ss_least(evener->reach[f], least);
+        find_losses(evener, &l);
+        find_reaches(&l, 1);
+        for (int32_t i = 0; i < l.count; i++)
+            evener->reach[l.face[i]] = l.reach[i], least = ss_least(l.reach[i], least);
     }
     return least;
 }
@@ -101,16 +139,19 @@ static double scale_step(ss_evener *evener) {
 static double share_reaches(ss_evener *evener) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     double *part = evener->part;
+    losses l;
     set_straight(evener);
     fill_parts(evener, 1);
-    for (int32_t f = 0; f < faces->face_count; f++) {
-        loss own = loss_of(evener, f);
-        evener->reach[f] = 1;
-        if (spares(own, FAR))
-            continue;
-        double reach = ss_most(reach_of(own), NEAR), square = 1 / (reach * reach);
-        for (int32_t c = faces->face_start[f]; c < faces->face_start[f + 1]; c++)
-            part[faces->corner_vertex[c]] += square * square;
+    for (int32_t f = 0; f < faces->face_count;) {
+        for (l.count = 0; f < faces->face_count && l.count < AT_ONCE; f++)
+            l.face[l.count++] = f, evener->reach[f] = 1;
+        find_losses(evener, &l);
+        find_reaches(&l, FAR);
+        for (int32_t i = 0; i < l.count; i++) {
+            double reach = ss_most(l.reach[i], NEAR), square = 1 / (reach * reach);
+            for (int32_t c = faces->face_start[l.face[i]]; c < faces->face_start[l.face[i] + 1]; c++)
+                part[faces->corner_vertex[c]] += square * square;
+        }
     }
     for (int32_t v = 0; v < evener->sheet->patch->vertex_count; v++)
         if (part[v] != 1)
