@@ -17,8 +17,10 @@ INLINE void take_columns(const ss_frontal *frontal, const ss_front *front, const
     int count = 2 / block;
     for (int c = 0; c < count; c++) {
         double *x = frontal->x + c * s->columns;
-        for (int32_t k = 0; k < s->columns; k++)
-            x[k] = k < s->used ? from[count * k + c] : 0;
+        for (int32_t k = 0; k < s->used; k++)
+            x[k] = from[count * k + c];
+        for (int32_t k = s->used; k < s->columns; k++)
+            x[k] = 0;
     }
 }
 
@@ -30,28 +32,30 @@ INLINE void put_columns(const ss_frontal *frontal, const ss_front *front, const 
             to[count * k + c] = frontal->x[c * s->columns + k];
 }
 
-/* Where below [count][rows] has a number of a row. */
-INLINE size_t place_below(const ss_shape *s, int block, int32_t row, int number) {
-    size_t own = (size_t)block * (size_t)row;
-    return block == 2 ? own + (size_t)number : own + 4 * (size_t)s->below_tiles * (size_t)number;
-}
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias)); /* the two numbers of an unknown, at once */
 
+/* Adds what is below, [count][rows], to right sides of rows. */
 INLINE void add_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
     const int32_t *rows = frontal->system->rows + front->row_start;
+    const double *below = frontal->below, *other = below + 4 * s->below_tiles;
     for (int32_t i = 0; i < front->row_count; i++)
-        for (int k = 0; k < 2; k++)
-            right[rows[i]][k] += frontal->below[place_below(s, block, i, k)];
+        *(pair *)right[rows[i]] += block == 2 ? *(const pair *)(below + 2 * i) : (pair){below[i], other[i]};
 }
 
 INLINE void take_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
                        const double (*right)[2]) {
     const int32_t *rows = frontal->system->rows + front->row_start;
-    for (int32_t i = 0; i < front->row_count; i++)
-        for (int k = 0; k < 2; k++)
-            frontal->below[place_below(s, block, i, k)] = right[rows[i]][k];
+    double *below = frontal->below, *other = below + 4 * s->below_tiles;
+    for (int32_t i = 0; i < front->row_count; i++) {
+        pair own = *(const pair *)right[rows[i]];
+        if (block == 2)
+            *(pair *)(below + 2 * i) = own;
+        else
+            below[i] = own[0], other[i] = own[1];
+    }
     for (int c = 0; c < 2 / block; c++)
         for (int32_t i = s->below; i < 4 * s->below_tiles; i++)
-            frontal->below[4 * c * s->below_tiles + i] = 0;
+            below[4 * c * s->below_tiles + i] = 0;
 }
 
 /* ---- All of them ---- */
@@ -78,9 +82,12 @@ void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]) {
 }
 
 INLINE void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int block) {
-    for (int32_t k = 0; k < s->columns; k++)
+    for (int32_t t = 0; t < s->own_tiles; t++) {
+        const double *diagonal = panel + ss_tile_start(s, t) + 16 * (size_t)t;
         for (int c = 0; c < 2 / block; c++)
-            frontal->x[c * s->columns + k] *= panel[ss_tile_start(s, k / 4) + (size_t)(4 * k + k % 4)];
+            for (int k = 0; k < 4; k++)
+                frontal->x[c * s->columns + 4 * t + k] *= diagonal[5 * k];
+    }
 }
 
 static void take_extras(const ss_frontal *frontal, const ss_shape *s, const double *panel) {
@@ -91,7 +98,9 @@ static void take_extras(const ss_frontal *frontal, const ss_shape *s, const doub
 
 /* Panels are met from the last one back, where processors expect nothing: has them read what is next, or the begin of it. */
 static void prefetch(const double *panel, const double *end) {
-    for (const double *line = panel; line < end && line < panel + MOST_AHEAD; line += 8)
+    const double *last = end - panel < MOST_AHEAD ? end : panel + MOST_AHEAD;
+#pragma GCC unroll 4
+    for (const double *line = panel; line < last; line += 8)
         __builtin_prefetch(line);
 }
 
