@@ -28,21 +28,21 @@ static void list_bonds(ss_evener *evener) {
     for (int32_t i = 0; i < sheet->spring_count; i++) {
         const ss_spring *spring = &sheet->springs[i];
         const int32_t *v = spring->end;
-        double k = evener->paint[spring->edge], own = k / spring->square, tie = TIE * k / (edge * edge);
-        evener->bond[i] = 0.5 * (evener->hold[v[0]] + evener->hold[v[1]]) * (spring->square > 0 ? own : tie);
+        bool pulls = spring->square > 0;
+        double k = evener->paint[spring->edge], own = pulls ? k / spring->square : TIE * k / (edge * edge);
+        evener->bond[i] = 0.5 * (evener->hold[v[0]] + evener->hold[v[1]]) * own;
         evener->bonds[v[0]] += evener->bond[i], evener->bonds[v[1]] += evener->bond[i];
-        if (spring->square > 0)
+        if (pulls)
             evener->load[v[0]] += own, evener->load[v[1]] += own;
     }
 }
 
 /* ---- The matrix ---- */
 
-static void add_own(ss_evener *evener, int32_t unknown, const double slope[2], double k) {
-    double *own = ss_blocks_own(evener->K, unknown);
+static void add_own(ss_evener *evener, int32_t unknown, ss_pair slope, double k) {
+    ss_pair *own = (ss_pair *)ss_blocks_own(evener->K, unknown);
     for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++)
-            own[2 * i + j] += k * slope[i] * slope[j];
+        own[i] += k * slope[i] * slope;
 }
 
 static void add_between(ss_evener *evener, int32_t i, double k, double hold) {
@@ -51,10 +51,10 @@ static void add_between(ss_evener *evener, int32_t i, double k, double hold) {
     bool first_is_row;
     ss_multiply_tangents(evener->sheet, spring, product);
     double *between = ss_blocks_between(evener->K, spring->edge, &first_is_row);
+    int row = first_is_row ? 2 : 1, column = 3 - row;
     for (int a = 0; a < 2; a++)
         for (int b = 0; b < 2; b++)
-            between[first_is_row ? 2 * a + b : 2 * b + a] =
-                k * spring->slope[0][a] * spring->slope[1][b] - hold * product[a][b];
+            between[row * a + column * b] = k * spring->slope[0][a] * spring->slope[1][b] - hold * product[a][b];
 }
 
 static void add_spring(ss_evener *evener, int32_t i) {
@@ -63,7 +63,7 @@ static void add_spring(ss_evener *evener, int32_t i) {
     const int32_t moving[2] = {evener->moving[spring->end[0]], evener->moving[spring->end[1]]};
     for (int end = 0; end < 2; end++)
         if (moving[end] >= 0)
-            add_own(evener, moving[end], spring->slope[end], k);
+            add_own(evener, moving[end], (ss_pair){spring->slope[end][0], spring->slope[end][1]}, k);
     if (moving[0] >= 0 && moving[1] >= 0)
         add_between(evener, i, k, HOLD * evener->bond[i]);
 }
