@@ -39,12 +39,14 @@ static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_
     for (int k = 0; k < 3; k++)
         first[k] *= share, second[k] *= share;
     for (int j = 0; j < 2; j++) {
-        out->first[j] = ss_dot(first, ground->tangent[v[corner]][j]);
-        out->second[j] = ss_dot(second, ground->tangent[v[corner]][j]);
+        const double *tangent = ground->tangent[v[corner]][j];
+        out->first[j] = ss_dot(first, tangent);
+        out->second[j] = ss_dot(second, tangent);
+        out->lean[j] = share * ss_dot(product, tangent);
     }
     out->corner = 4 * (uint32_t)triangle + (uint32_t)corner;
     return ss_has_area(&pose->facet[triangle]) && share > 0 && isfinite(out->first[0] + out->first[1]) &&
-           isfinite(out->second[0] + out->second[1]);
+           isfinite(out->second[0] + out->second[1]) && isfinite(out->lean[0] + out->lean[1]);
 }
 
 static void see_wedges(ss_ground *ground) {

@@ -175,6 +175,7 @@ double ss_border_distance(const ss_posed *pose, int32_t vertex, const ss_place *
  * to the next corner and second.way of that to the last: inside, where neither is less than 0. */
 typedef struct ss_wedge {
     double first[2], second[2];
+    double lean[2];  /* how far the triangle rises along the normal, for a way along each tangent */
     uint32_t corner; /* 4 times the triangle, and which of its corners */
 } ss_wedge;
 

@@ -37,30 +37,39 @@ static inline bool aim(walker *w, int32_t triangle, const double blended[3]) {
 
 /* ---- From the vertex ---- */
 
-/* The first wedge that the way is in; else the one that it is nearest to, or NULL. */
-static const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, const double way[2], double rates[2]) {
+/* The shares of a way in a wedge. Returns the lesser one. */
+static inline double share_way(const ss_wedge *wedge, const double way[2], double rates[2]) {
+    rates[0] = wedge->first[0] * way[0] + wedge->first[1] * way[1];
+    rates[1] = wedge->second[0] * way[0] + wedge->second[1] * way[1];
+    return ss_least(rates[0], rates[1]);
+}
+
+/* The wedge that a way which is in none is nearest to, or NULL. */
+static const ss_wedge *nearest_wedge(const ss_wedge *wedges, int32_t count, const double way[2], double rates[2]) {
     const ss_wedge *chosen = NULL;
-    double best = -INFINITY;
-    for (int32_t i = ground->wedge_start[vertex]; i < ground->wedge_start[vertex + 1] && best < 0; i++) {
-        const ss_wedge *wedge = &ground->wedges[i];
-        double first = wedge->first[0] * way[0] + wedge->first[1] * way[1];
-        double second = wedge->second[0] * way[0] + wedge->second[1] * way[1];
-        if (ss_least(first, second) > best)
-            best = ss_least(first, second), chosen = wedge, rates[0] = first, rates[1] = second;
+    double best = -INFINITY, own[2];
+    for (int32_t i = 0; i < count; i++) {
+        double least = share_way(&wedges[i], way, own);
+        if (least > best)
+            best = least, chosen = &wedges[i], rates[0] = own[0], rates[1] = own[1];
     }
     return chosen;
 }
 
-/* Scales the shares that a way, whose length has that square, comes to as it is seen, to those of one as long in the triangle; false
- * where there is none. For a way as it is seen, the triangle, whose normal is n, rises by -(n . way) / (n . up). */
-static bool scale_shares(const ss_ground *ground, int32_t vertex, const ss_wedge *wedge, const double way[2], double square,
-                         double rates[2]) {
-    const double *n = ground->pose.facet[wedge->corner >> 2].normal;
-    double rise = way[0] * ss_dot(n, ground->tangent[vertex][0]) + way[1] * ss_dot(n, ground->tangent[vertex][1]);
-    double slant = ss_dot(n, ground->normal[vertex]), seen = slant * slant * square;
-    double scale = sqrt(seen / (seen + rise * rise));
+/* The first wedge that the way is in; else the one that it is nearest to, or NULL. */
+static inline const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, const double way[2], double rates[2]) {
+    const ss_wedge *wedges = ground->wedges + ground->wedge_start[vertex];
+    int32_t count = ground->wedge_start[vertex + 1] - ground->wedge_start[vertex];
+    for (int32_t i = 0; i < count; i++)
+        if (share_way(&wedges[i], way, rates) >= 0)
+            return &wedges[i];
+    return nearest_wedge(wedges, count, way, rates);
+}
+
+/* Scales the shares that a way, whose length has that square, comes to as it is seen, to those of one as long in the triangle. */
+static inline void scale_shares(const ss_wedge *wedge, const double way[2], double square, double rates[2]) {
+    double rise = wedge->lean[0] * way[0] + wedge->lean[1] * way[1], scale = sqrt(square / (square + rise * rise));
     rates[0] = ss_most(scale * rates[0], 0), rates[1] = ss_most(scale * rates[1], 0);
-    return isfinite(scale);
 }
 
 /* The end of a walk that does not leave the triangle. */
@@ -132,11 +141,12 @@ static bool set_out(const ss_ground *ground, int32_t vertex, const double way[2]
                     ss_place *place, double *part) {
     double square = way[0] * way[0] + way[1] * way[1], rates[2];
     const ss_wedge *wedge = square > 0 ? choose_wedge(ground, vertex, way, rates) : NULL;
-    if (!wedge || !scale_shares(ground, vertex, wedge, way, square, rates)) {
+    if (!wedge) {
         *place = ss_place_of_vertex(ground->pose.patch, NULL, vertex);
         *part = !(square > 0);
         return false;
     }
+    scale_shares(wedge, way, square, rates);
     if (!meter && rates[0] + rates[1] <= 1) {
         end_at_once(wedge, rates, place);
         *part = 1;
@@ -160,8 +170,7 @@ double ss_walk_turned(const ss_ground *ground, int32_t vertex, const double way[
 }
 
 static void cut(double way[2], double part) {
-    for (int j = 0; j < 2 && part < 1; j++)
-        way[j] *= part;
+    way[0] *= part, way[1] *= part;
 }
 
 /* All of them to their ends, in turn. */
@@ -187,7 +196,7 @@ void ss_walk_turned_all(const ss_ground *ground, int32_t count, const int32_t *v
         double part;
         if (set_out(ground, v, way[v], NULL, &w[walkers], &place[v], &part))
             from[walkers++] = v;
-        else
+        else if (part < 1)
             cut(way[v], part);
         if (walkers < WALKERS && i + 1 < count)
             continue;
