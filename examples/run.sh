@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up the machine, makes the example stages, bakes, draws and measures them, and ends with what they show and where it is.
+# Sets up the machine; makes, bakes, draws and measures the examples; and prints the results and where to find them.
 set -euo pipefail
 EXTRA_PACKAGES=()
 . "$(dirname "$0")/setup.sh"
@@ -69,31 +69,32 @@ measure stability "$out/stability.svg"
 measure rules "$out"/{body,fingers,trunk,torus,elbow,fine_elbow,bicep,face,finger,sleeve,bump}/stage.usda
 echo
 
-say "Stretch of each patch over 24 frames, where the cache has most of it, and once its skin has slid"
+say "Stretch of each patch over 24 frames, at its worst frame, in the cache and once its skin has slid"
 "$python" examples/measure/table.py "$out"
 
-say "The character: jump of its normals at a tiny slide (0), degrees across its seams, as in the cache; of three, points off the surface (0)"
+say "The character: the jump of its normals at a tiny slide (should be 0), and their angles across its seams, in degrees"
 head -n 2 "$out/normals.txt"
+say "Points off the surface (should be 0)"
 cat "$out/surface.txt"
 cat <<SUMMARY
 
 Look at these in $out:
-  body/report.html               a body that nobody painted, in a browser, from the frame at which it gains most
+  body/report.html               a body with nothing painted, in a browser, from the frame at which most stretch is removed
   shots.html                     all of them on one page, those with most stretch left first
-  gain.jpg                       an elbow and a face there: the cache, a patch that somebody painted, nothing painted
-  sleeve.jpg face.jpg character.jpg  the cache, and what the rules make of it
+  gain.jpg                       an elbow and a face of it: the cache, a painted patch, and nothing painted
+  sleeve.jpg face.jpg character.jpg  the cache and the slid skin, by each rule
   wrinkles.jpg                   a hand that closes, wrinkled where its skin is pressed together
   id_buffers.png                 the textures in which the lookup finds faces
-Of each example, as elbow:
+For each example, such as the elbow:
   elbow/stage.usda               the cache and its patch; sublayer elbow/slid.usdc above it
-  elbow/check.txt bake.json      what was found on the stage, and what happened at each frame
-  body/shot.usda setup.txt       a shot with nothing painted, of which setup --whole made body/stage.usda
-  character/shot.usda play.txt   a character as its rig has it, set up by a joint; its bake above it, and a live layer on its cache
+  elbow/check.txt bake.json      what check found on the stage, and what happened at each frame
+  body/shot.usda setup.txt       a shot with nothing painted, and how setup --whole made body/stage.usda from it
+  character/shot.usda play.txt   a character as its rig has it, set up by a joint; its bake and a live layer compared
   shot/play.txt                  shot/shot.usda, played live with nothing baked
-And measured:
-  stability.txt stability.svg    how a triangle turned along a sphere displaces it in the plane, by each kind of weight
-  rules.txt                      what each rule makes of them: share of the removable stretch, roughness, folds, cost
-  times.txt lookup.txt           milliseconds of each stage of the walk, patch by patch; how much of the lookup the texture finds
-  limit_distance.txt surface.txt how far the limit surface moves; how far points slid off the surface of the cache (0)
-  smoothness.txt normals.txt     how smoothly each rule moves skin; how authored normals are carried with it, without a jump
+Measurements:
+  stability.txt stability.svg    how a triangle turned along a sphere moves in the embedding, with each kind of weight
+  rules.txt                      each rule on the examples: share of the removable stretch, roughness, folds, time
+  times.txt lookup.txt           milliseconds of each stage of a slide, for each patch; how many vertices the texture finds
+  limit_distance.txt surface.txt how far the limit surface moves; how far slid points are from the surface of the cache
+  smoothness.txt normals.txt     how smoothly each rule moves skin; how authored normals are carried with it
 SUMMARY

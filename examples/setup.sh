@@ -1,6 +1,6 @@
-# Sets up a Debian 12 machine, as root or with sudo: system packages, the Python environment in build/venv, the
-# human of the examples, skinslide. Does only what is missing or has changed, so a second run takes seconds.
-# Sourced by examples/run.sh and tests/run.sh, which set EXTRA_PACKAGES. Leaves: root (the repository), venv, python.
+# Sets up a Debian 12 machine, as root or with sudo: system packages, the Python environment in build/venv, the human of
+# the examples, and skinslide. Does only what is missing or has changed, so a second run takes seconds. Sourced by
+# examples/run.sh and tests/run.sh, which set EXTRA_PACKAGES. Sets root (of the repository), venv and python.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -30,7 +30,7 @@ install_system_packages() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "${missing[@]}" >/dev/null
 }
 
-# What builds and what tests skinslide, as pyproject.toml has it, a line each.
+# The packages that build and test skinslide, from pyproject.toml, one a line.
 requirements() {
     "$python" - "$root/pyproject.toml" <<'PYTHON'
 import sys, tomllib

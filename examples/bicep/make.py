@@ -1,7 +1,7 @@
 """Bicep: the arm flexes by 100° over 24 frames while the biceps swells, under one oval patch.
 
-The cached skin is carried outwards with the muscle and drawn out over it. In the result the skin from around gives
-way, so the texture over the muscle keeps nearer its rest spacing while the swell keeps its shape. The rest pose is
+In the cache, skin moves outwards with the muscle and is stretched over it. In the result the skin around slides in, so
+the texture over the muscle keeps closer to its spacing at rest, and the swell keeps its shape. The rest pose is
 `primvars:rest`; the patch is an int primvar by face, and a painted slide weight fades the sliding out towards its edge.
 """
 

@@ -1,8 +1,8 @@
 """Body: an elbow and both knees bend while the jaw opens in a smile, over 24 frames; nothing is painted.
 
 The stage that this writes has no patch. `skinslide setup --whole` finds where its edges ever stretch, and makes one
-patch of that and of the skin around. In the result skin gives way at elbow, knees, mouth and cheeks at once, from as
-far around as it takes; hands, feet and all that stays are those of the cache, to the bit.
+patch of these and the skin around them. In the result skin slides in at elbow, knees, mouth and cheeks at once, from as
+far away as is needed; hands, feet and all else outside the patch are those of the cache, to the bit.
 """
 
 import sys

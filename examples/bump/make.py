@@ -1,7 +1,7 @@
 """Bump: the bump of the chequer example under a sheet that renders as a subdivision surface.
 
-The sheet has 32 by 32 faces, few enough for the faces to cut corners. In the result the limit surface keeps the bump's
-shape, and the squares come back near to square all the same. The patch is the whole sheet, with its four corners.
+The sheet has 32 by 32 faces, too few to have the shape of the bump. In the result the limit surface keeps the bump's
+shape, and the squares become nearly square again all the same. The patch is the whole sheet, with its four corners.
 """
 
 import sys

@@ -1,7 +1,7 @@
-"""Character: the elbow's arm as it comes from a rig: skinned by UsdSkel, split at its UV seams, with its own normals.
+"""Character: the elbow's arm as it comes from a rig: skinned by UsdSkel, split at its UV seams, with authored normals.
 
-Nothing is cached and nothing painted: `skinslide setup --joint` makes the patch of the shot. Points on either side of a
-seam slide as one, and their normals stay one. Rest pose: that in which the body was bound.
+Nothing is cached or painted: `skinslide setup --joint` makes the shot's patch. The two copies of a point on a seam
+slide together, and keep the same normal. The rest pose is that in which the body was bound.
 """
 
 import sys

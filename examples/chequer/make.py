@@ -1,8 +1,8 @@
 """Chequer: a bump travels under a chequered square of 64 by 64 faces over 24 frames.
 
-Cached, each point only rises and falls, so the chequers on the bump's flanks are drawn out lengthwise. In the result
-the squares all around draw in towards the bump and those on it come back near to square; the bump itself and the edge
-of the sheet stay where they were. The patch is the whole sheet, with its four corners; the rest pose is flat.
+In the cache each point only rises and falls, so the chequers on the bump's flanks are stretched lengthwise. In the
+result the squares all around draw in towards the bump and those on it become nearly square again; the bump itself and
+the edge of the sheet stay where they were. The patch is the whole sheet, with its four corners; the rest pose is flat.
 """
 
 import sys

@@ -1,7 +1,7 @@
-"""Elbow: the arm flexes by 110° over 24 frames, and an oval patch lies over its point.
+"""Elbow: the arm flexes by 110° over 24 frames, with an oval patch over its point.
 
 The cached skin is pulled tight over the point of the elbow, where linear blend skinning stretches it most. In the
-result the skin round about gives way towards the point: the texture there keeps nearer its rest spacing, and the
+result the skin around slides towards the point: the texture there keeps closer to its spacing at rest, and the
 silhouette of the arm stays. The rest pose is the default value of `points`; the patch is a bool primvar by face.
 """
 

@@ -1,8 +1,8 @@
 """Face: a smile, then the jaw opens, then the cheeks puff, over 24 frames, under one patch over the whole face.
 
-The eyes, the nostrils and the mouth are holes in the patch, pinned. What shows here is that nothing folds about them,
-with the lips wide open too. The stretch falls as the jaw opens, and hardly changes as the cheeks puff; in the smile
-it rises a little with the rule `unit`, for the holes that stay where they are leave the skin between them little room.
+The eyes, the nostrils and the mouth are pinned holes in the patch. Nothing folds over at them, even with the lips wide
+open. The stretch falls as the jaw opens, and hardly changes as the cheeks puff; in the smile it rises a little with the
+rule `unit`, since the skin between holes that do not move has little room.
 The rest pose is `primvars:Pref`; the patch is a GeomSubset.
 """
 

@@ -1,7 +1,7 @@
 """Finger: the left index finger curls at its three joints over 24 frames, under a patch along its back.
 
-The cached skin is drawn out over the knuckles and not between them. In the result it is shared out along the back of
-the finger, as the loose skin there does. The rest pose is `primvars:pref`; the patch is a GeomSubset.
+In the cache, skin is stretched over the knuckles and not between them. In the result the stretch is spread along the
+back of the finger, as in loose skin. The rest pose is `primvars:pref`; the patch is a GeomSubset.
 """
 
 import sys

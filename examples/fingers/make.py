@@ -1,8 +1,8 @@
 """Fingers: the left hand closes over 24 frames, every finger at its three joints; nothing is painted.
 
 The stage that this writes has no patch. `skinslide setup --whole` finds where its edges ever stretch, which is at all
-knuckles and round all fingers, and makes one patch of the hand. Fingers are tubes, closed at their tips: no plane
-could hold them. In the result skin is drawn over the knuckles from the back of the hand and from between them.
+knuckles and round all fingers, and makes one patch of the hand. Fingers are tubes, closed at their tips, which do not
+lie flat in a plane. In the result skin slides over the knuckles from the back of the hand and from between them.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""The left arm: its joints, its hinge and the places the arm's patches start from. Centimetres, radians."""
+"""The left arm: its joints, its hinge and the points that its patches are around. Centimetres, radians."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ class Arm:
 
     @property
     def hinge(self) -> np.ndarray:
-        """The arm is a little bent at rest, and bends further in that same plane."""
+        """The axis (3,) of the elbow. The arm is a little bent at rest, and bends further in the same plane."""
         return unit(np.cross(self.elbow - self.shoulder, self.wrist - self.elbow))
 
     @property
@@ -45,7 +45,7 @@ def unit(vector: np.ndarray) -> np.ndarray:
 
 
 def farthest(body: np.ndarray, centre: np.ndarray, direction: np.ndarray, within: float) -> int:
-    """The point of `body` (V, 3) that lies most in `direction` of those nearer than `within` to `centre`."""
+    """Of the points of `body` (V, 3) within a distance of `centre`, the one that lies farthest in `direction`."""
     reach = (body - centre) @ direction
     reach[np.linalg.norm(body - centre, axis=1) > within] = -np.inf
     return int(reach.argmax())

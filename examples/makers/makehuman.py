@@ -1,4 +1,4 @@
-"""Reads MakeHuman's CC0 human (base mesh, targets, rig, skin weights) from what fetch.py has fetched.
+"""Reads MakeHuman's CC0 human (base mesh, targets, rig, skin weights) from what fetch.py downloads.
 
 The data is in decimetres; everything returned here is in centimetres, Y up, the character facing +Z.
 """

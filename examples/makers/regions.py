@@ -37,9 +37,9 @@ def below(values: np.ndarray, faces: np.ndarray, limit: float) -> np.ndarray:
 def oval(
     points: np.ndarray, faces: np.ndarray, centre: int, axis: np.ndarray, half_width: float, slimness: float
 ) -> np.ndarray:
-    """A round region about point `centre`: `half_width` across the direction `axis` (3,), `slimness` times that along.
+    """An oval around point `centre`: `half_width` across the direction `axis` (3,), `slimness` times that along it.
 
-    The distance is geodesic, over the points drawn together along `axis`. No holes, no pinches.
+    Distances are geodesic, over points that are squeezed together along `axis`. The region has no holes and no pinches.
     """
     along = (points - points[centre]) @ axis
     drawn = points - (1 - 1 / slimness) * along[:, None] * axis
@@ -75,7 +75,7 @@ def component(across: np.ndarray, region: np.ndarray, start: int) -> np.ndarray:
 
 
 def tidy(faces: np.ndarray, region: np.ndarray, start: int, outside: np.ndarray | None = None) -> np.ndarray:
-    """The part of `region` about face `start`, its boundary smoothed, its pinholes filled and its pinches opened.
+    """The part of `region` around face `start`, with a smoothed boundary, small holes filled and pinches opened.
 
     outside  bool (F,), faces that stay out, so that the holes they make are kept; None: the region has no holes
     """
@@ -90,7 +90,7 @@ def tidy(faces: np.ndarray, region: np.ndarray, start: int, outside: np.ndarray 
 
 
 def smooth(across: np.ndarray, region: np.ndarray, rounds: int = 4) -> np.ndarray:
-    """`region` without its teeth: a face takes the side that three or more of its neighbours are on."""
+    """`region` without teeth: a face joins or leaves it as three or more of its neighbours do."""
     for _ in range(rounds):
         votes = (region[across] & (across >= 0)).sum(axis=1)
         region = np.where(votes >= 3, True, np.where(votes <= 1, False, region))
@@ -98,7 +98,7 @@ def smooth(across: np.ndarray, region: np.ndarray, rounds: int = 4) -> np.ndarra
 
 
 def fill(across: np.ndarray, region: np.ndarray, outside: np.ndarray) -> np.ndarray:
-    """`region` with every hole filled that has no face of `outside`; the largest piece around it is no hole."""
+    """`region` with every hole filled that has no face of `outside`. The largest piece left out is not a hole."""
     pieces, left = [], ~region
     while left.any():
         pieces.append(component(across, ~region, int(np.flatnonzero(left)[0])))
@@ -112,7 +112,7 @@ def fill(across: np.ndarray, region: np.ndarray, outside: np.ndarray) -> np.ndar
 
 
 def rim(faces: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """The boundary's directed edges (K, 2): sides of the region's faces with no face of it beyond them."""
+    """The boundary's directed edges (K, 2): sides of the region's faces that no other face of it shares."""
     inside = faces[region]
     sides = np.stack([inside, np.roll(inside, -1, axis=1)], axis=2)
     return sides[neighbours(inside) < 0]

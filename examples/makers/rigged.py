@@ -1,6 +1,6 @@
-"""Writes the human as its rig comes out of an exporter: skinned by UsdSkel, split at UV seams, with normals of its own.
+"""Writes the human as its rig comes out of an exporter: skinned by UsdSkel, split at UV seams, with authored normals.
 
-A point that lies on a seam is there once for each of its texture coordinates, and those copies have one normal.
+A point on a seam has a copy for each of its texture coordinates. The copies share one normal.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,13 +12,13 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
 from makers import makehuman
 from makers.stage import MESH_PATH
 
-INFLUENCES = 8  # joints of a point; of a few points that have more the smallest are left out
+INFLUENCES = 8  # joints of a point; where a point has more, those of the smallest weights are left out
 SKELETON, ANIMATION = "/char/rig", "/char/rig/anim"
 
 
 @dataclass(frozen=True)
 class Character:
-    """A body and what turns its joints. Points are in centimetres."""
+    """A body and the turns of its joints. Points are in centimetres."""
 
     points: np.ndarray  # the base mesh's, targets applied
     turns: Mapping[str, Sequence[tuple[np.ndarray, float]]]  # by bone: an axis (3,) and an angle for each frame
@@ -37,7 +37,7 @@ def define(stage: Usd.Stage, character: Character) -> None:
 
 
 def _path(bone: str) -> str:
-    """upperarm01.L is the joint .../upperarm01_L."""
+    """The path of a bone's joint: upperarm01.L is .../upperarm01_L."""
     parent = makehuman.read_rig()[bone]["parent"]
     return f"{_path(parent)}/{joint_name(bone)}" if parent else joint_name(bone)
 
@@ -63,7 +63,7 @@ def _heads(points: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _offset(bone: str, heads: Mapping[str, np.ndarray]) -> np.ndarray:
-    """From the parent's head."""
+    """From the head of the parent to that of the bone, (3,)."""
     parent = makehuman.read_rig()[bone]["parent"]
     return heads[bone] - (heads[parent] if parent else 0)
 
@@ -88,7 +88,7 @@ def _write_animation(
     heads: Mapping[str, np.ndarray],
     turns: Mapping[str, Sequence[tuple[np.ndarray, float]]],
 ) -> None:
-    """Of the joints that turn alone."""
+    """Writes the animation of only those joints that turn."""
     animation = UsdSkel.Animation.Define(stage, ANIMATION)
     animation.CreateJointsAttr([paths[bone] for bone in turns])
     animation.CreateTranslationsAttr([Gf.Vec3f(*_offset(bone, heads).tolist()) for bone in turns])

@@ -26,7 +26,7 @@ def turn(pivot: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
 
 
 def bone_motions(turns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Each bone's motion (3, 4) from the rest pose. `turns` are the bones' own, in the space of the rest pose."""
+    """Each bone's motion (3, 4) from the rest pose; `turns` are without the parents', in the space of the rest pose."""
     rig, motions = makehuman.read_rig(), {}
 
     def motion(bone: str) -> np.ndarray:

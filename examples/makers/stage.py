@@ -1,7 +1,7 @@
 """Writes an example: `cache.usdc`, as a character department would publish it, and the shot.
 
-The shot payloads the cache with a layer offset. It is `stage.usda` where it carries a patch set-up, as ordinary
-opinions; without one it is `shot.usda`, for `skinslide setup` to make the other of.
+The shot payloads the cache with a layer offset. With a patch, whose set-up it has as ordinary opinions, it is
+`stage.usda`; without one it is `shot.usda`, from which `skinslide setup` makes `stage.usda`.
 """
 
 from collections.abc import Callable, Iterable
@@ -53,7 +53,7 @@ def write(folder: Path, cache: Cache, patch: Patch | None = None) -> Path:
 
 
 def write_skinned(folder: Path, define: Callable[[Usd.Stage], None]) -> Path:
-    """The same of a character that `define` makes below /char, a SkelRoot; its shot carries no patch."""
+    """The same for a character that `define` makes at /char, a SkelRoot. The shot has no patch."""
     folder.mkdir(parents=True, exist_ok=True)
     published, shot = _new_stage("char", first_frame=1), _payloading_stage("./character.usdc", "SkelRoot")
     define(published)

@@ -1,9 +1,9 @@
-"""Draws what a character gains that nobody painted: the cache, patches painted on it by `unit`, and its own set-up.
+"""Draws a character in the cache, with a painted patch under `unit`, and as `setup --whole` sets it up, side by side.
 
 usage: gain.py PICTURE STAGE PAINTED[,PAINTED]
-STAGE is the character as `setup --whole` has it; a row for each PAINTED, a stage of the same mesh with one patch, where
-that patch is. At the frame of the character's cache at which the patch stretches most. The numbers are the stretch of
-the patch's edges, which are the same in all columns. Pictures are JPEG, or PNG, by their name.
+STAGE is what `setup --whole` wrote for the character. Each PAINTED is a stage of the same mesh with one patch, and has
+a row for each view, of that patch at the frame of the character's cache at which it stretches most. The numbers are the
+stretch of the patch's edges, the same edges in all columns. The picture is a JPEG or a PNG, by the ending of its name.
 """
 
 import sys
@@ -33,7 +33,7 @@ def first_mesh(path: str) -> PatchedMesh:
 
 
 def columns(mesh: PatchedMesh, painted: PatchSetup) -> tuple[Usd.TimeCode, list[Column]]:
-    """The worst frame of a painted patch on a character, and what comes of it there."""
+    """The worst frame of a painted patch on a character, and the columns drawn of it there."""
     edges, own = Edges.of(mesh, painted.faces), mesh.slider()
     poses = {time: mesh.points_at(Usd.TimeCode(time)) for time in mesh.sample_times()}
     worst = max(poses, key=lambda time: edges.stretch(poses[time][edges.vertices].astype(float)))

@@ -1,10 +1,10 @@
-"""Prints how well each way to interpolate keeps the limit surface: one line an example and a way.
+"""Prints how well each interpolation keeps the limit surface: one line for each example and interpolation.
 
 usage: limit_distance.py STAGE...
-At the frame where the cache has most stretch, the limit surface of the cache and that of the result are sampled and
-each sample's distance to the other surface is taken, both ways: maximum and mean, as a share of the patch's size at
-rest, the diagonal of its box. `closer` is how many times nearer that is than with linear. Stretch is the RMS over the
-patch's edges of log(length / rest length). Stages whose mesh is not subdivided are passed over.
+Samples the limit surfaces of the cache and of the result at the frame where the cache has most stretch, and finds the
+distance of each sample to the other surface, in both directions. `max` and `mean` are of these distances, as a share of
+the diagonal of the patch's box at rest; `closer` is how many times smaller they are than with linear. Stretch is the
+RMS of log(length / rest length) over the patch's edges. Stages whose mesh is not subdivided are skipped.
 """
 
 import sys
@@ -23,13 +23,13 @@ from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 WAYS = ("linear", "meanValue", "limit")
 HEADINGS = ("example", "interpolation", "max", "mean", "closer: max", "mean", "stretch", "change", "ms")
-SAMPLES = 4  # steps along a quarter of a face
-AROUND = 2  # rings of faces around the patch, whose surface its vertices still shape
-CANDIDATES = 8  # triangles tried for a sample, nearest first
+SAMPLES = 4  # steps along each side of a quarter of a face
+AROUND = 2  # rings of faces around the patch whose limit surface depends on the patch's vertices
+CANDIDATES = 8  # triangles tried for each sample, those with the nearest middles
 
 
 def rings(mesh: PatchedMesh, faces: np.ndarray, count: int) -> np.ndarray:
-    """Faces, and `count` rings of faces around them."""
+    """The faces and `count` rings of faces around them."""
     face_of_corner = np.repeat(np.arange(mesh.topology.face_count), mesh.face_counts)
     for _ in range(count):
         faces = np.unique(face_of_corner[mesh.topology.vertices_of(faces)[mesh.face_indices]])
@@ -37,7 +37,7 @@ def rings(mesh: PatchedMesh, faces: np.ndarray, count: int) -> np.ndarray:
 
 
 def surface(mesh: PatchedMesh, points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The limit surface over some faces: samples (n, 3) and the triangles (m, 3) that they make."""
+    """The limit surface over some faces: samples (n, 3), and triangles (m, 3) of them."""
     corners = np.flatnonzero(np.isin(np.repeat(np.arange(mesh.topology.face_count), mesh.face_counts), faces))
     steps = np.linspace(0, 1, SAMPLES + 1)
     places = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=2).reshape(-1, 2)
@@ -89,7 +89,7 @@ class Ways:
     def __init__(self, mesh: PatchedMesh, index: int):
         self.mesh, self.patch = mesh, mesh.patches[index]
         self.faces = rings(mesh, self.patch.faces, AROUND)
-        self.around = rings(mesh, self.faces, 1)  # where what is nearest to a sample may lie
+        self.around = rings(mesh, self.faces, 1)  # these may hold the point that is nearest to a sample
         rest = mesh.rest_points[mesh.topology.vertices_of(self.patch.faces)]
         self.size = np.linalg.norm(np.ptp(rest, axis=0))
         times = [Usd.TimeCode(time) for time in mesh.sample_times()]
@@ -112,7 +112,7 @@ class Ways:
 
 
 def rows(path: Path) -> list[list[str]]:
-    """The cells of one example, a row a way."""
+    """The cells of one example, a row for each interpolation."""
     stage = Usd.Stage.Open(str(path))
     meshes, _ = read_meshes(stage)
     found = []

@@ -1,9 +1,9 @@
 """Looks the examples up by colour-ID rendering: how many vertices the texture finds, and pictures of it.
 
 usage: lookup.py OUTDIR
-Slides every frame of OUTDIR/*/stage.usda with lookup egl and with exact, whose points must be the same bytes, and
-prints a line an example. Writes OUTDIR/id_buffers.png: the textures of the elbow, the face with its holes and the
-chequer at the frame where the cache has most stretch, a colour a face.
+Slides every frame of OUTDIR/*/stage.usda with the lookups egl and exact, checks that their points are the same bytes,
+and prints a line for each example. Writes OUTDIR/id_buffers.png: the textures of the elbow, the face with its holes and
+the chequer, at the frame where the cache has most stretch, with one colour for each face.
 """
 
 import sys
@@ -47,7 +47,7 @@ def shares(mesh: PatchedMesh, lookup: Lookup) -> tuple[np.ndarray, bool]:
 
 
 def picture(mesh: PatchedMesh) -> np.ndarray:
-    """The texture at the frame with most stretch in the cache: uint8 (SIDE, SIDE, 3), v upwards, white without face."""
+    """The texture where the cache has most stretch: uint8 (SIDE, SIDE, 3), v upwards, white where there is no face."""
     times = [Usd.TimeCode(time) for time in mesh.sample_times()]
     stretch = [frame.patches[0].stretch_before for frame in frames(mesh, "exact")]
     points = mesh.points_at(times[int(np.argmax(stretch))])
@@ -69,7 +69,7 @@ def main() -> None:
         cells = "  ".join(f"{100 * count / max(found.sum(), 1):5.2f} %" for count in found)
         print(f"{example:8} {cells}   {'yes' if same else 'NO'}")
         differing += [] if same else [example]
-    print("The paper has the 3x3 texels suffice; what walked is what they missed.")
+    print("In the paper, the 3x3 texels suffice; vertices that walked are those they missed.")
     gap = np.full((SIDE, GAP, 3), 255, np.uint8)
     panels = [part for name in PICTURED for part in (gap, picture(open_mesh(folder / name / "stage.usda")))][1:]
     Image.fromarray(np.hstack(panels)).save(folder / "id_buffers.png", optimize=True)

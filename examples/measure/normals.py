@@ -1,10 +1,10 @@
-"""Prints how authored normals come out of a bake: one line an example.
+"""Prints how a bake changes authored normals: one line for each example.
 
 usage: normals.py STAGE...
-A mesh without normals is given some as an exporter would write them: smooth ones, by corner. `turned by` is the
-largest angle between a normal of the cache and the same of a bake, at any frame, and `jump` that of a bake that
-slides by 5e-6 units at most. `seams` is the largest angle between normals of one place that are within a degree of
-each other in the cache, there and in the bake. Angles are in degrees.
+A mesh without normals is given smooth ones by corner, as an exporter would write them. `turned by` is the largest angle
+at any frame between a normal in the cache and the same normal in the bake; `jump` is the same for a bake that slides by
+5e-6 units at most. `seams` is the largest angle between two normals at one place, of those within a degree of each
+other in the cache, there and in the bake. Angles are in degrees.
 """
 
 import sys

@@ -1,8 +1,8 @@
-"""Draws what rules do to a patch: the cache, then the slid skin by each rule, side by side, a row a view.
+"""Draws a patch in the cache and slid by each of some rules, side by side, with a row for each view.
 
 usage: pictures.py PICTURE STAGE RULE[,RULE] VIEW[,VIEW] [CAMERA]
-At the frame where the cache has most stretch, through a camera of the stage or one that frames the patch. Pictures are
-JPEG, or PNG, by their name.
+The frame is that at which the cache has most stretch. CAMERA is a camera of the stage; without it, one that frames the
+patch. The picture is a JPEG or a PNG, by the ending of its name.
 """
 
 import sys
@@ -24,7 +24,7 @@ MOST_STRETCH = 0.5
 
 
 def columns(mesh: PatchedMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list[Column]:
-    """The cache, and what each rule makes of it."""
+    """The cache, and the skin that each rule slides."""
     cached, controls, found = mesh.points_at(time), mesh.controls_at(time), []
     for rule in rules:
         slider = mesh.build([replace(mesh.patches[0], rule=rule)])

@@ -1,12 +1,13 @@
-"""Prints what each rule makes of the examples: one line an example and a rule that can slide it.
+"""Prints how well each rule does on the examples: one line for each example and rule that can slide it.
 
 usage: rules.py STAGE...        (needs libigl)
-`gone` is the share of the cache's stretch that is gone at the frame where it has most; `share min` and `median` over
-the frames are of the stretch that can be removed, as share.py finds it, for patches of few enough vertices to search.
-`whole` and `quarter` are the ratios in time of smoothness.py, at whole frames and at quarters; `worst` is the largest
-second difference at quarters, as a share of the mean rest edge. `folds` are the most faces turned over at a frame, `ms`
-the median of a frame in the core, on one thread, and `x unit` in frames of unit. Measured is the rule itself, on the
-first patch: interpolation linear, slide weights and largest distances left out.
+`gone` is the share of the cache's stretch that is removed at the frame where it has most. `share min` and `median` are,
+over the frames, the share of the removable stretch that is removed, as share.py finds it, where a patch is small enough
+to search. `whole` and `quarter` are the ratios of smoothness.py at whole frames and at quarter frames; `worst` is the
+largest second difference at quarter frames, as a share of the mean edge at rest. `folds` is the most faces turned over
+at a frame; `ms` is the median time of a frame in the core, on one thread; `x unit` is that over the time of unit. The
+rules are measured by themselves, on the first patch: with linear interpolation, without slide weights and largest
+distances.
 """
 
 import sys
@@ -47,13 +48,13 @@ def milliseconds(frame: Frame) -> float:
 
 
 def shares(frames: list[share.Found], rule: str) -> tuple[str, str]:
-    """The least and the median of those frames that have any."""
+    """The least and the median, over the frames in which any stretch can be removed."""
     found = [each.share(rule) for each in frames if np.isfinite(each.share(rule))]
     return (f"{min(found):.2f}", f"{np.median(found):.2f}") if found else ("-", "-")
 
 
 def roughness(mesh: PatchedMesh) -> dict[str, list[str]]:
-    """By rule: the ratios at whole frames and at quarters, and the worst."""
+    """By rule: the ratios at whole frames and at quarter frames, and the worst."""
     _, times, moves = motions(mesh)
     edge, found = mean_edge(mesh, mesh.patches[0].faces), {}
     whole, quarter = ({name: Rough.of(move, times[::step]).most for name, move in moves.items()} for step in (4, 1))

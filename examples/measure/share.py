@@ -1,11 +1,12 @@
-"""Prints how much of the stretch that sliding can remove each rule removes: one line an example and a frame.
+"""Prints how much of the removable stretch each rule removes: one line for each example and frame.
 
 usage: share.py STAGE...        (needs libigl)
-Stretch is the RMS over the patch's edges of log(length / rest length). `best` is the least that a search finds which
-may put every free vertex anywhere on the deformed patch, from the cache and from what each rule gives; faces may turn
-over in it. A share is (cache - slid) / (cache - best): 1 leaves nothing to gain, below 0 sliding adds stretch. What is
-measured is the rule itself: interpolation linear, slide weights and largest distances left out. `off` is how far the
-relaxed result is from the deformed patch, as a share of the patch's size, beyond what points in float allow.
+Stretch is the RMS of log(length / rest length) over the patch's edges. `best` is the least stretch that a search finds,
+from the cache and from the result of each rule, moving every free vertex anywhere on the deformed patch; faces may turn
+over in it. A share is (cache - slid) / (cache - best): at 1 nothing is left to remove, below 0 sliding adds stretch.
+The rules are measured by themselves: with linear interpolation, without slide weights and largest distances. `off` is
+how far the result of relaxed is from the deformed patch beyond what rounding to float allows, as a share of the patch's
+size.
 """
 
 import sys

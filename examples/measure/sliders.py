@@ -1,4 +1,4 @@
-"""What the measures of rules share: each rule by itself on an example, whatever else is set up there."""
+"""Sliders that measure a rule by itself, whatever else is set up on an example."""
 
 import contextlib
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from skinslide.stage.mesh import PatchedMesh
 
 
 def sliders_of(mesh: PatchedMesh, rules: Sequence[str]) -> dict[str, Slider]:
-    """By rule, a slider of the first patch; none for a rule that cannot slide it, as the paper's a closed one."""
+    """By rule, a slider of the first patch; none for a rule that cannot slide it, as `unit` cannot a closed one."""
     patch = mesh.patches[0]
     plain = replace(patch, interpolation="linear", controls=replace(patch.controls, weight=None, max_distance=None))
     found = {}

@@ -1,14 +1,15 @@
-"""Prints how smoothly each rule moves skin in the course of a motion: one line an example and a rule.
+"""Prints how smoothly each rule moves skin in the course of a motion: one line for each example and rule.
 
 usage: smoothness.py STAGE...
-The cache is sampled at sub-frames, a quarter of a frame apart as motion blur would, along the cubic spline through its
-samples: straight lines between them would have no second differences but at them. `ratio` is the largest second
-difference |p(t-h) - 2 p(t) + p(t+h)| of any vertex of the patch at any time in the result over that in the cache: of
-their largest, since skin may well slide over a place where the cache is at rest. `above 2` is how many of the times
-are more than twice as rough as the cache ever is. Then the worst: its size as a share of the mean rest edge, its vertex
-and time, and by how much it shrinks where the sub-frames there are four times as short: by 16 a smooth motion, by 4 one
-that turns sharply, as skin must that slides over the edge between two flat faces, by 1 one that jumps. Measured is the
-rule itself: interpolation linear, slide weights and largest distances left out.
+The cache is sampled a quarter of a frame apart, as motion blur would, along the cubic spline through its samples: on
+straight lines, second differences would be zero except at the samples. `ratio` is the largest second difference,
+|p(t-h) - 2 p(t) + p(t+h)|, of any vertex of the patch at any time in the result, over the largest in the cache. It is
+not found vertex by vertex, since skin may slide over a place where the cache does not move. `above 2` counts the times
+at which the result is more than twice as rough as the cache ever is. `worst` is the largest second difference as a
+share of the mean edge at rest, followed by its vertex and its frame. `shrinks` is how many times smaller it is with
+sub-frames a quarter as long: 16 where the motion is smooth, 4 where it turns sharply, as skin does when it slides over
+the edge between two flat faces, and 1 where it jumps. The rules are measured by themselves: with linear interpolation,
+without slide weights and largest distances.
 """
 
 import sys

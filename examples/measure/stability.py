@@ -1,13 +1,14 @@
-"""The paper's experiment on stability: a triangle of a sphere is turned along it, and the embedding is watched.
+"""The paper's experiment on stability: turns a triangle along a sphere, and finds how its embedding changes.
 
 usage: stability.py [CURVES.svg]        (needs libigl)
-A cap of a sphere is embedded with its border on a circle, at rest and with the triangle at its pole turned about an
-axis through the centre, so that its corners run along the sphere; an edge is a turn of 6 degrees. Prints, for angles
-of the turn, the largest angle in degrees between any two directions in which vertices are displaced in the embedding:
-`corners`, of the three of the triangle; `all`, of every vertex displaced by a tenth of the most or more. Where they
-go the same way that is little; 180 is the most there is. `unit` and `fast` are the paper's rules of force density;
-`harmonic` has cotangent weights, `mean value` those of mean value coordinates. `even` has no embedding: where its
-slide leads to is drawn in that of unit at rest. `folds` are the most triangles turned over at any angle.
+A cap of a sphere is embedded with its border on a circle, once at rest, and once for each turn of the triangle at its
+pole about an axis through the sphere's centre, which moves the triangle's corners along the sphere. An edge spans 6
+degrees. Prints for each turn the largest angle, in degrees, between any two directions in which vertices are displaced
+in the embedding: `corners`, of the triangle's three corners; `all`, of every vertex that is displaced by a tenth of the
+largest displacement or more. It is small where all go the same way, and 180 at most. `unit` and `fast` are the paper's
+force density rules, `harmonic` has cotangent weights, and `mean value` those of mean value coordinates. `even` has no
+embedding: the places that its vertices slide to are looked up in that of unit at rest. `folds` is the most triangles
+turned over at any turn.
 """
 
 import sys

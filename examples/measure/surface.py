@@ -1,8 +1,8 @@
-"""Prints how many points of bakes lie off the surface of the cache: one line an example.
+"""Prints how many slid points lie off the surface of the cache: one line for each example.
 
 usage: surface.py STAGE...        (needs libigl)
-Of every point that slides, in any patch at any frame, the distance to the nearest triangle of the patches' own faces in
-the cache, which are cut along either diagonal. A point is off where that is over 1e-3 of the mean edge.
+For every point that slides, in any patch at any frame, finds the distance to the nearest triangle of the patches' faces
+in the cache, each cut along both diagonals. A point is off the surface where that is over 1e-3 of the mean edge.
 """
 
 import sys
@@ -23,12 +23,12 @@ OFF = 1e-3  # of the mean edge
 
 
 def triangles(quads: np.ndarray) -> np.ndarray:
-    """Of quads (F, 4), cut along either diagonal, (4 F, 3)."""
+    """Those of quads (F, 4), each cut along both diagonals: (4 F, 3)."""
     return np.concatenate([quads[:, corners] for corners in ([0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3])])
 
 
 def distances(mesh: PatchedMesh, slider: Slider, time: Usd.TimeCode) -> np.ndarray:
-    """Of the points that slid, to all patches of the mesh together, in mean edges."""
+    """Distances of the points that slid to the faces of all patches together, in mean edges."""
     cached = mesh.points_at(time)
     slid = slider.slide(cached, mesh.controls_at(time)).points
     chosen = np.unique(np.concatenate([slider.faces(piece) for piece in range(len(slider.patches))]))

@@ -1,9 +1,9 @@
-"""Prints what the baked examples show: one line a patch, from the reports in OUTDIR/*/bake.json.
+"""Prints the results of the baked examples: one line for each patch, from the reports in OUTDIR/*/bake.json.
 
 usage: table.py OUTDIR
-Stretch is the RMS over the patch's edges of log(length / rest length), in the cache and slid, at the frame where the
-cache has most of it. folded and clamped are the most of any frame. Times are means over the frames, on one thread, in
-the core; OUTDIR/times.txt has them for each stage of the walk.
+Stretch is the RMS of log(length / rest length) over the patch's edges, in the cache and slid, at the frame where the
+cache has most of it. folded and clamped are the largest counts at any frame. Times are means over the frames, in the
+core, on one thread; writes those of each stage of a slide to OUTDIR/times.txt.
 """
 
 import json

@@ -1,10 +1,10 @@
-"""Shades wrinkles where a slide presses skin together: the slid skin, and the same with a texture made of its strain.
+"""Draws wrinkles where skin is pressed together: the slid skin, and the same with a texture made from its strain.
 
 usage: wrinkles.py PICTURE STAGE [CAMERA]
-At the frame where skin is pressed together most. Of each texel of the mesh's texture the strain maps, which `skinslide
-maps --strain` writes, say how much it is pressed and across which way. Waves of four fixed ways over the texture are as
-high as skin is pressed along them, so that ridges lie across what is pressed and blend where that turns. Pictures are
-JPEG, or PNG, by their name.
+The frame is that at which skin is pressed together most. The strain maps, as `skinslide maps --strain` writes them,
+have for each texel how much skin is pressed and in which direction. The texture is a sum of waves in four fixed
+directions, each as high as the skin is pressed along it: ridges lie across the direction of pressing, and blend where
+it turns. The picture is a JPEG or a PNG, by the ending of its name.
 """
 
 import sys
@@ -23,9 +23,9 @@ from skinslide.shot.options import PictureOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 SIZE, TEXELS = (1280, 640), 2048
-WAYS = np.pi * np.arange(4) / 4  # angles of the waves in the texture
-WAVES, DEPTH = 380.0, 1.3  # across the texture; how steep they are
-SMOOTH = 0.08  # pressed by less, skin stays smooth
+WAYS = np.pi * np.arange(4) / 4  # the directions of the waves in the texture, as angles
+WAVES, DEPTH = 380.0, 1.3  # how many across the texture, and how steep they are
+SMOOTH = 0.08  # skin that is pressed by less stays smooth
 SKIN = np.array([0.78, 0.58, 0.47])
 
 
@@ -41,7 +41,7 @@ def strain_maps(mesh: PatchedMesh, slid: np.ndarray, st: np.ndarray) -> dict[str
 
 
 def height(maps: dict[str, np.ndarray]) -> np.ndarray:
-    """Of wrinkles, by texel: for each way a wave along it, as high as skin is pressed that way."""
+    """The height of the wrinkles by texel: for each direction a wave along it, as high as skin is pressed in it."""
     down, across = np.mgrid[0:TEXELS, 0:TEXELS] / TEXELS
     wobble = 0.9 * np.sin(40 * across + 23 * down) + 0.7 * np.sin(31 * down - 17 * across)
     total = np.zeros((TEXELS, TEXELS))

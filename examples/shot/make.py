@@ -1,8 +1,9 @@
 """Shot: two of the elbow's arms side by side, opened from one `.skinslide` file: one as cached, one whose skin slides.
 
-`elbow.skinslide` is the elbow's stage under another name: the cache, and a patch on it. `shot.usda` payloads it twice;
-`skinSlide:live:envelope` on each payloading prim says how far the skin slides there. Nothing is baked: points are
-computed when a frame is asked for. Play it with play.py, or open it in usdview from a Python that imports skinslide.
+`elbow.skinslide` is the elbow's stage by another name: the cache and a patch on it. `shot.usda` payloads it twice, and
+`skinSlide:live:envelope` on each payloading prim is the share of the slide that is applied there. Nothing is baked:
+points are computed when a frame is asked for. Play it with play.py, or open it in usdview from a Python that imports
+skinslide.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """Plays shot.usda: play.py SHOT.USDA
 
-Prints, frame by frame, how far the skin of the arm that slides lies from that of the one that does not, and how long
-its points took; then turns the envelope of the other up to a half while the stage is open, and plays the last frame.
+Prints for each frame how far the skin of the arm that slides is from that of the arm that does not, and how long its
+points took. Then sets the envelope of the other arm to a half while the stage is open, and plays the last frame.
 """
 
 import sys

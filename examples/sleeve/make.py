@@ -1,8 +1,8 @@
 """Sleeve: the arm flexes by 60° over 24 frames, and the patch is the whole ring of skin round the elbow.
 
-The ring is a disk with one hole: its longer rim goes to the circle, the other is the hole, held where it falls at
-rest. In the result the skin slides along the arm all the way round: less drawn out over the point of the elbow, less
-crowded in its crook. The rest pose is `primvars:__Pref`; the patch is a float primvar painted on the points.
+The ring is a disk with one hole: its longer rim is embedded on the circle; the other is the hole, pinned. In the result
+the skin slides along the arm all the way round, and is less stretched over the point of the elbow and less crowded in
+its crook. The rest pose is `primvars:__Pref`; the patch is a float primvar painted on the points.
 """
 
 import sys

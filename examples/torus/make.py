@@ -1,7 +1,7 @@
 """Torus: a bump runs once round inside a ring over 24 frames; nothing is painted.
 
-A ring has a handle and no boundary, so that nothing of it could be laid out in a plane, or be pinned. In the result the
-skin around draws in to the bump, and none of it turns round with it.
+A ring has a handle and no boundary, so it cannot be laid out in a plane, and no point of it is pinned. In the result
+the skin around draws in to the bump, and does not travel round with it.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """Trunk: a tapered tube, closed at both ends, curls up over 24 frames; nothing is painted.
 
-It is the paper's elephant. The cache draws the skin out on the outer side of the curl and crowds it on the inner one,
-and no plane could hold its patch, which is all of it. In the result skin slides round from the inner side to the outer.
+It is the paper's elephant. In the cache, skin is stretched on the outer side of the curl and crowded on the inner side.
+The patch is all of it, which cannot be laid out in a plane. In the result skin slides round to the outer side.
 """
 
 import sys
