@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from pxr import Gf, Usd, UsdGeom, UsdSkel
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel
 
 import rigs
 import skinslide
@@ -67,6 +67,10 @@ BAD = {
     "fewer bind transforms": (
         lambda stage, _: skeleton_of(stage).GetBindTransformsAttr().Set([Gf.Matrix4d(1)] * 2),
         f"the skeleton {SKELETON} has no bindTransforms, of which there must be one for each of its joints",
+    ),
+    "a joint before its parent": (
+        lambda stage, _: skeleton_of(stage).GetJointsAttr().Set(rigs.JOINTS[::-1]),
+        f"UsdSkel cannot use the joints of {SKELETON}; is each there once, and after its parent?",
     ),
     "joints that it has not": (
         lambda _, mesh: binding_of(mesh).CreateJointsAttr(["root", "root/leg", "root/tail"]),
@@ -194,6 +198,38 @@ def test_transforms_that_cannot_be_at_a_frame_are_named_with_it(tmp_path):
         ):
             write(stage, tmp_path / "out.usda")
     assert not list(tmp_path.iterdir())
+
+
+def test_weights_that_cannot_be_at_a_frame_are_named_with_it(tmp_path):
+    """Of points, and not of the normals that are skinned with them."""
+    stage, mesh = rigs.skinned_stage()
+    mesh.CreateNormalsAttr([(0, 0, 1)] * 49)
+    weights = mesh.GetPrim().GetAttribute("primvars:skel:jointWeights")
+    weights.Set(weights.Get(), FRAMES[0])
+    weights.Set([1.0] * 4, FRAMES[1])
+    said = f"frame 1002: UsdSkel cannot skin points with the skeleton {SKELETON}"
+    (found,) = skinslide.check(stage).problems
+    assert str(found).startswith(f"error: {MESH}: {said}")
+    for write in (skinslide.bake_to_file, skinslide.cache):
+        for frames in (None, "1002"):
+            with pytest.raises(skinslide.FrameProblem, match=f"{MESH}: {said}"):
+                write(stage, tmp_path / "out.usda", frames=frames)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("value", [Sdf.ValueBlock(), [(0, 0, 1)] * 5, []])
+def test_normals_that_cannot_be_at_a_frame(value, tmp_path):
+    """A bake blocks them, as those of a mesh that is not skinned; a cache has no frame without them."""
+    stage, mesh = rigs.skinned_stage()
+    normals = mesh.CreateNormalsAttr()
+    normals.Set([(0, 0, 1)] * 49, FRAMES[0])
+    normals.Set(value, FRAMES[1])
+    assert not [problem for problem in skinslide.check(stage).problems if problem.severity == "error"]
+    report = skinslide.bake_to_file(stage, tmp_path / "out.usda")
+    assert "frame 1002: normals cannot be recomputed, so the bake blocks them" in report.text()
+    with pytest.raises(skinslide.FrameProblem, match=f"{MESH}: frame 1002: normals cannot be skinned"):
+        skinslide.cache(stage, tmp_path / "cache.usda")
+    assert [path.name for path in tmp_path.iterdir()] == ["out.usda"]
 
 
 @pytest.mark.parametrize("weights", [0.996, 1.004])

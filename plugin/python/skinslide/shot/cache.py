@@ -19,7 +19,7 @@ import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.slider import version
-from skinslide.problems import Problem, StageProblems, errors, lines_text, told
+from skinslide.problems import FrameProblem, Problem, StageProblems, errors, lines_text, told
 from skinslide.shot.frames import AskedFrames
 from skinslide.shot.options import Frames, Prims, SlideOptions
 from skinslide.shot.plan import times_of
@@ -28,6 +28,7 @@ from skinslide.shot.report import time_text
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh, read_skinned
+from skinslide.stage.skinning import SkinnedVectors
 from skinslide.write.overs import EXTENSIONS, OverLayer, layer_in_place
 from skinslide.write.place import check_not_input, check_output, signals_as_exceptions
 
@@ -131,7 +132,7 @@ class _Cached:
 
     def __init__(self, mesh: PatchedMesh, times: list[Usd.TimeCode]):
         self._mesh, self.times = mesh, times
-        self._vectors = [each for each in mesh.skinned_vectors() if each.skinned(times[0]) is not None]
+        self._vectors: list[SkinnedVectors] = []
 
     def write(self, overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Yields each time once it is written."""
@@ -141,11 +142,17 @@ class _Cached:
             overs.set(geometry.GetPointsAttr(), Vt.Vec3fArray.FromNumpy(rest), Usd.TimeCode.Default())
         for time in self.times:
             points = Vt.Vec3fArray.FromNumpy(self._mesh.points_at(time))
+            if time == self.times[0]:
+                self._vectors = [each for each in self._mesh.skinned_vectors() if each.skinned(time) is not None]
             overs.set(geometry.GetPointsAttr(), points, time)
             overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
             for source in self._vectors:
                 skinned = source.skinned(time)
-                array = Vt.Vec3dArray if skinned is not None and skinned.dtype == np.float64 else Vt.Vec3fArray
+                if skinned is None:
+                    raise FrameProblem(
+                        self._mesh.problem(f"{source.name} cannot be skinned as at first", time)
+                    )
+                array = Vt.Vec3dArray if skinned.dtype == np.float64 else Vt.Vec3fArray
                 overs.set(source.attribute, array.FromNumpy(skinned), time)
             yield time
         for source in self._vectors:

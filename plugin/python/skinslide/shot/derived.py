@@ -104,7 +104,9 @@ class Derived:
         for output in self._recomputed:
             source = self._sources[output.name]
             for time in map(Usd.TimeCode, source.samples() or [FIRST]):
-                self._note_faults(output, source.at(time), time)
+                value = self._cached(output, time).value
+                if not isinstance(value, Fault):  # which is said of the points, too
+                    self._note_faults(output, value, time)
         return self.faults()
 
     def faults(self) -> list[Problem]:

@@ -47,6 +47,14 @@ def bound_skeleton(cache: UsdSkel.Cache, prim: Usd.Prim) -> UsdSkel.Skeleton:
     )
 
 
+def skeleton_query(cache: UsdSkel.Cache, skeleton: UsdSkel.Skeleton) -> UsdSkel.SkeletonQuery:
+    """What UsdSkel makes of a Skeleton. Raises Fault where it cannot use its joints."""
+    found = cache.GetSkelQuery(skeleton)
+    if not found:
+        raise Fault(f"UsdSkel cannot use the joints of {skeleton.GetPath()}; is each there once, and after its parent?")
+    return found
+
+
 def _counts(query: UsdSkel.SkinningQuery) -> bool:
     """Whether there are influences, and UsdSkel takes those of joints where they are authored."""
     joints = query.GetJointIndicesPrimvar()

@@ -18,7 +18,7 @@ from pxr import Gf, Usd, UsdGeom, UsdSkel, Vt
 
 from skinslide.arrays.meaning import DEFAULT_TIME, Input, Value, positions
 from skinslide.problems import Fault
-from skinslide.stage.binding import bound_skeleton, check_animation, check_joints, check_transforms
+from skinslide.stage.binding import bound_skeleton, check_animation, check_joints, check_transforms, skeleton_query
 from skinslide.stage.blendshapes import BlendShapes
 from skinslide.stage.rig import Rig
 from skinslide.stage.values import FIRST, Source
@@ -30,7 +30,7 @@ class Skinning:
     def __init__(self, prim: Usd.Prim):
         self._prim = prim
         self._cache = UsdSkel.Cache()  # what is asked lives no longer than it
-        self._skeleton = self._cache.GetSkelQuery(bound_skeleton(self._cache, prim))
+        self._skeleton = skeleton_query(self._cache, bound_skeleton(self._cache, prim))
         self._query, self._animation = self._cache.GetSkinningQuery(prim), self._skeleton.GetAnimQuery()
         self._has_joints = self._query.HasJointInfluences()
         self.point_count = len(UsdGeom.PointBased(prim).GetPointsAttr().Get(FIRST) or ())
@@ -69,7 +69,7 @@ class Skinning:
         if self._has_joints:
             transforms = self._transforms(time)
             if not self._query.ComputeSkinnedPoints(transforms, points, time):
-                raise Fault(f"UsdSkel cannot skin points with the skeleton {self.skeleton}")
+                raise self._unskinned()
             _transform(points, self._to_mesh(time))
         return np.array(points)
 
@@ -126,7 +126,10 @@ class Skinning:
         return made * np.divide(lengths, now, out=np.zeros_like(now), where=now > 0)
 
     def _turn(self, normals: Vt.Vec3fArray, corners: np.ndarray | None, time: Usd.TimeCode) -> None:
-        influences = (np.array(each) for each in self._query.ComputeVaryingJointInfluences(self.point_count, time))
+        given = self._query.ComputeVaryingJointInfluences(self.point_count, time)
+        if given is None:  # of other counts than at first
+            raise self._unskinned()
+        influences = map(np.array, given)
         count, transforms = self._query.GetNumInfluencesPerComponent(), self._transforms(time)
         indices, weights = (
             each if corners is None else each.reshape(-1, count)[corners].ravel() for each in influences
@@ -144,6 +147,9 @@ class Skinning:
         )
         to_mesh = Vt.Matrix3dArray([_of_normals(self._to_mesh(time))])
         UsdSkel.SkinNormalsLBS(Gf.Matrix3d(1), to_mesh, *_one_joint(len(normals)), 1, normals)
+
+    def _unskinned(self) -> Fault:
+        return Fault(f"UsdSkel cannot skin points with the skeleton {self.skeleton}")
 
     def _transforms(self, time: Usd.TimeCode) -> Vt.Matrix4dArray:
         """Of the skeleton's joints, from where they were bound."""
@@ -227,7 +233,7 @@ class SkinnedVectors(Source):
             normals = positions(found) if found else None
         except Fault:  # which the core says when it is given the value
             return None
-        if found is None or normals is None:
+        if found is None or normals is None or not len(normals):  # such as those of a sample that is blocked
             return None
         interpolation = found.interpolation or (
             UsdGeom.Tokens.constant if self.wanted.is_primvar else UsdGeom.Tokens.vertex
