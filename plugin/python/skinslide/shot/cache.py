@@ -149,9 +149,7 @@ class _Cached:
             for source in self._vectors:
                 skinned = source.skinned(time)
                 if skinned is None:
-                    raise FrameProblem(
-                        self._mesh.problem(f"{source.name} cannot be skinned as at first", time)
-                    )
+                    raise FrameProblem(self._mesh.problem(f"{source.name} cannot be skinned as at first", time))
                 array = Vt.Vec3dArray if skinned.dtype == np.float64 else Vt.Vec3fArray
                 overs.set(source.attribute, array.FromNumpy(skinned), time)
             yield time
