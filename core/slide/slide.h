@@ -78,6 +78,7 @@ typedef struct ss_patch_work {
     double *own_paint;                /* [edge_count] this and what follows is there once a frame has had controls of its own */
     double *own_weights, *own_limits; /* [free_count] */
     double *own_holds;                /* [vertex_count] */
+    int32_t largest_face;             /* its corners */
     double (*displacement)[3];        /* [free_count] in the room, once the rule has finished */
     double *corner_weights;           /* [largest face] likewise */
     ss_cage_work *cage;               /* NULL unless the part has one */

@@ -179,7 +179,7 @@ static double stretch_of(const ss_patch *patch, const double *lengths) {
     return sqrt(ss_sum_squared_logs(count, lengths, patch->rest_length) / count);
 }
 
-static void measure(skinslide_workspace *workspace, int32_t p, const float *slid) {
+static void measure_patch(skinslide_workspace *workspace, int32_t p, const float *slid) {
     const ss_patch *patch = workspace->slider->parts[p].patch;
     skinslide_patch_result *result = &workspace->results[p];
     measure_slide(patch, (const double(*)[4])workspace->sum, result);
@@ -188,6 +188,12 @@ static void measure(skinslide_workspace *workspace, int32_t p, const float *slid
     take_lengths(&workspace->room, patch, slid, lengths);
     result->stretch_before = stretch_of(patch, workspace->patches[p].lengths);
     result->stretch_after = stretch_of(patch, lengths);
+}
+
+static void measure(skinslide_workspace *workspace, const float *slid) {
+    ss_bring(workspace->slider, &slid, workspace->after);
+    for (int32_t p = 0; p < workspace->slider->part_count; p++)
+        measure_patch(workspace, p, slid);
 }
 
 /* ---- One frame ---- */
@@ -217,7 +223,7 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
         status = ss_need_controls(workspace, error);
     if (!status && results && slider->part_count > 0)
         status = ss_check_size(results, "skinslide_patch_result", error);
-    const float *before = points, *after = slid;
+    const float *before = points;
     if (!status)
         status = enter(slider, &before, workspace->before, error);
     if ((status = ss_go_on(workspace, status, error)))
@@ -236,11 +242,10 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     blend(workspace);
     if ((status = write_points(workspace, points, slid, error)))
         return status;
-    ss_bring(slider, &after, workspace->after);
-    for (int32_t p = 0; p < slider->part_count; p++)
-        measure(workspace, p, after);
-    if (results)
+    if (results) {
+        measure(workspace, slid);
         ss_give_all(workspace->results, slider->part_count, sizeof *workspace->results, results);
+    }
     workspace->has_frame = true;
     return SKINSLIDE_OK;
 }

@@ -6,7 +6,7 @@
 
 void ss_lay_out_displacement(ss_patch_work *work, const ss_patch *patch, ss_room *room) {
     work->displacement = ss_take_room(room, patch->free_count, sizeof *work->displacement);
-    work->corner_weights = SS_TAKE(room, double, ss_largest_face(&patch->faces));
+    work->corner_weights = SS_TAKE(room, double, work->largest_face);
 }
 
 static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t p, skinslide_error *error) {
@@ -18,6 +18,7 @@ static skinslide_status make_patch_work(skinslide_workspace *workspace, int32_t 
     if (memory->failed)
         return ss_out_of_memory(error);
     ss_room counted = {0};
+    work->largest_face = ss_largest_face(&part->patch->faces);
     ss_lay_out_displacement(work, part->patch, &counted);
     ss_ask_room(&workspace->room, &counted);
     ss_begin_turn(&counted);

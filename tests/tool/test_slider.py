@@ -507,6 +507,12 @@ def test_a_slider_in_a_circle_is_collected(counts, indices, rest):
         gc.collect()
 
 
+def test_points_without_measures(rest, sheet):
+    measured, alone = sheet.slide(bumped(rest)), sheet.slide(bumped(rest), measures=False)
+    assert len(measured.patches) == 1 and alone.patches == ()
+    assert alone.points.tobytes() == measured.points.tobytes()
+
+
 def test_carry(counts, indices, rest, sheet):
     """Vectors along each vertex's own turn stay; others turn about it, by twice what its sine is of."""
     assert sheet.slide(rest).turns is None

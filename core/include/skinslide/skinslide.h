@@ -554,7 +554,7 @@ typedef struct skinslide_patch_result {
  *                 patches, but for those welded to one that slides; of vertices that are on the outer boundary or a pinned
  *                 hole of every patch they are in; and of all vertices when points are the rest points. A vertex that may
  *                 slide in several patches moves by the mean of their displacements, weighted by weight times envelope.
- *   results   out [patch_count], or NULL; only the first need have its size
+ *   results   out [patch_count]; only the first need have its size. NULL: nothing is measured, which is faster
  * Fails with BAD_ARGUMENT (NULL, edges without densities), BAD_POINTS (not finite, or slid beyond what a float can hold: names
  * the vertex; see skinslide_slider_check_points), BAD_CONTROL, SINGULAR, OUT_OF_MEMORY, INTERRUPTED. One thread at a time for a
  * workspace. */

@@ -384,6 +384,26 @@ static void points_may_be_slid_in_place(void **state) {
     free_mesh(&mesh);
 }
 
+/* In frames that follow each other, either way. */
+static void measuring_changes_no_point(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(8, 8);
+    rig r = rig_of(&mesh, setup_of(NULL, 0));
+    skinslide_patch_result measured[2] = {SKINSLIDE_PATCH_RESULT_DEFAULT, SKINSLIDE_PATCH_RESULT_DEFAULT};
+    float *points = random_pose(&mesh, 3), *slid[4];
+    for (int i = 0; i < 4; i++) {
+        slid[i] = slide_with(&r, &mesh, points, NULL, i % 2 ? &measured[i / 2] : NULL);
+        assert_same_bytes(slid[i], slid[0], POINT_BYTES(&mesh));
+    }
+    assert_true(measured[0].stretch_after > 0 && measured[0].stretch_after == measured[1].stretch_after);
+    assert_true(measured[0].slid_vertices > 0 && measured[0].slid_vertices == measured[1].slid_vertices);
+    for (int i = 0; i < 4; i++)
+        free(slid[i]);
+    free(points);
+    free_rig(&r);
+    free_mesh(&mesh);
+}
+
 /* ---- Several patches ---- */
 
 static float *slide_setup(const test_mesh *mesh, const float *points, const skinslide_patch_setup *setup) {
@@ -521,6 +541,7 @@ int main(void) {
         cmocka_unit_test(slid_vertices_are_on_the_surface),
         cmocka_unit_test(sliding_lowers_stretch),
         cmocka_unit_test(points_may_be_slid_in_place),
+        cmocka_unit_test(measuring_changes_no_point),
         cmocka_unit_test(overlaps_are_weighted_means),
         cmocka_unit_test(what_is_held_of_free_borders_stays),
         cmocka_unit_test(pieces_slide_as_if_alone),

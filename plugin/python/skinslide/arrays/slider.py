@@ -70,7 +70,7 @@ class Frame(NamedTuple):
 
     Attributes:
         points: float32 (V, 3).
-        patches: What happened to each of the slider's patches.
+        patches: What happened to each of the slider's patches, if it was measured; else none.
         embeddings: Each patch laid out in the plane, float64 (patch vertices, 2), if asked for; else None.
         turns: How the skin turned under each vertex, float32 (V, 3), if asked for; else None. See `carry`.
     """
@@ -161,6 +161,7 @@ class Slider:
         *,
         embeddings: bool = False,
         turns: bool = False,
+        measures: bool = True,
     ) -> Frame:
         """Slides one frame.
 
@@ -169,6 +170,7 @@ class Slider:
             controls: One for each set-up; None: the set-ups' own.
             embeddings: Whether to return the frame's embeddings.
             turns: Whether to return how the skin turned.
+            measures: Whether to measure each patch; without, a frame is faster, and its `patches` is empty.
 
         Returns:
             The frame.
@@ -180,7 +182,7 @@ class Slider:
         cached = native.points(points, self._sizes.vertices, "points")
         given = native.frame_controls(controls, self._names, self._sizes)
         slid = np.empty((self._sizes.vertices, 3), np.float32)
-        results = new_array("patch_result", len(self.patches))
+        results = new_array("patch_result", len(self.patches)) if measures else ffi.NULL
         workspace = self._take_workspace()
         try:
             call(lib.skinslide_slide, workspace.pointer, cached, given, writable("float[]", slid), results)
@@ -188,7 +190,8 @@ class Slider:
             turned = self._frame_turns(workspace, cached) if turns else None
         finally:
             self._give_back(workspace)
-        return Frame(slid, tuple(read(PatchResult, result) for result in results), planes, turned)
+        measured = tuple(read(PatchResult, result) for result in results) if measures else ()
+        return Frame(slid, measured, planes, turned)
 
     def stop(self) -> None:
         """Makes the frames that are being slid, on any thread, and all later ones fail soon.
