@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from compare import patches
-from compare.ours import Ours
+from compare.ours import Ours, PointsAlone
 from compare.peers import Peer
 
 
@@ -12,6 +12,8 @@ def test_a_frame_is_that_of_libraries(kind):
     patch = patches.patch_of(kind, 400)
     ours = Ours()
     ours.begin(patch)
+    alone = PointsAlone()
+    alone.begin(patch)
     peer = Peer("splu", "igl")
     peer.begin(patch.with_border(ours.rest_embedding))
     assert np.abs(ours.rest_embedding - peer.rest_embedding).max() < 1e-9
@@ -20,6 +22,7 @@ def test_a_frame_is_that_of_libraries(kind):
         assert np.abs(one.embedding - other.embedding).max() < 1e-9
         assert np.abs(one.points - other.points).max() < 1e-6
         assert np.abs(one.points - pose).max() > 1e-3
+        assert np.array_equal(alone.frame(pose).points, one.points)
 
 
 def test_patches_of_the_paper_have_its_counts():

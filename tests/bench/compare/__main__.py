@@ -34,6 +34,10 @@ class Field:
         other = [Entry(f"{name}, {self.options.revision}", self.options.python, words, self.options.against)]
         return [Entry(name, self.options.python, words), *(other if self.options.against else [])]
 
+    def points_alone(self) -> Entry:
+        """This tree's, as far as peers go: they measure no stretch."""
+        return Entry("skinslide, points alone", self.options.python, ("ours", "PointsAlone"))
+
     def rounds(self, size: int) -> int:
         """Fewer where frames of the slowest take seconds."""
         return self.options.rounds if size < 50_000 else max(2, self.options.rounds // 2)
@@ -70,7 +74,9 @@ def main() -> None:
 
 def compare_peers(field: Field, kind: str, size: int) -> None:
     patch = patch_of(kind, size)
-    costs = contest([*field.ours(), *field.peers()], patch, field.folder, field.rounds(size), two=True)
+    costs = contest(
+        [*field.ours(), field.points_alone(), *field.peers()], patch, field.folder, field.rounds(size), two=True
+    )
     show(f"{patch.name} vertices, by the rule unit, linear", costs, ("embed", "locate", "interpolate"))
 
 
