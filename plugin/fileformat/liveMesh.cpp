@@ -5,7 +5,6 @@
 #include "names.h"
 #include "pythonLock.h"
 
-#include "pxr/base/gf/range3f.h"
 #include "pxr/base/tf/diagnostic.h"
 #include "pxr/usd/sdf/types.h"
 
@@ -276,10 +275,10 @@ VtValue LiveMesh::extent(double time) {
     std::shared_ptr<const Frame> found = frame(time);
     if (!found->points.IsHolding<VtVec3fArray>())
         return VtValue(SdfValueBlock());
-    GfRange3f range;
-    for (const GfVec3f &point : found->points.UncheckedGet<VtVec3fArray>())
-        range.UnionWith(point);
-    return VtValue(VtVec3fArray{range.GetMin(), range.GetMax()});
+    const auto &points = found->points.UncheckedGet<VtVec3fArray>();
+    VtVec3fArray extent(2);
+    call(skinslide_extent, floatsOf(points), static_cast<int32_t>(points.size()), floatsOf(&extent));
+    return VtValue::Take(extent);
 }
 
 // ---- What follows from points ----

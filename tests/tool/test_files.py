@@ -330,7 +330,7 @@ def test_a_fault_of_the_stage_is_not_blamed_on_the_output(shot, tmp_path, monkey
     def fail(*_arguments):
         Sdf.Layer.CreateAnonymous(".usda").ImportFromString("words")
 
-    monkeypatch.setattr(UsdGeom.PointBased, "ComputeExtent", fail)
+    monkeypatch.setattr(UsdGeom.PointBased, "GetExtentAttr", fail)
     with pytest.raises(Exception) as raised:
         bake_to_file(shot, tmp_path / "out.usda")
     assert "out.usda" not in str(raised.value)
@@ -340,7 +340,7 @@ def test_usd_errors_are_messages(shot, tmp_path, monkeypatch, capfd):
     def fail(*_arguments):
         Sdf.Layer.CreateAnonymous(".usda").ImportFromString("words")
 
-    monkeypatch.setattr(UsdGeom.PointBased, "ComputeExtent", fail)
+    monkeypatch.setattr(UsdGeom.PointBased, "GetExtentAttr", fail)
     assert main(["bake", str(shot), "-o", str(tmp_path / "out.usda"), "--quiet"]) == 1
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith("error: USD: ") and "out.usda" not in line

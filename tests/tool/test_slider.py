@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pxr import UsdGeom, Vt
 
 import skinslide
 import stages
@@ -538,6 +539,15 @@ def test_carry(counts, indices, rest, sheet):
     assert of_corners.tobytes() == of_vertices[indices].tobytes()
     along = slider.carry(counts, indices, turns, turns, "vertex")
     assert np.allclose(along, turns, atol=1e-7)
+
+
+def test_the_extent_is_that_of_usd():
+    """Bit for bit, of zeros and of what is no number too."""
+    points = np.random.default_rng(1).normal(size=(5000, 3)).astype(np.float32)
+    special = np.array([[0.0, -0.0, np.nan], [-0.0, 0.0, np.inf], [np.nan, np.nan, -np.inf]], np.float32)
+    for given in (points, special, -special, np.abs(points) * special[0], points[:0], np.vstack([points, special])):
+        expected = UsdGeom.PointBased.ComputeExtent(Vt.Vec3fArray.FromNumpy(given))
+        assert slider.extent(given).tobytes() == np.asarray(expected).tobytes()
 
 
 def test_velocities_and_accelerations():

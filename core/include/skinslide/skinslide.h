@@ -667,6 +667,13 @@ typedef enum skinslide_normals_layout {
 SKINSLIDE_API skinslide_status skinslide_carry(const skinslide_mesh *mesh, const float *turns, skinslide_normals_layout layout,
                                                float *vectors, skinslide_error *error);
 
+/* The box around points, which UsdGeomMesh calls their extent.
+ *   points  in  [vertex_count][3]; coordinates that are NaN are left out
+ *   extent  out [2][3] the least of each coordinate, then the largest; FLT_MAX and -FLT_MAX where there are none
+ * Fails with BAD_ARGUMENT (NULL, a negative count). */
+SKINSLIDE_API skinslide_status skinslide_extent(const float *points, int32_t vertex_count, float *extent,
+                                                skinslide_error *error);
+
 /* Points of one time, for rates of change. Start from SKINSLIDE_SAMPLE_DEFAULT. */
 typedef struct skinslide_sample {
     size_t size; /* sizeof(skinslide_sample) */

@@ -58,6 +58,7 @@ __all__ = [
     "accelerations",
     "carry",
     "choose_lookup",
+    "extent",
     "limit_points",
     "tokens",
     "velocities",
@@ -531,6 +532,13 @@ def carry(
     result = as_array(vectors, np.float32, (sizes[layout], 3), "vectors").copy()
     call(lib.skinslide_carry, ffi.addressof(mesh), mesh.rest_points, layout, writable("float[]", result))
     return result
+
+
+def extent(points: np.ndarray) -> np.ndarray:
+    """The box around points (V, 3): float32 (2, 3), the least of each coordinate, then the largest."""
+    box = np.empty((2, 3), np.float32)
+    call(lib.skinslide_extent, Arguments().points(points, -1, "points"), len(points), writable("float[]", box))
+    return box
 
 
 def velocities(samples: Sequence[Sample], velocities: np.ndarray) -> np.ndarray:

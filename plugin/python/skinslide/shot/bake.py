@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from pxr import Sdf, Usd, UsdGeom, Vt
+from pxr import Sdf, Usd, UsdGeom
 
 from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchResult
@@ -284,9 +284,7 @@ class _MeshBake(MeshMaking):
     def take(self, time: Usd.TimeCode, frames: SlidFrames, made: list[tuple[Primvar, Any]]) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim
         self._check_limits(time, frame)
-        geometry, points = UsdGeom.PointBased(prim), Vt.Vec3fArray.FromNumpy(frame.slid)
-        overs.set(geometry.GetPointsAttr(), points, time)
-        overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
+        overs.set_points(prim, frame.slid, time)
         for primvar, values in made:
             overs.set_primvar(prim.GetPath(), primvar.name, (primvar.kind, primvar.interpolation), values, time)
         for attribute, sample, value in self._derived.values(time, self._cached(time, frames), frames):

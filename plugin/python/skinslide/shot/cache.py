@@ -136,16 +136,15 @@ class _Cached:
 
     def write(self, overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Yields each time once it is written."""
-        geometry = UsdGeom.PointBased(self._mesh.prim)
         rest = self._mesh.bound_points()
         if rest is not None:
-            overs.set(geometry.GetPointsAttr(), Vt.Vec3fArray.FromNumpy(rest), Usd.TimeCode.Default())
+            points = UsdGeom.PointBased(self._mesh.prim).GetPointsAttr()
+            overs.set(points, Vt.Vec3fArray.FromNumpy(rest), Usd.TimeCode.Default())
         for time in self.times:
-            points = Vt.Vec3fArray.FromNumpy(self._mesh.points_at(time))
+            cached = self._mesh.points_at(time)
             if time == self.times[0]:
                 self._vectors = [each for each in self._mesh.skinned_vectors() if each.skinned(time) is not None]
-            overs.set(geometry.GetPointsAttr(), points, time)
-            overs.set(geometry.GetExtentAttr(), UsdGeom.PointBased.ComputeExtent(points), time)
+            overs.set_points(self._mesh.prim, cached, time)
             for source in self._vectors:
                 skinned = source.skinned(time)
                 if skinned is None:

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, UsdSkel
+from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
 
+from skinslide.arrays.slider import extent
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
 from skinslide.write.place import check_not_read, replacing, saved, writing
@@ -39,6 +40,13 @@ class OverLayer:
     def set(self, attribute: Usd.Attribute, value: Any, time: Usd.TimeCode) -> None:
         """Authors a sample, or the default value where time is the default time."""
         self._set(self._spec(attribute), value, time)
+
+    def set_points(self, prim: Usd.Prim, points: np.ndarray, time: Usd.TimeCode) -> None:
+        """Authors points of a mesh, float32 (V, 3), and their extent."""
+        geometry = UsdGeom.PointBased(prim)
+        self.set(geometry.GetPointsAttr(), Vt.Vec3fArray.FromNumpy(points), time)
+        # USD would find it on threads of its own, which then wait busily beside those that slide.
+        self.set(geometry.GetExtentAttr(), Vt.Vec3fArray.FromNumpy(extent(points)), time)
 
     def set_primvar(
         self, prim: Sdf.Path, name: str, kind: tuple[Sdf.ValueTypeName, str], values: Any, time: Usd.TimeCode
