@@ -135,6 +135,8 @@ skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, cons
 /* ---- Painted on points ---- */
 
 static skinslide_status check_painted(const skinslide_stage_mesh *mesh, const ss_record *record, skinslide_error *error) {
+    if (!ss_has_value(record))
+        return ss_refuse_empty(record, SKINSLIDE_BAD_PATCH, error);
     skinslide_status status = ss_check_paint_type(NULL, record, true, SKINSLIDE_BAD_PATCH, error);
     if (!status)
         status = ss_check_by_vertex(record, "", SKINSLIDE_BAD_PATCH, error);

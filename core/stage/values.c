@@ -40,7 +40,7 @@ static skinslide_status complete(const skinslide_value *given, skinslide_value *
     *out = (skinslide_value)SKINSLIDE_VALUE_DEFAULT;
     out->name = "the value";
     skinslide_status status = ss_take(given, "skinslide_value", out, sizeof *out, error);
-    if (status || !given)
+    if (status)
         return status;
     if (!out->name)
         out->name = "the value";

@@ -222,7 +222,14 @@ def unchanged(_mesh) -> None:
 
 
 NAN = float("nan")
+
+
+def blocked(mesh) -> None:
+    stages.set_primvar(mesh, "blocked", Sdf.ValueTypeNames.FloatArray, "vertex", Sdf.ValueBlock())
+
+
 FAULTS = {
+    "primvar without a value": (blocked, dict(primvar="blocked"), "primvars:blocked has no value"),
     "no such patch": (
         unchanged,
         dict(patch="knee_L", subset="seam"),

@@ -27,6 +27,7 @@ def cache(tmp_path):
     subset.CreateElementTypeAttr("face")
     subset.CreateIndicesAttr([7, 8, 13, 14])
     stages.set_primvar(mesh, "mask", Sdf.ValueTypeNames.FloatArray, "vertex", [1.0] * 14 + [0.0] * 35)
+    stages.set_primvar(mesh, "blocked", Sdf.ValueTypeNames.FloatArray, "vertex", Sdf.ValueBlock())
     (tmp_path / "publish").mkdir()
     return stages.save(stage, tmp_path / "publish" / "cache.usda")
 
@@ -154,6 +155,9 @@ FAULTS = {
     "no such weight": (dict(faces="0-2", weight="gone"), "there is no primvar gone"),
     "grow": (dict(faces="0-2", grow=-1), "skinSlide:elbow_L:grow is -1; it must be 0 or more"),
     "all free by a rule in the plane": (dict(faces="0-2", rule="unit", holes="freeAll"), "needs rule relaxed or even"),
+    "pin without a value": (dict(faces="0-2", pin="blocked"), "primvars:blocked has no value"),
+    "weight without a value": (dict(faces="0-2", weight="blocked"), "primvars:blocked has no value"),
+    "primvar without a value": (dict(primvar="blocked"), "primvars:blocked has no value"),
     "primvar of another kind": (dict(primvar="st"), "is texCoord2f[]"),
     "pinched": (dict(faces="0,7,1,2,8"), None),
 }

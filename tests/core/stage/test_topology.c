@@ -86,6 +86,9 @@ static void paint_on_points(void **state) {
     expect_painted(mesh, FLOATS("primvars:a", 0, NAN, 2, 3), "vertex", "primvars:a[1] is nan");
     expect_painted(mesh, other_of("primvars:a", "color3f[]"), "vertex",
                    "primvars:a is color3f[]; it must be bool[], int[] or float[]");
+    expect_painted(mesh, blocked_of("primvars:a"), "vertex", "primvars:a has no value");
+    double numbers[4];
+    assert_fails(skinslide_stage_painted(mesh, NULL, numbers, &error), &error, SKINSLIDE_BAD_PATCH, "the value has no value");
     skinslide_stage_mesh_destroy(mesh);
 }
 

@@ -32,7 +32,7 @@ from skinslide.stage.given import (
     given_text,
 )
 from skinslide.stage.patch import read_edges, read_faces, read_pairs
-from skinslide.stage.values import FIRST, read_value
+from skinslide.stage.values import FIRST, read_primvar, read_value
 
 DIRECTIONS = ("any", "along", "across")
 
@@ -276,7 +276,7 @@ def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
 
 def _primvar_edges(surface: _Surface, name: str, threshold: float) -> np.ndarray:
     primvar = given_primvar(surface.prim, name)
-    values = surface.meaning.painted(read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr()))
+    values = surface.meaning.painted(read_primvar(primvar))
     return surface.edges[(values >= threshold)[surface.edges].all(axis=1)]
 
 

@@ -16,7 +16,7 @@ from skinslide.problems import Fault
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_number, given_primvar
 from skinslide.stage.patch import primvar_faces, subset_faces
-from skinslide.stage.values import FIRST, read_value
+from skinslide.stage.values import read_primvar
 
 RULE = "even"  # of new patches
 
@@ -79,7 +79,7 @@ def _weight(given: npt.ArrayLike | str | None, mesh: EditedMesh) -> np.ndarray:
 
 
 def _painted(primvar: UsdGeom.Primvar, mesh: EditedMesh) -> np.ndarray:
-    return mesh.meaning.painted(read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr()))
+    return mesh.meaning.painted(read_primvar(primvar))
 
 
 def _pinned(name: str, mesh: EditedMesh) -> np.ndarray:

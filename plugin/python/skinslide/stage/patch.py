@@ -16,7 +16,6 @@ from skinslide.arrays.meaning import (
     Names,
     PatchMeaning,
     Subset,
-    Value,
     input_of,
     inputs,
     integers,
@@ -26,7 +25,7 @@ from skinslide.problems import Fault
 from skinslide.stage import schema
 from skinslide.stage.neighbours import Neighbours
 from skinslide.stage.textures import give_files
-from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
+from skinslide.stage.values import FIRST, Source, Span, noting, read_primvar, read_value, take
 
 _CHOOSING = ("paintChannel", "patch")  # what the chosen faces depend on
 
@@ -195,8 +194,7 @@ def read_edges(prim: Usd.Prim, patch: PatchMeaning) -> Animation:
 def primvar_faces(primvar: UsdGeom.Primvar, mesh: MeshMeaning) -> np.ndarray:
     """The faces that any primvar chooses as that of a patch does, int32, ascending. Raises Fault."""
     meaning = PatchMeaning(mesh, primvar.GetPrimvarName())
-    value = read_value(primvar.GetAttr(), FIRST, primvar.GetIndicesAttr())
-    meaning.take(input_of("patch", "patch"), value or Value(primvar.GetName(), None, str(primvar.GetTypeName())))
+    meaning.take(input_of("patch", "patch"), read_primvar(primvar))
     return meaning.faces
 
 

@@ -102,6 +102,13 @@ def read_value(
     return Value(name or attribute.GetName(), value, type_name, interpolation, own)
 
 
+def read_primvar(primvar: UsdGeom.Primvar) -> Value:
+    """The value of a primvar at the first time; where it has none, its name without one. Raises Fault."""
+    attribute = primvar.GetAttr()
+    nothing = Value(primvar.GetName(), None, str(primvar.GetTypeName()), attribute.GetMetadata("interpolation"))
+    return read_value(attribute, FIRST, primvar.GetIndicesAttr()) or nothing
+
+
 def _anchored(attribute: Usd.Attribute, time: Usd.TimeCode, path: str) -> str:
     """Where to look for a file: relative to the layer that names it."""
     return Sdf.ComputeAssetPathRelativeToLayer(layer_of(attribute, time), path) if path else ""
