@@ -122,10 +122,10 @@ static double scale_step(ss_evener *evener) {
     take_parts(evener);
     for (int32_t f = 0; f < faces;) {
         for (l.count = 0; f < faces && l.count < AT_ONCE; f++) {
-            bool shorter = is_shorter(evener, f);
-            l.face[l.count] = f, l.count += shorter;
-            evener->reach[f] = shorter ? 1 : evener->reach[f];
-            least = ss_least(evener->reach[f], least);
+            if (is_shorter(evener, f))
+                l.face[l.count++] = f, evener->reach[f] = 1;
+            else
+                least = ss_least(evener->reach[f], least);
         }
         find_losses(evener, &l);
         find_reaches(&l, 1);
