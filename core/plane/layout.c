@@ -78,10 +78,19 @@ static bool fan_turns_left(const ss_faces *faces, int32_t face, const double (*u
     return true;
 }
 
+/* Of a quad the two corners that are not its fan's, beyond doubt. */
+static bool clearly_turns_left(const int32_t *corners, const double (*uv)[2]) {
+    const int32_t v[2][3] = {{corners[1], corners[2], corners[3]}, {corners[3], corners[0], corners[1]}};
+    pair_bits left = two_turn_left(v, uv);
+    return left[0] & left[1];
+}
+
 /* Exactly, or straight on, every corner that is not the fan's: its first triangle is at the second, its last at the last. */
 static bool corners_turn_left(const ss_faces *faces, int32_t face, const double (*uv)[2]) {
     const int32_t *corners = faces->corner_vertex + faces->face_start[face];
     int32_t n = ss_fan_size(faces, face) + 2;
+    if (n == 4 && clearly_turns_left(corners, uv))
+        return true;
     for (int32_t k = 1; k < n && n > 3; k++)
         if (k != n - 2 && ss_orient(uv[corners[k]], uv[corners[(k + 1) % n]], uv[corners[(k + 2) % n]]) < 0)
             return false;
