@@ -23,8 +23,8 @@ static const double most_of_one = 4;
 
 typedef struct ratios {
     const skinslide_stage_mesh *mesh;
-    double *values;
-    int64_t count;
+    double *values; /* finite, above 0 */
+    int32_t count;
 } ratios;
 
 /* Sides of no length in either pose say nothing; points that are not finite are reported when they are slid. */
@@ -64,17 +64,19 @@ static double ranked(const double *values, int64_t count, int64_t k) {
     return value;
 }
 
-static likeness compare(const ratios *own) {
+/* Leaves the logarithms of the values. */
+static likeness compare(ratios *own) {
     if (!own->count)
         return (likeness){1, 1, 1};
     double median = ranked(own->values, own->count, own->count / 2), spread = 0, apart = 0;
     double middle = ss_log(median), most = ss_log(most_of_one);
-    for (int64_t i = 0; i < own->count; i++) {
-        double off = ss_log(own->values[i]);
-        spread += fmin(fabs(off - middle), most);
+    ss_logs(own->count, own->values);
+    for (int32_t i = 0; i < own->count; i++) {
+        double off = own->values[i];
+        spread += ss_least(fabs(off - middle), most);
         apart += off * off;
     }
-    return (likeness){median, ss_exp(spread / (double)own->count), ss_exp(sqrt(apart / (double)own->count))};
+    return (likeness){median, ss_exp(spread / own->count), ss_exp(sqrt(apart / own->count))};
 }
 
 static bool can_compare(const skinslide_stage_mesh *mesh) {
