@@ -134,7 +134,7 @@ static skinslide_status check(const skinslide_mesh *mesh, const float *stretch, 
                        options->grow, (long long)options->rings);
     for (int32_t c = 0; c < mesh->index_count; c++)
         if (!(stretch[c] >= 0))
-            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "stretch[%d] is %g, which no stretch is", c, (double)stretch[c]);
+            return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "stretch[%d] is %g; a stretch is 0 or more", c, (double)stretch[c]);
     return SKINSLIDE_OK;
 }
 

@@ -246,8 +246,8 @@ static void say_unknown(search *own) {
         count += list_strays(own, i, strays + count);
     qsort(strays, (size_t)count, sizeof *strays, by_patch);
     for (int32_t i = 0; i < count; i++)
-        say(own, SKINSLIDE_SEVERITY_WARNING, own->patches[strays[i].patch],
-            "%s is no setting of a patch, and counts for nothing", own->prim.properties[strays[i].property]);
+        say(own, SKINSLIDE_SEVERITY_WARNING, own->patches[strays[i].patch], "%s is not a setting of a patch, and has no effect",
+            own->prim.properties[strays[i].property]);
 }
 
 /* ---- Paint under names that are none ---- */
@@ -281,10 +281,9 @@ static void say_misnamed(search *own) {
             continue; /* the warning is of the primvar that they index */
         if (patch && own->paint.in_another_case[i] && !case_is_said)
             say(own, SKINSLIDE_SEVERITY_WARNING, patch,
-                "%s is paint in another case, and counts for nothing unless " SS_NAMESPACE "foldCase is on", name);
+                "%s is paint in another case, and has no effect unless " SS_NAMESPACE "foldCase is on", name);
         else if (!patch && !place_of(name).patch_length && has_parts(name))
-            say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "%s is no paint of a patch that is applied, and counts for nothing",
-                name);
+            say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "%s is not paint of an applied patch, and has no effect", name);
     }
 }
 

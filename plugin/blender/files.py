@@ -105,7 +105,7 @@ def _take_edges(mesh: bpy.types.Mesh, patch: str, values: dict[str, Value]) -> N
     order = np.argsort(keys)
     found = order[np.searchsorted(keys, wanted, sorter=order).clip(max=len(keys) - 1)]
     for a, b in pairs[keys[found] != wanted][:1]:
-        raise Fault(f"patch {patch}: {a}-{b} is no edge of the mesh")
+        raise Fault(f"patch {patch}: the mesh has no edge {a}-{b}")
     held = np.zeros(len(mesh.edges), np.float32)
     held[found] = factors
     write_attribute(mesh, f"skinSlide:{patch}:{EDGES}", "EDGE", ("FLOAT", "value"), held)

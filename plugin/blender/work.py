@@ -104,7 +104,7 @@ class Waiting(bpy.types.Operator):
     def need(cls, context: bpy.types.Context) -> None:
         """Raises Fault where there is nothing to do it with."""
         if context.active_object is None or context.active_object.type != "MESH":
-            raise Fault("the active object is no mesh")
+            raise Fault("the active object is not a mesh")
 
     def steps(self, context: bpy.types.Context) -> Steps:
         """Yields work, for what it gives, and gives what was done in the end. Whatever it began ends with it."""

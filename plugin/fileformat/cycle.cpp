@@ -23,7 +23,7 @@ std::string fileAt(const std::string &resolvedPath) {
 Reading::Reading(const std::string &resolvedPath) {
     refuse(resolvedPath);
     if (files.size() >= mostAtOnce)
-        throw fault("is led to by %zu .skinslide files, each through the next; more are not read", mostAtOnce);
+        throw fault("is reached through %zu .skinslide files, one after another; longer chains are not read", mostAtOnce);
     files.push_back(fileAt(resolvedPath));
 }
 

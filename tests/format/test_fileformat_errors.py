@@ -410,7 +410,7 @@ def test_a_chain_that_is_too_long_is_refused(tmp_path):
             open_mesh(chain(tmp_path, 40))
         except (Tf.ErrorException, RuntimeError) as error:
             messages.append(str(error))
-    assert "is led to by 32 .skinslide files" in "".join(messages)
+    assert "is reached through 32 .skinslide files" in "".join(messages)
 
 
 def test_a_reload_keeps_unsaved_edits_of_a_source(tmp_path):

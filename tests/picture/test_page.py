@@ -835,7 +835,7 @@ def test_bad_pictures(report):
     none = strip(SHEET, PatchReport(patch.info), pictures={})
     for bad, message in (
         (few, f"{SHEET}: patch {stages.PATCH}: 1 pictures of chequer for 6 frames"),
-        (text, f"{SHEET}: patch {stages.PATCH}: frame 1002: the picture of chequer is no PNG, JPEG or WebP"),
+        (text, f"{SHEET}: patch {stages.PATCH}: frame 1002: the picture of chequer is not a PNG, JPEG or WebP"),
         (none, f"{SHEET}: patch {stages.PATCH}: no frames"),
     ):
         with pytest.raises(ValueError, match=message):

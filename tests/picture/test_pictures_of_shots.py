@@ -412,7 +412,7 @@ def test_the_texture_of_the_mesh_is_shown(udim, tmp_path):
     [
         (None, "has no material, whose texture could be shown"),
         ("none.png", "/World/look/texture.inputs:file: there is no file"),
-        ("shot.usda", "is no picture that can be read"),
+        ("shot.usda", "is not a picture that can be read"),
     ],
 )
 def test_textures_that_cannot_be_shown(file, message, tmp_path, capfd):

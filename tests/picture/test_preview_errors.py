@@ -89,7 +89,7 @@ def test_a_page_that_cannot_be(shot, tmp_path, capfd):
     [
         (["--camera", "/World/none"], f"{stages.MESH}: patch {PATCH}: camera /World/none: there is no such prim"),
         (["--camera", "World"], f"patch {PATCH}: camera World: there is no such prim"),
-        (["--camera", "/World/char"], f"patch {PATCH}: camera /World/char: is a Xform, no Camera"),
+        (["--camera", "/World/char"], f"patch {PATCH}: camera /World/char: is a Xform, not a Camera"),
         (["--patch", "knee"], f"patch knee: no mesh has it; there are {PATCH}"),
     ],
 )
@@ -253,7 +253,7 @@ def test_a_chequer_that_is_on_no_st_says_so_and_what_there_is(tmp_path):
     add_st(mesh, stages.grid(24, 24), "map1")
     (note,) = draw(stage, tmp_path / "out").problems
     assert note.severity == "note" and note.message == (
-        "there is no primvars:st, so the chequer is on places at rest; of other texture coordinates there are "
+        "there is no primvars:st, so the chequer is on positions at rest; for texture coordinates there are "
         "primvars:map1"
     )
     assert not draw(stage, tmp_path / "there", st="map1").problems

@@ -90,7 +90,7 @@ def test_what_cannot_be_read_is_told_of(make, baked, capsys):
     """A pipe is not waited for, and of a device nothing is read."""
     make(baked / "a.json")
     assert main(["report", str(baked), "--quiet"]) == 0
-    said = "is left out: it is no whole record of this version"
+    said = "is left out: it is not a complete record of this version"
     assert [line for line in capsys.readouterr().err.splitlines() if said in line] == [
         f"warning: {name} {said}" for name in ("a.json", "half.json", "later.json")
     ]
@@ -104,7 +104,7 @@ def _left_out(report) -> list[str]:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["nowhere"], "nowhere is no folder of records"),
+        (["nowhere"], "nowhere is not a folder of records"),
         (["empty"], "there is no record in it or below"),
         (["shots", "-o", "page.txt"], "the name must end in .html, .htm"),
     ],

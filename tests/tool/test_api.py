@@ -84,7 +84,7 @@ def test_prims_that_can_have_no_patch(stage, prim):
     assert "applies to Mesh, which /World is not" in SkinSlideAPI.CanApply(world, PATCH).whyNot
     assert "invalid null prim" in SkinSlideAPI.CanApply(Usd.Prim(), PATCH).whyNot
     for given in (None, 3, MESH):
-        message = f"SkinSlideAPI does not apply to {given!r}, which is no Usd.Prim"
+        message = f"SkinSlideAPI does not apply to {given!r}, which is not a Usd.Prim"
         assert SkinSlideAPI.CanApply(given, PATCH).whyNot == message
         with pytest.raises(UsageError, match=message):
             SkinSlideAPI.Apply(given, PATCH)
@@ -359,7 +359,7 @@ BAD = {
     "no such face": (setup.setup, dict(faces=[36]), "there is no face 36"),
     "pinched": (setup.setup, dict(faces=[1, 2, 6, 8, 12, 13, 14], rule="unit"), "touches itself"),
     "no such subset": (setup.setup, dict(subset="gone"), "no GeomSubset gone"),
-    "paint no edge": (paint.paint, dict(value=2, edges=[[0, 8]]), "edges has 0-8, which is no edge of the mesh"),
+    "paint no edge": (paint.paint, dict(value=2, edges=[[0, 8]]), "edges has 0-8, which is not an edge of the mesh"),
     "paint off the patch": (paint.paint, dict(value=2, edges=[[47, 48]]), "edges chooses no edge of the patch"),
     "mirror": (mirror.mirror, dict(axis="y"), "no mirror image"),
 }

@@ -74,7 +74,7 @@ BAD = {
     ),
     "joints that it has not": (
         lambda _, mesh: binding_of(mesh).CreateJointsAttr(["root", "root/leg", "root/tail"]),
-        f"skel:joints names root/leg and 1 more, which the skeleton {SKELETON} has not",
+        f"skel:joints names root/leg and 1 more, which the skeleton {SKELETON} does not have",
     ),
     "a joint beyond the last": (
         influences("jointIndices", lambda values: values.__setitem__(5, 3)),
@@ -143,11 +143,11 @@ BAD = {
     ),
     "blend shapes: a target that is none": (
         lambda _, mesh: rigs.blend_shape(mesh) and binding_of(mesh).GetBlendShapeTargetsRel().SetTargets([SKELETON]),
-        f"skel:blendShapeTargets names {SKELETON}, which is no BlendShape",
+        f"skel:blendShapeTargets names {SKELETON}, which is not a BlendShape",
     ),
     "animation of joints that it has not": (
         another_animation_of(["root/arm", "root/leg"]),
-        f"the animation {ANIMATION} moves root/leg, which the skeleton {SKELETON} has not",
+        f"the animation {ANIMATION} moves root/leg, which the skeleton {SKELETON} does not have",
     ),
     "two skeletons": (
         two_skeletons,

@@ -38,10 +38,10 @@ def test_check_says_what_it_did_not_take(fold):
     if fold:
         mesh.GetPrim().CreateAttribute("skinSlide:foldCase", Types.Bool).Set(True)
     told = [problem.message for problem in skinslide.check(stage).problems if problem.severity == "warning"]
-    case = "is paint in another case, and counts for nothing unless skinSlide:foldCase is on"
+    case = "is paint in another case, and has no effect unless skinSlide:foldCase is on"
     assert told == [
         f"primvars:{name} {case}" for name in (f"{PLACE}:MaxDistance", f"{PLACE}_weight".lower()) if not fold
-    ] + [f"primvars:skinSlide_{PATCH}_wieght is no paint of a patch that is applied, and counts for nothing"]
+    ] + [f"primvars:skinSlide_{PATCH}_wieght is not paint of an applied patch, and has no effect"]
 
 
 def exported(path, amount: float) -> None:

@@ -108,7 +108,7 @@ def test_a_target_that_has_left_the_stage(shot):
     stage = Usd.Stage.Open(str(shot.save().path))
     layer = sublayered(stage)
     stage.GetSessionLayer().subLayerPaths.clear()
-    assert refused(stage) == f"the edit target {layer.identifier} is no layer of the stage; {ANOTHER}"
+    assert refused(stage) == f"the edit target {layer.identifier} is not a layer of the stage; {ANOTHER}"
 
 
 def test_a_target_that_nobody_holds(shot):

@@ -167,7 +167,7 @@ typedef enum skinslide_holes {
 
 /* Where skin slides to. UNIT and FAST are the paper's: force density of an edge of length l (section 3.1), and a lookup in
  * the plane; they need a patch that is a disk with holes. RELAXED and EVEN slide on the rest surface itself, and take a
- * patch with any number of handles and boundaries, or none: corners and boundary count for nothing, and there is no
+ * patch with any number of handles and boundaries, or none: corners and boundary have no effect, and there is no
  * embedding.
  *
  * EVEN goes to where the logarithms of edge lengths over rest lengths are in balance, less their median, which is the

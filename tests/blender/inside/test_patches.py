@@ -368,7 +368,7 @@ def test_what_is_no_mesh():
     empty = bpy.data.objects.new("empty", None)
     bpy.context.scene.collection.objects.link(empty)
     bpy.context.view_layer.objects.active = empty
-    with pytest.raises(RuntimeError, match="is no mesh"):
+    with pytest.raises(RuntimeError, match="is not a mesh"):
         bpy.ops.skinslide.live()
 
 

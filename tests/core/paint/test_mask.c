@@ -106,7 +106,7 @@ static void what_cannot_be_is_named(void **state) {
     assert_int_equal(skinslide_mask_stretched(&view, NULL, NULL, faces, &error), SKINSLIDE_BAD_ARGUMENT);
     stretch[5] = -1;
     assert_fails(skinslide_mask_stretched(&view, stretch, NULL, faces, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "stretch[5] is -1, which no stretch is");
+                 "stretch[5] is -1; a stretch is 0 or more");
     stretch[5] = 0, options.grow = NAN;
     assert_fails(skinslide_mask_stretched(&view, stretch, &options, faces, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "least 0.02, grow nan, 3 rings: none may be below 0");

@@ -186,18 +186,18 @@ static void settings_that_are_none(void **state) {
     assert_true(finding->slides);
     assert_int_equal(finding->problem_count, 4);
     expect_problem(finding, 0, SKINSLIDE_SEVERITY_WARNING, "elbow",
-                   "skinSlide:elbow:envelop is no setting of a patch, and counts for nothing");
+                   "skinSlide:elbow:envelop is not a setting of a patch, and has no effect");
     expect_problem(finding, 1, SKINSLIDE_SEVERITY_WARNING, "elbow",
-                   "skinSlide:elbow:weight is no setting of a patch, and counts for nothing");
+                   "skinSlide:elbow:weight is not a setting of a patch, and has no effect");
     expect_problem(finding, 2, SKINSLIDE_SEVERITY_WARNING, "elbow",
-                   "primvars:skinSlide:elbow:envelope is no setting of a patch, and counts for nothing");
+                   "primvars:skinSlide:elbow:envelope is not a setting of a patch, and has no effect");
     expect_problem(finding, 3, SKINSLIDE_SEVERITY_WARNING, "elbow:inner",
-                   "skinSlide:elbow:inner:nothing is no setting of a patch, and counts for nothing");
+                   "skinSlide:elbow:inner:nothing is not a setting of a patch, and has no effect");
     skinslide_stage_finding_destroy(finding);
 }
 
-#define NO_PAINT "is no paint of a patch that is applied, and counts for nothing"
-#define CASE     "is paint in another case, and counts for nothing unless skinSlide:foldCase is on"
+#define NO_PAINT "is not paint of an applied patch, and has no effect"
+#define CASE     "is paint in another case, and has no effect unless skinSlide:foldCase is on"
 
 /* Under names of tools that know no namespaces, or no case; what a bake tells of the skin is no paint. */
 static void paint_that_counts_for_nothing(void **state) {
@@ -320,14 +320,14 @@ static void strays_are_those_of_each_patch(void **state) {
         has(&prim, 4 * SOME, properties);
         skinslide_stage_finding *finding = find(&prim);
         int32_t next = 0;
-        while (next < finding->problem_count && !strstr(finding->problems[next]->message, "is no setting of a patch"))
+        while (next < finding->problem_count && !strstr(finding->problems[next]->message, "is not a setting of a patch"))
             next++;
         for (int p = 0; p < SOME; p++)
             for (int i = 0; i < 4 * SOME; i++) {
                 char message[1600];
                 if (!is_stray(texts[i], names[p], names))
                     continue;
-                snprintf(message, sizeof message, "%s is no setting of a patch, and counts for nothing", texts[i]);
+                snprintf(message, sizeof message, "%s is not a setting of a patch, and has no effect", texts[i]);
                 expect_problem(finding, next++, SKINSLIDE_SEVERITY_WARNING, names[p], message);
                 all++;
             }

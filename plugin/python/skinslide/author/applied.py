@@ -73,7 +73,7 @@ class _Declared(Usd.SchemaBase):
     def _why_not_to(cls, given: Usd.Prim | Usd.SchemaBase) -> str:
         """Why a prim cannot have the schema; empty where it can."""
         if not isinstance(given, Usd.Prim | Usd.SchemaBase):
-            return f"{cls.SCHEMA} does not apply to {given!r}, which is no Usd.Prim"
+            return f"{cls.SCHEMA} does not apply to {given!r}, which is not a Usd.Prim"
         prim = given.GetPrim()
         if not prim:
             return f"{cls.SCHEMA} does not apply to an {prim!r}"

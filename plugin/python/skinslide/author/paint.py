@@ -258,14 +258,14 @@ def _edges_of_mesh(surface: _Surface, pairs: np.ndarray, what: str) -> np.ndarra
     edges = np.unique(np.sort(pairs, axis=1), axis=0)
     known = _rows_in(edges, surface.topology.edges_of(np.arange(surface.topology.face_count)))
     for a, b in edges[~known][:1]:
-        raise Fault(f"{what} has {a}-{b}, which is no edge of the mesh")
+        raise Fault(f"{what} has {a}-{b}, which is not an edge of the mesh")
     return edges
 
 
 def _subset_edges(surface: _Surface, name: str) -> np.ndarray:
     child = given_subset(surface.prim, name)
     if not child.IsA(UsdGeom.Subset):
-        raise Fault(f"{child.GetPath()} is no GeomSubset")
+        raise Fault(f"{child.GetPath()} is not a GeomSubset")
     subset, path = UsdGeom.Subset(child), child.GetPath()
     element = subset.GetElementTypeAttr().Get(FIRST)
     if element != UsdGeom.Tokens.edge:

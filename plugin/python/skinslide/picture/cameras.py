@@ -37,7 +37,7 @@ class StageCamera:
         prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
         if not prim or not prim.IsA(UsdGeom.Camera):
             kind = prim.GetTypeName() or say("no_type") if prim else ""
-            raise Fault(f"camera {path}: {f'is a {kind}, no Camera' if prim else NO_SUCH_PRIM}")
+            raise Fault(f"camera {path}: {f'is a {kind}, not a Camera' if prim else NO_SUCH_PRIM}")
         self._camera, self._aspect = UsdGeom.Camera(prim), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:

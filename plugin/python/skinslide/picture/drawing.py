@@ -167,7 +167,7 @@ class MeshPictures(MeshMaking):
             return []
         flat = skin.tessellation.flat_faces
         if flat:
-            message = f"{counted(flat, 'face is', 'faces are')} drawn flat, of no limit surface that can be made"
+            message = f"{counted(flat, 'face is', 'faces are')} drawn flat, without a limit surface"
             self._problems.append(Problem("warning", self._mesh.path, None, None, message))
         if skin.told and "chequer" in self._options.views:
             self._problems.append(Problem("note", self._mesh.path, None, None, skin.told))

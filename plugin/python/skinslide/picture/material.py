@@ -68,6 +68,6 @@ def _pixels(path: str) -> np.ndarray:
         with opened, Image.open(io.BytesIO(opened.GetBuffer())) as image:
             whole = image.convert("RGBA")
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise Fault(f"{path} is no picture that can be read: {' '.join(str(error).split())}") from error
+        raise Fault(f"{path} is not a picture that can be read: {' '.join(str(error).split())}") from error
     whole.thumbnail((_LARGEST, _LARGEST))
     return np.array(whole)

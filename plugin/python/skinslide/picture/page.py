@@ -240,7 +240,7 @@ def _check(strip: Strip) -> None:
             raise ValueError(f"{where}: {len(pictures)} pictures of {view} for {len(frames)} frames")
         for frame, picture in zip(frames, pictures, strict=True):
             if _media_type(picture) is None:
-                raise ValueError(f"{where}: frame {time_text(frame)}: the picture of {view} is no PNG, JPEG or WebP")
+                raise ValueError(f"{where}: frame {time_text(frame)}: the picture of {view} is not a PNG, JPEG or WebP")
 
 
 def _media_type(picture: bytes) -> str | None:

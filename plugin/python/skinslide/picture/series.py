@@ -70,7 +70,7 @@ class Skin:
         if self.st is not None:
             return ""
         there = self.mesh.meaning.coordinates_there
-        return f"there is no primvars:{_ST}, so the chequer is on places at rest; of other texture coordinates {there}"
+        return f"there is no primvars:{_ST}, so the chequer is on positions at rest; for texture coordinates {there}"
 
     @classmethod
     def of(cls, mesh: PatchedMesh, faces: np.ndarray, st: str | None, *, textured: bool = False) -> Skin:

@@ -133,7 +133,7 @@ def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
     """
     top = given_output("folder", folder)
     if not top.is_dir():
-        raise UsageError(f"{top} is no folder of records")
+        raise UsageError(f"{top} is not a folder of records")
     page = top / _PAGE if output is None else given_output("output", output)
     check_output(page, (".html", ".htm"))
     left_out: list[Problem] = []
@@ -178,7 +178,7 @@ def _records(top: Path, page: Path, left_out: list[Problem]) -> Iterator[ShotRec
             if isinstance(found, dict) and ("record" in found or found.keys() == {"problems"}):
                 yield _record({"record": RECORD, "meshes": [], **found}, file, top, page)
         except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
-            message = f"{file.relative_to(top)} is left out: it is no whole record of this version"
+            message = f"{file.relative_to(top)} is left out: it is not a complete record of this version"
             left_out.append(Problem("warning", "", None, None, message))
 
 

@@ -46,7 +46,7 @@ def _stuck(mesh: str, every: Sequence[PatchInfo]) -> Iterator[Problem]:
 def _unread(mesh: PatchedMesh) -> Iterator[Problem]:
     for patch, animation in zip(mesh.patches, mesh.animation, strict=True):
         for name in animation.unread():
-            message = f"{name} counts for nothing under the rule {patch.rule}"
+            message = f"{name} has no effect under the rule {patch.rule}"
             yield Problem("warning", mesh.path, patch.name, None, message)
 
 

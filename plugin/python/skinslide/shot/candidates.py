@@ -42,7 +42,7 @@ class Candidate:
     def lines(self) -> Iterator[str]:
         """The same for a terminal."""
         skinned = f", skinned by {self.skeleton}" if self.skeleton else ""
-        yield f"{self.path}: {self.points} points, {self.faces} faces{skinned}, no patch; setup takes of it"
+        yield f"{self.path}: {self.points} points, {self.faces} faces{skinned}, no patch; setup accepts"
         yield f"  --faces 0-{self.faces - 1}"
         for option, names in (("joint", self.joints), ("subset", self.subsets), ("primvar", self.primvars)):
             if names:

@@ -119,4 +119,4 @@ def _check_known(said: str, joints: list[str], own: list[str], skeleton: str) ->
     unknown = [joint for joint in joints if joint not in set(own)]
     if unknown:
         more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
-        raise Fault(f"{said} {unknown[0]}{more}, which the skeleton {skeleton} has not")
+        raise Fault(f"{said} {unknown[0]}{more}, which the skeleton {skeleton} does not have")

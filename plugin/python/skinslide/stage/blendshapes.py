@@ -44,7 +44,7 @@ def _check_targets(query: UsdSkel.SkinningQuery, point_count: int) -> None:
     for path in targets:
         prim = query.GetPrim().GetStage().GetPrimAtPath(path)
         if not prim or not prim.IsA(UsdSkel.BlendShape):
-            raise Fault(f"skel:blendShapeTargets names {path}, which is no BlendShape")
+            raise Fault(f"skel:blendShapeTargets names {path}, which is not a BlendShape")
         _check_shape(UsdSkel.BlendShape(prim), point_count)
 
 

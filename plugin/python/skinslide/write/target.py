@@ -36,7 +36,7 @@ def _fault(stage: Usd.Stage, layer: Sdf.Layer) -> str | None:
     if stage.IsLayerMuted(layer.identifier):
         return "is muted; unmute it by stage.UnmuteLayer, or"
     if layer not in stage.GetUsedLayers():
-        return "is no layer of the stage;"
+        return "is not a layer of the stage;"
     if is_live(layer):
         return "is computed; give its path to functions that write files, such as bake_to_file, or"
     return None if layer.permissionToEdit else "is not editable;"
