@@ -7,9 +7,9 @@
  *     d = argmin  sum (n.(L d - (t - L Md)))^2 + E(edges)      in fit.c
  *
  * A row of L has the weights with which free vertices make a sample; t is the point looked up, and n the normal there, shorter where
- * the pose crumples the surface. To take samples to t itself would slide them by exactly what was looked up, but rings where the
- * slide changes within a few faces, and bunches the texture up. L depends on the mesh alone, and what is factored of it is so once
- * a shot.
+ * the pose crumples the surface: there samples are taken to t itself, as fit.c has it. To take all of them there would slide them by
+ * exactly what was looked up, but rings where the slide changes within a few faces, and bunches the texture up. L depends on the mesh
+ * alone, and what is factored of it is so once a shot.
  *
  * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near where each
  * sample is looked up, so that where the mesh is does not matter. */
@@ -35,6 +35,8 @@ struct ss_cage {
     ss_crumple *crumple;
     int32_t sample_count; /* free_count limit points, then face_count middles */
     sample *samples;
+    double *square;      /* [sample_count] how far from one line the tangents are at rest */
+    double *edge_share;  /* [vertex_count] 1 / how many edges are at each */
     int32_t *free_index; /* [vertex_count] place in free_vertex, -1 where held */
     ss_rows stencils;    /* [sample_count] columns are mesh vertices */
     ss_rows free_rows;   /* [sample_count] L: of them those that are free, by place in free_vertex */
@@ -51,6 +53,7 @@ struct ss_cage_work {
     double (*residual)[3]; /* [sample_count] t - L Md */
     double (*normal)[3];   /* [sample_count] n, shorter where the pose crumples the surface */
     double *part;          /* [free_count] scratch for that */
+    double *around;        /* [vertex_count] mean length of the edges at each */
     double (*solution)[3]; /* [free_count] d */
     double *scratch;       /* [ss_limit_surfaces_scratch] */
 };
@@ -71,6 +74,15 @@ static void list_samples(ss_cage *cage) {
     }
     for (int32_t f = 0; f < faces->face_count; f++)
         *next++ = (sample){f, ss_limit_parameter(cage->surfaces, f, 0, 1, 1), -1};
+}
+
+static void count_edges(ss_cage *cage) {
+    const ss_patch *patch = cage->patch;
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        for (int k = 0; k < 2; k++)
+            cage->edge_share[patch->edge_vertex[e][k]]++;
+    for (int32_t v = 0; v < patch->vertex_count; v++)
+        cage->edge_share[v] = 1 / cage->edge_share[v];
 }
 
 /* ---- The system ---- */
@@ -174,18 +186,17 @@ static void prepare_face(const ss_cage *cage, int32_t face, const float *points,
 static skinslide_status learn_rest(ss_cage *cage, const float *rest_points, skinslide_error *error) {
     ss_memory memory = {0};
     double(*normal)[3] = ss_new(&memory, cage->sample_count, sizeof *normal), origin[3], point[3];
-    double *square = SS_NEW(&memory, double, cage->sample_count);
     double *scratch = SS_NEW(&memory, double, ss_limit_surfaces_scratch(cage->surfaces));
     for (int32_t s = 0; s < cage->sample_count && !memory.failed; s++) {
         const sample *own = &cage->samples[s];
         prepare_face(cage, own->face, rest_points, origin, scratch);
-        square[s] = ss_limit_normal(cage->surfaces, own->face, &own->at, scratch, point, normal[s]);
+        cage->square[s] = ss_limit_normal(cage->surfaces, own->face, &own->at, scratch, point, normal[s]);
     }
     skinslide_status status = memory.failed ? ss_out_of_memory(error)
                                             : ss_fit_create(cage->patch, cage->free_index, &cage->free_rows,
                                                             (const double(*)[3])normal, &cage->fit, error);
     for (int32_t s = 0; s < cage->sample_count && !status; s++)
-        ss_shorten_flat(square[s], normal[s]);
+        ss_shorten_flat(cage->square[s], cage->square[s], normal[s]);
     if (!status)
         status = ss_crumple_create(&cage->free_rows, (const double(*)[3])normal, &cage->crumple, error);
     ss_free(&memory);
@@ -195,10 +206,13 @@ static skinslide_status learn_rest(ss_cage *cage, const float *rest_points, skin
 static skinslide_status build(ss_cage *cage, const float *rest_points, skinslide_error *error) {
     cage->sample_count = cage->patch->free_count + cage->patch->faces.face_count;
     cage->samples = SS_NEW(&cage->memory, sample, cage->sample_count);
+    cage->square = SS_NEW(&cage->memory, double, cage->sample_count);
+    cage->edge_share = SS_NEW(&cage->memory, double, cage->patch->vertex_count);
     cage->free_index = SS_NEW(&cage->memory, int32_t, cage->patch->vertex_count);
     if (cage->memory.failed)
         return ss_out_of_memory(error);
     list_samples(cage);
+    count_edges(cage);
     skinslide_status status = list_stencils(cage, error);
     if (!status)
         status = restrict_to_free(cage, error);
@@ -243,6 +257,7 @@ skinslide_status ss_cage_work_create(const ss_cage *cage, ss_cage_work **out, sk
     work->residual = ss_new(&work->memory, cage->sample_count, sizeof *work->residual);
     work->normal = ss_new(&work->memory, cage->sample_count, sizeof *work->normal);
     work->part = SS_NEW(&work->memory, double, cage->patch->free_count);
+    work->around = SS_NEW(&work->memory, double, cage->patch->vertex_count);
     work->solution = ss_new(&work->memory, cage->patch->free_count, sizeof *work->solution);
     work->scratch = SS_NEW(&work->memory, double, ss_limit_surfaces_scratch(cage->surfaces));
     skinslide_status status = work->memory.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
@@ -298,7 +313,8 @@ static void list_target(const ss_cage_work *work, const float *points, const ss_
     bool stays = place->triangle == SS_STAYS;
     ss_parameter at = stays ? cage->samples[s].at : ss_parametrise(cage->patch, cage->loop, flat, place);
     double residual[3];
-    ss_shorten_flat(ss_limit_normal(cage->surfaces, face, &at, work->scratch, residual, work->normal[s]), work->normal[s]);
+    double square = ss_limit_normal(cage->surfaces, face, &at, work->scratch, residual, work->normal[s]);
+    ss_shorten_flat(square, cage->square[s], work->normal[s]);
     for (int32_t k = stencils->start[s]; k < stencils->start[s + 1]; k++)
         for (int axis = 0; axis < 3; axis++)
             residual[axis] -= stencils->value[k] * (points[3 * (int64_t)stencils->column[k] + axis] - origin[axis]);
@@ -322,18 +338,25 @@ static void list_targets(ss_cage_work *work, const ss_frame *frame, const ss_sli
 
 /* ---- Damping ---- */
 
-static const double most_deviation = 0.5; /* of the mean edge of the face, between LIMIT and LINEAR */
+static const double most_deviation = 0.5; /* of the mean edge where a vertex slid to, between LIMIT and LINEAR */
 
-static double mean_edge(const ss_faces *faces, int32_t face, const double *lengths) {
-    double sum = 0;
-    for (int32_t c = faces->face_start[face]; c < faces->face_start[face + 1]; c++)
-        sum += lengths[faces->corner_edge[c]];
-    return sum / (ss_fan_size(faces, face) + 2);
+static void measure_around(const ss_cage *cage, const double *lengths, double *around) {
+    const ss_patch *patch = cage->patch;
+    memset(around, 0, (size_t)patch->vertex_count * sizeof *around);
+    for (int32_t e = 0; e < patch->faces.edge_count; e++)
+        for (int k = 0; k < 2; k++)
+            around[patch->edge_vertex[e][k]] += cage->edge_share[patch->edge_vertex[e][k]] * lengths[e];
 }
 
-static double bound(const ss_cage *cage, const double *lengths, const ss_place *place, int32_t i) {
-    int32_t face = place->triangle == SS_STAYS ? cage->samples[i].face : cage->patch->triangles.face[place->triangle];
-    return most_deviation * mean_edge(&cage->patch->faces, face, lengths);
+/* Between corners linear, so that it goes from face to face without a jump. */
+static double bound(const ss_cage *cage, const double *around, const ss_place *place, int32_t i) {
+    if (place->triangle == SS_STAYS)
+        return most_deviation * around[cage->patch->free_vertex[i]];
+    const int32_t *corners = cage->patch->triangles.vertex[place->triangle];
+    double mean = 0;
+    for (int k = 0; k < 3; k++)
+        mean += place->weight[k] * around[corners[k]];
+    return most_deviation * mean;
 }
 
 /* Puts the solution in place of the linear displacement, no farther from it than the bound. Returns whether that held it back.
@@ -370,7 +393,8 @@ int32_t ss_move_cage(ss_cage_work *work, const ss_frame *frame, const ss_slide *
     ss_crumple_shorten(work->cage->crumple, work->solution, work->part, work->normal);
     memcpy(work->solution, displacement, (size_t)count * sizeof *displacement);
     ss_fit_samples(work->fit, frame, (const double(*)[3])work->residual, (const double(*)[3])work->normal, work->solution);
+    measure_around(work->cage, frame->lengths, work->around);
     for (int32_t i = 0; i < count; i++)
-        damped += take_damped(work->solution[i], bound(work->cage, frame->lengths, &slide->places[i], i), displacement[i]);
+        damped += take_damped(work->solution[i], bound(work->cage, work->around, &slide->places[i], i), displacement[i]);
     return damped;
 }

@@ -1,18 +1,18 @@
 /* Where a pose crumples the surface, its normals turn from one sample to the next, and from one frame to the next, by more than there
- * is of a shape to keep: skin that followed them would jump. There a sample counts less, by n shortened twice:
+ * is of a shape to keep: skin that followed them would jump. There a sample counts less along its normal, by n shortened twice, and
+ * as fit.c has it in every direction instead:
  *
- *     n <- n / sqrt(1 + (0.2 / c)^2)         c how far from one line the tangents are: ss_limit_normal
- *     n <- n mean of 1 / (1 + (x / 0.15)^4)  over the vertices of the sample, by L
+ *     n <- n / (1 + (0.35 c0 / c)^4)         c how far from one line the tangents are: ss_limit_normal; c0 at rest
+ *     n <- n mean of 1 / (1 + (x / 0.25)^4)  over the vertices of the sample, by L
  *
  * with x of a vertex how much shorter the mean normal of the samples around it is than at rest, as a share of that, and no less than 0:
- * rims that are sharp at rest are not crumpled. */
+ * faces that are long, and rims that are sharp, at rest are not crumpled. */
 #include "limit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double flat = 0.2, apart = 0.15;
+static const double flat = 0.35, apart = 0.25;
 
 struct ss_crumple {
     ss_memory memory;
@@ -56,22 +56,26 @@ void ss_crumple_destroy(ss_crumple *crumple) {
     free(crumple);
 }
 
-void ss_shorten_flat(double square, double normal[3]) {
-    double part = square > 0 ? 1 / sqrt(1 + flat * flat / (square * square)) : 1;
+static double part_of(double x) {
+    return 1 / (1 + x * x * x * x);
+}
+
+void ss_shorten_flat(double square, double at_rest, double normal[3]) {
+    double part = square > 0 ? part_of(flat * at_rest / square) : 0;
     for (int axis = 0; axis < 3; axis++)
         normal[axis] *= part;
 }
 
-static double part_of(double together, double at_rest) {
-    double less = at_rest > 0 ? ss_most(1 - together / at_rest, 0) / apart : 0;
-    return 1 / (1 + less * less * less * less);
+/* x / 0.25 */
+static double turn_of(double together, double at_rest) {
+    return at_rest > 0 ? ss_most(1 - together / at_rest, 0) / apart : 0;
 }
 
 void ss_crumple_shorten(const ss_crumple *crumple, double (*sum)[3], double *part, double (*normal)[3]) {
     const ss_rows *samples = crumple->samples;
     gather(samples, (const double(*)[3])normal, sum);
     for (int32_t i = 0; i < samples->column_count; i++)
-        part[i] = part_of(ss_length(sum[i]), crumple->together[i]);
+        part[i] = part_of(turn_of(ss_length(sum[i]), crumple->together[i]));
     for (int32_t s = 0; s < samples->row_count; s++) {
         double mean = 0, total = 0;
         for (int32_t k = samples->start[s]; k < samples->start[s + 1]; k++)

@@ -1,16 +1,19 @@
 /* The least squares of interpolation LIMIT: moves free vertices by y from their linear places, so that samples of the surface,
  * L y, come to the planes that they belong in while edges keep what linear made of them. The minimum of
  *
- *     E(y) = sum (n.(L y - r))^2 + s sum ((|e| - |e0|)^2 + t |e - e0|^2)      s = 0.03, t = 0.05
- *          samples               edges
+ *     E(y) = sum (L y - r)'N (L y - r) + s sum ((|e| - |e0|)^2 + t |e - e0|^2)      s = 0.03, t = 0.05
+ *          samples                     edges
+ *
+ *     N = nn' + b (1 - n.n)^2                                                        b = 0.3
  *
  * where an edge is e0 in the linear result and e = e0 + D y after, D the edge-vertex incidence. Samples may slip in their planes,
- * which a coarse cage must let them, and count by the length of n; where vertices go there the edges say, by their length and a
- * little by their direction. Without edges nearness is bought with stretch: the stiffer they are, the less of both.
+ * which a coarse cage must let them; where vertices go there the edges say, by their length and a little by their direction. Without
+ * edges nearness is bought with stretch: the stiffer they are, the less of both. The shorter n, the less a plane is what a sample
+ * belongs in: it is held where it was looked up, which is on the surface, and goes on smoothly where normals turn.
  *
  * Gauss-Newton, each step by conjugate gradients on
  *
- *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                N = nn', u = e / |e|
+ *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                u = e / |e|
  *
  * which differs from frame to frame. The preconditioner is factored once a shot, from scalar matrices, the first of them, which is
  * near to a mass matrix, incompletely. It takes a vertex apart across and along the plane of its own sample:
@@ -34,6 +37,7 @@
 
 static const double edge_stiffness = 0.03;      /* s */
 static const double direction_stiffness = 0.05; /* t */
+static const double all_ways_stiffness = 0.3;   /* b */
 enum { GAUSS_NEWTON_STEPS = 2, GRADIENT_STEPS = 5 };
 
 /* x, y, z and 0, as every processor adds and multiplies them: where the model is made in doubles, two by two; what conjugate
@@ -75,7 +79,8 @@ struct ss_fit_work {
     ss_memory memory;
     const ss_fit *fit;
     const int *stop;          /* a flag: the frame is not wanted any more */
-    vector *up;               /* [sample count] n */
+    vector *up;               /* [sample count] n ... */
+    float *all_ways;          /* [sample count] ... and b (1 - n.n)^2 */
     vector *residual;         /* [sample count] r */
     vector *linear;           /* [edge_count] e0 */
     vector *direction;        /* [edge_count] u */
@@ -253,6 +258,7 @@ static void new_arrays(ss_fit_work *work) {
     ss_memory *memory = &work->memory;
     int64_t samples = fit->samples->row_count, vertices = (int64_t)fit->free_count + 1;
     work->up = SS_NEW(memory, vector, samples);
+    work->all_ways = SS_NEW(memory, float, samples);
     work->residual = SS_NEW(memory, vector, samples);
     work->linear = SS_NEW(memory, vector, fit->edge_count);
     work->direction = SS_NEW(memory, vector, fit->edge_count);
@@ -330,9 +336,11 @@ static inline vector take_edge(const edge *own, const vector *x) {
     return subtract(&x[own->end[1]], &x[own->end[0]]);
 }
 
-/* N a; where the surface has no normal, N is 1. */
-static inline vector press(const vector *normal, const vector *a) {
-    return dot(normal, normal) > 0 ? scale(dot(normal, a), normal) : *a;
+/* N a */
+static inline vector press(const vector *normal, float all_ways, const vector *a) {
+    vector sum = scale(dot(normal, a), normal);
+    add(&sum, (double)all_ways, a);
+    return sum;
 }
 
 /* out = L' of the forces of samples + D' of those of edges */
@@ -366,7 +374,7 @@ static void list_gradient(ss_fit_work *work) {
     vector *edge_force = work->force + fit->samples->row_count;
     for (int32_t s = 0; s < fit->samples->row_count; s++) {
         vector moved = take_sample(fit->samples, s, work->offset), left = subtract(&work->residual[s], &moved);
-        work->force[s] = press(&work->up[s], &left);
+        work->force[s] = press(&work->up[s], work->all_ways[s], &left);
     }
     for (int32_t e = 0; e < fit->edge_count; e++) {
         vector change = take_edge(&fit->edges[e], work->offset);
@@ -418,7 +426,7 @@ static void list_single_forces(ss_fit_work *work) {
         single moved = {0}, up = work->single_up[s];
         for (int32_t k = samples->start[s]; k < samples->start[s + 1]; k++)
             moved += fit->sample_weight[k] * work->search[samples->column[k]];
-        work->single_force[s] = single_dot(up, up) > 0 ? single_dot(up, moved) * up : moved;
+        work->single_force[s] = single_dot(up, moved) * up + work->all_ways[s] * moved;
     }
     for (int32_t e = 0; e < fit->edge_count; e++) {
         single change = work->search[fit->edges[e].end[1]] - work->search[fit->edges[e].end[0]];
@@ -508,7 +516,9 @@ static void start_linear(ss_fit_work *work, const float *points, const double (*
         const double *r = residual[s], *n = normal[s];
         vector moved = take_sample(fit->samples, s, work->offset), wanted = make(r[0], r[1], r[2]);
         work->residual[s] = subtract(&wanted, &moved);
+        double short_of = ss_most(1 - ss_dot(n, n), 0);
         work->up[s] = make(n[0], n[1], n[2]);
+        work->all_ways[s] = (float)(all_ways_stiffness * short_of * short_of);
     }
     for (int32_t e = 0; e < fit->edge_count; e++) {
         const float *from = points + 3 * (int64_t)fit->edges[e].mesh_vertex[0];

@@ -72,7 +72,7 @@ void ss_fit_destroy(ss_fit *fit);
 skinslide_status ss_fit_work_create(const ss_fit *fit, ss_fit_work **out, skinslide_error *error);
 void ss_fit_work_destroy(ss_fit_work *work);
 /* displacement [free_count]: in the linear one, out the one that brings each sample nearer to where it is to move by residual,
- * along normal: of a length by which the sample counts, or 0 for in every direction. Both are [row_count]. */
+ * along normal, and the shorter that is than 1, the more in every direction. Both are [row_count]. */
 void ss_fit_samples(ss_fit_work *work, const ss_frame *frame, const double (*residual)[3], const double (*normal)[3],
                     double (*displacement)[3]);
 
@@ -80,8 +80,8 @@ void ss_fit_samples(ss_fit_work *work, const ss_frame *frame, const double (*res
 
 typedef struct ss_crumple ss_crumple; /* immutable */
 
-/* Shortens the unit normal of a sample whose tangents are nearly along one line: square is what ss_limit_normal returned. */
-void ss_shorten_flat(double square, double normal[3]);
+/* Shortens the unit normal of a sample whose tangents are more nearly along one line than at rest: what ss_limit_normal returned. */
+void ss_shorten_flat(double square, double at_rest, double normal[3]);
 /* samples are those of the fit, kept, and normal [row_count] theirs at rest, shortened so. */
 skinslide_status ss_crumple_create(const ss_rows *samples, const double (*normal)[3], ss_crumple **out, skinslide_error *error);
 void ss_crumple_destroy(ss_crumple *crumple);

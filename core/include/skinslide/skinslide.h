@@ -188,8 +188,9 @@ typedef enum skinslide_rule {
  * LIMIT keeps the shape of the limit surface and not that of the faces: from the LINEAR result, the limit points of the free
  * vertices and of the middles of the patch's faces are taken back, along the normal, to where each is looked up on the limit
  * surface of the deformed mesh, as near as the free vertices can take all of them with every other held and with edges that
- * nearly keep the length that LINEAR gives them. It can be as near as faces are fine for the slide. A vertex that this would
- * take farther from its LINEAR place than half the mean edge of the face it lands in is put at that distance, and counted as
+ * nearly keep the length that LINEAR gives them. It can be as near as faces are fine for the slide. Where the pose crumples the
+ * surface, its normals jump: there they are taken back less along the normal, and in every direction instead. A vertex that
+ * this would take farther from its LINEAR place than half the mean edge where it lands is put at that distance, and counted as
  * damped: the solve rings where a target jumps over a crease. It is limit points that weights scale the slide of: one of weight
  * 0 stays, and its vertex follows so that it does. */
 typedef enum skinslide_interpolation {
