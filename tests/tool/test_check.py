@@ -10,6 +10,7 @@ import skinslide
 import stages
 from skinslide.command.cli import main
 from skinslide.shot.check import CheckReport
+from skinslide.stage.neighbours import Neighbours
 from stages import FRAMES, MESH, PATCH
 
 WEIGHT = f"skinSlide:{PATCH}:weight"
@@ -69,6 +70,18 @@ def test_neighbours_do_not_overlap():
     stage, mesh = stages.patched_stage(faces=stages.block(6, range(3), range(6)))
     stages.add_patch(mesh, stages.block(6, range(3, 6), range(6)), "wrist_L")
     assert not skinslide.check(stage).problems
+
+
+def test_points_of_meshes_far_away_are_read_once(monkeypatch):
+    """Of many meshes side by side, each with a patch, and not by each of the others."""
+    stage, read = stages.new_stage(), list[str]()
+    for number in range(8):
+        shape = stages.grid(centre=(3 * number, 0, 0))
+        stages.add_patch(stages.add_mesh(stage, shape, f"{MESH}{number}"), shape.all_faces)
+    points = Neighbours._points
+    monkeypatch.setattr(Neighbours, "_points", lambda self, path: read.append(str(path)) or points(self, path))
+    assert len(skinslide.check(stage).meshes) == 8
+    assert sorted(read) == [f"{MESH}{number}" for number in range(8)]
 
 
 def test_paint_that_is_not_applied_is_a_warning():

@@ -84,10 +84,8 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
         slider.check_points(points)
     except (FrameProblem, SliderError):
         return  # which is said of its frame
-    for path, every in mesh.neighbours.of(mesh.prim) if mesh.neighbours else ():
+    for path, every in mesh.neighbours.near(mesh.prim) if mesh.neighbours else ():
         others = every[np.isfinite(every).all(axis=1)]
-        if not len(others) or _apart(points, others):
-            continue
         found = {info: slider.neighbours(patch, points, others) for patch, info in enumerate(slider.patches)}
         for name, pieces in _by_name(slider.patches).items():
             held, loose = (sum(counts) for counts in zip(*(found[info] for info in pieces), strict=True))
@@ -102,13 +100,6 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
                 points_meet = counted(loose, "point that slides coincides", "points that slide coincide")
                 message = f"{points_meet} with points of {path}, which do not follow"
                 yield Problem("warning", mesh.path, name, None, message)
-
-
-def _apart(points: np.ndarray, others: np.ndarray) -> bool:
-    """Whether the boxes around two sets of points are apart by more than a hundredth of the first."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = 0.01 * np.linalg.norm(high - low)
-    return bool((others.min(axis=0) > high + margin).any() or (others.max(axis=0) < low - margin).any())
 
 
 def _cache_problems(mesh: PatchedMesh) -> Iterator[Problem]:
