@@ -290,6 +290,11 @@ FAULTS = {
         dict(curve=CURVE, distance=1, spoil=curve_attr("curveVertexCounts", [3, 4])),
         "curve 0 has 3 points, which its basis and wrap cannot have",
     ),
+    "curve without length": (
+        curve_attr("points", [Gf.Vec3f(0)] * 7),
+        dict(curve=CURVE, distance=1),
+        f"{CURVE} chooses no edge of the patch: the curve has no length",
+    ),
     "curve nan": (
         curve_attr("points", [Gf.Vec3f(NAN)] * 7),
         dict(curve=CURVE, distance=1),

@@ -294,9 +294,10 @@ def _curve_edges(surface: _Surface, near: _Near) -> np.ndarray:
 
 
 def _how_far(nearest: float, near: _Near) -> str:
+    directed = near.direction != "any"
     if not np.isfinite(nearest):
-        return f"none runs {near.direction} it"
-    runs = "" if near.direction == "any" else f" that runs {near.direction} it"
+        return f"none runs {near.direction} it" if directed else "the curve has no length"
+    runs = f" that runs {near.direction} it" if directed else ""
     return f"the nearest{runs} is {nearest:.3g} away, and the distance is {near.distance:g}"
 
 
