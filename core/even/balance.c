@@ -1,11 +1,11 @@
-/* One slide: four steps towards the balance of stretch. */
+/* One slide: four steps towards the balance that even.h states. */
 #include "even.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define STEPS        4
-#define LEAST_SQUARE 1e-12 /* of an edge's length over that at rest */
+#define STEPS        4     /* five or six took no more stretch away, and six folded a walking figure */
+#define LEAST_SQUARE 1e-12 /* (length / length at rest)^2, so that a logarithm is finite */
 
 static const ss_caution own_caution = {.most_lost = 0.5, .least_area = 0.1};
 
@@ -98,8 +98,8 @@ void ss_go_home(ss_evener *evener) {
     ss_measure_stretch(evener);
 }
 
-/* Adds the step of every vertex that may slide to its way. Lists those that slide over faces, and walks along loops with others.
- * Returns how many the list has. */
+/* Adds its step to the slide of every vertex that may slide. Vertices on loops walk along them; the others are listed in
+ * over_faces. Returns how many are. */
 static int32_t add_steps(ss_evener *evener, int32_t *over_faces) {
     const ss_sheet *sheet = evener->sheet;
     int32_t count = 0;
@@ -118,7 +118,7 @@ static int32_t add_steps(ss_evener *evener, int32_t *over_faces) {
     return count;
 }
 
-/* Walks anew from the vertices' own places; what is beyond the border is no slide. */
+/* Walks each vertex anew from its own place; the part of a slide beyond the border is dropped. */
 static void slide_all(ss_evener *evener) {
     int32_t count = add_steps(evener, evener->walking);
     ss_walk_turned_all(&evener->sheet->ground, count, evener->walking, evener->slide, evener->place);
@@ -139,7 +139,7 @@ static double find_scale(const ss_evener *evener, const double *paint) {
 
 enum { AT_ONCE = 256 }; /* springs */
 
-/* J d - s of some springs from begin on. */
+/* J d - s for count springs from begin on. */
 static void find_forces(const ss_evener *evener, const ss_frame *frame, int32_t begin, int32_t count, double *force) {
     double stretch_response = frame->stretch_response, compression_response = frame->compression_response;
     double drive[AT_ONCE], slope;
@@ -161,7 +161,7 @@ static void add_force(ss_evener *evener, const ss_spring *spring, double force) 
     }
 }
 
-/* Solves K goal = J' k (J d - s), and takes the way there for the step. */
+/* Solves K goal = J' k (J d - s); the step is goal - d. */
 static void solve(ss_evener *evener, const ss_frame *frame) {
     const ss_sheet *sheet = evener->sheet;
     double force[AT_ONCE];

@@ -1,5 +1,5 @@
-/* Faces that slid skin turns over: the area vector of where the corners of a face are on the rest surface, against the normals
- * there. A face that is so at rest does not count. */
+/* Counts the faces that sliding turns over: those whose area vector, between the places of their corners on the rest surface,
+ * points against the normals there. A face that does so at rest does not count. */
 #include "even.h"
 
 #include <string.h>

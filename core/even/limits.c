@@ -1,4 +1,4 @@
-/* How far each vertex may slide: a way that is longer along the deformed surface ends where it has gone as far as it may. */
+/* Limits how far each vertex slides: a way that is longer along the deformed surface ends where its limit is reached. */
 #include "even.h"
 
 static void limit_along_loop(const ss_evener *evener, int32_t vertex, double limit, ss_place *place) {

@@ -1,12 +1,13 @@
-/* The scale of a patch in a pose: what of the stretch is the whole character's, and nothing to even out. The median of z by k,
- * which skin that bends leaves where it is while under half of the patch stretches, with its steps smoothed: mu with
+/* The scale of a patch in a pose: stretch that the whole character has, so that there is nothing to even out. It is the median
+ * of z weighted by k, which bending does not move while less than half of the patch stretches (by the mean, hands would slide
+ * when a knee bends). So that it changes smoothly, it is made the mu for which
  *
  *     sum k (z - mu) / sqrt(1 + ((z - mu) / width)^2) = 0
  *
- * nearly, by a fixed count of reweighted means from the median. */
+ * nearly: a fixed number of reweighted means is taken, from the median on. */
 #include "even.h"
 
-#define WIDTH  0.02
+#define WIDTH  0.02 /* stretch of 2 % */
 #define ROUNDS 6
 
 static bool is_less(ss_weighted a, ss_weighted b) {
@@ -25,8 +26,8 @@ static ss_weighted middle_of(ss_weighted a, ss_weighted b, ss_weighted c) {
     return is_less(c, low) ? low : is_less(high, c) ? high : c;
 }
 
-/* Values less than the pivot first, then those that are it, up to *end, then the others. Returns how many the first are, and
- * through *sum their k. */
+/* Sorts values into those less than the pivot, those equal to it, up to *end, and the others. Returns how many are less; *sum
+ * is the sum of their k. */
 static int32_t part(ss_weighted *values, int32_t count, ss_weighted pivot, int32_t *end, double *sum) {
     int32_t less = 0, more = count;
     *sum = 0;
@@ -43,8 +44,8 @@ static int32_t part(ss_weighted *values, int32_t count, ss_weighted pivot, int32
     return less;
 }
 
-/* The place of the value in whose share of the sum half of it falls, were they sorted: those before it are then less, and come to
- * *before, those after it more. */
+/* If the values were sorted, half of the sum of k would fall into the share of one of them: returns its place. Those before it
+ * are then less, with *before the sum of their k, and those after it more. */
 static int32_t select_half(ss_weighted *values, int32_t count, double half, double *before) {
     int32_t begin = 0, end = count, same, more;
     double sum;
@@ -63,7 +64,7 @@ static int32_t select_half(ss_weighted *values, int32_t count, double half, doub
     }
 }
 
-/* Of [count], at least one: the largest, or the least. */
+/* The largest or the least of values [count], at least one. */
 static ss_weighted utmost(const ss_weighted *values, int32_t count, bool largest) {
     ss_weighted found = values[0];
     for (int32_t i = 1; i < count; i++)
@@ -71,7 +72,7 @@ static ss_weighted utmost(const ss_weighted *values, int32_t count, bool largest
     return found;
 }
 
-/* Each value stands at the middle of its own share of the sum; the median is on the line between the two about half of it. */
+/* Each value stands at the middle of its share of the sum; the median is interpolated between the two around half. */
 static double median(ss_weighted *values, int32_t count) {
     double half = 0, before;
     for (int32_t i = 0; i < count; i++)
@@ -86,9 +87,9 @@ static double median(ss_weighted *values, int32_t count) {
     return values[chosen].z + ss_least(fabs(off) / gap, 1) * (other.z - values[chosen].z);
 }
 
-/* ---- Its steps smoothed ---- */
+/* ---- The median, smoothed ---- */
 
-enum { LANES = 4 }; /* of sums, for the processor's sake: their order is the same everywhere */
+enum { LANES = 4 }; /* sums side by side, for speed; in the same order on every processor */
 
 static inline void weigh(ss_weighted value, double middle, double *sum, double *weights) {
     double off = value.z - middle, weight = value.k / sqrt(WIDTH * WIDTH + off * off);

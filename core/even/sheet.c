@@ -1,4 +1,4 @@
-/* A patch at rest as the rule `even` needs it: tangents to slide along, how edges stretch along them, and every face in its own
+/* Prepares a patch at rest for the rule `even`: tangents to slide along, how edges stretch along them, and each face in its own
  * plane. */
 #include "even.h"
 
@@ -43,7 +43,7 @@ static void add_spring(ss_sheet *sheet, int32_t edge) {
 
 /* ---- Faces ---- */
 
-/* Axes of the plane of a face: the first along a side. The second is 0 where it has no area, and no normal. */
+/* Axes of the plane of a face, the first along a side. For a face without area, and so without a normal, the second is 0. */
 static void set_axes(const double normal[3], const double side[3], double axes[2][3]) {
     memcpy(axes[0], side, sizeof axes[0]);
     ss_add(-ss_dot(side, normal), normal, axes[0]);
@@ -51,7 +51,7 @@ static void set_axes(const double normal[3], const double side[3], double axes[2
     ss_cross(normal, axes[0], axes[1]);
 }
 
-/* The first side of a face that has a length, or one that has none. */
+/* The first side of a face that has a length; 0 if none has. */
 static void find_side(const double (*point)[3], const int32_t *v, int32_t count, double side[3]) {
     side[0] = side[1] = side[2] = 0;
     for (int32_t k = 0; k < count && ss_dot(side, side) == 0; k++)

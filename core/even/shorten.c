@@ -1,21 +1,23 @@
-/* Steps that turn no face over. In the plane of each face at rest, where its corners slide on straight lines, its area is
- * quadratic in the part of the step that is taken: no face may lose more than a share of what it has over the least, which is a
- * share of its area at rest. What that leaves a face is shared with all faces about each vertex, smoothly, so that steps shrink
- * before they must; what is still too far is cut, easing off over the neighbours, and in the end for all vertices alike. */
+/* Shortens steps so that they turn no face over. In the plane of each face at rest, its corners slide on straight lines, so
+ * that its area is quadratic in the part of the step that is taken. No face may lose more than a share of what it has over the
+ * least, which is a share of its area at rest; the part at which it does is its reach. First, each vertex's part is a smooth
+ * function of the reaches around it, so that steps shrink before they must. A face that would still lose too much then cuts the
+ * steps at its corners, less from neighbour to neighbour, so that one bad finger does not stop the knee; only in the end are
+ * all vertices cut alike. */
 #include "even.h"
 
-#define FAR    30.0 /* parts of a step beyond which a face has no say */
-#define NEAR   1e-6 /* parts that count as no less */
-#define ROUNDS 4    /* of cutting */
-#define PASSES 10   /* of easing off, at most: parts of 0 and 1 are as many edges from each other */
-#define EASE   0.1  /* a neighbour may take as much more */
+#define FAR    30.0 /* a face with a larger reach has no effect: it would shorten a step by less than a millionth */
+#define NEAR   1e-6 /* smaller reaches count as this, whose powers are finite */
+#define ROUNDS 4    /* of cutting, before all vertices are cut alike */
+#define PASSES 10   /* of easing off, at most 1 / EASE: as many edges lie between parts of 0 and of 1 */
+#define EASE   0.1  /* how much more of its step a neighbour may take */
 
 /* ---- Some faces ---- */
 
 enum { AT_ONCE = 256 };
 
-/* What some faces have to spare, and what of that a part of the step takes: slope part + bend part^2. What makes one larger is left
- * out. reach is the part that takes all there is to spare. */
+/* What some faces have to spare, and how much of it a part of the step takes: slope part + bend part^2, of which terms that
+ * enlarge the face are left out. reach is the part that takes all there is to spare. */
 typedef struct losses {
     int32_t count, face[AT_ONCE];
     double spare[AT_ONCE], slope[AT_ONCE], bend[AT_ONCE], reach[AT_ONCE];
@@ -26,8 +28,8 @@ static inline void subtract(const ss_pair a[3], const ss_pair b[3], ss_pair out[
         out[k] = a[k] - b[k];
 }
 
-/* The area of a face, and how it grows: areas are those of what is seen along the normal. Two triangles of the fan have that between
- * the diagonals of their quad. */
+/* The area of a face as seen along its normal, and the slope and bend with which it grows. Two triangles of the fan at a time:
+ * the area of their quad is half the cross product of its diagonals. */
 static inline void measure(const ss_evener *evener, int32_t face, double *area, double *slope, double *bend) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     const int32_t *v = faces->corner_vertex + faces->face_start[face];
@@ -48,8 +50,8 @@ static inline void measure(const ss_evener *evener, int32_t face, double *area, 
     *area = areas[0], *slope = slopes[0] + slopes[1], *bend = areas[1];
 }
 
-/* Of the faces that are listed. One without area at rest has no normal, and loses nothing. Whether a face grows or shrinks no
- * processor can tell ahead: so the second loop has no branch. */
+/* Finds what the listed faces have to spare and lose. A face without area at rest has no normal, and loses nothing. The second
+ * loop has no branch, since a processor cannot predict whether a face grows or shrinks. */
 static void find_losses(const ss_evener *evener, losses *l) {
     const ss_caution caution = evener->caution;
     const int32_t count = l->count;
@@ -64,7 +66,7 @@ static void find_losses(const ss_evener *evener, losses *l) {
     }
 }
 
-/* Leaves those on the list that do not spare a part of the step, and finds their reaches. */
+/* Takes faces off the list that can spare this part of the step, and finds the reaches of the others. */
 static void find_reaches(losses *l, double part) {
     int32_t count = 0;
     for (int32_t i = 0; i < l->count; i++) {
@@ -114,7 +116,7 @@ static void take_parts(ss_evener *evener) {
     }
 }
 
-/* Takes the parts of the step; faces none of whose corners have a part keep their reaches. Returns the least. */
+/* Scales the step by the parts, and finds reaches anew where a corner is shortened. Returns the least of all. */
 static double scale_step(ss_evener *evener) {
     int32_t faces = evener->sheet->patch->faces.face_count;
     double least = 1;
@@ -135,7 +137,7 @@ static double scale_step(ss_evener *evener) {
     return least;
 }
 
-/* Every vertex goes (1 + sum of r^-4)^(-1/4) of its step, r the reaches of the faces there. Returns the least reach that is left. */
+/* Leaves each vertex (1 + sum of r^-4)^(-1/4) of its step, r the reaches of its faces. Returns the least reach after that. */
 static double share_reaches(ss_evener *evener) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     double *part = evener->part;
@@ -159,7 +161,7 @@ static double share_reaches(ss_evener *evener) {
     return scale_step(evener);
 }
 
-/* Lowers the parts of a face's corners to its reach, where it has less than a step. */
+/* Lowers the parts of a face's corners to its reach, if that is less than the whole step. */
 static void lower_parts(ss_evener *evener) {
     const ss_faces *faces = &evener->sheet->patch->faces;
     fill_parts(evener, 1);
@@ -170,7 +172,7 @@ static void lower_parts(ss_evener *evener) {
     }
 }
 
-/* Lowers the end of a spring that is too far above the other. */
+/* Lowers the part of a spring's end that is too far above the other's. */
 static inline bool ease(const ss_spring *spring, double *part) {
     double *a = &part[spring->end[0]], *b = &part[spring->end[1]];
     if (*a > *b + EASE)
@@ -182,7 +184,7 @@ static inline bool ease(const ss_spring *spring, double *part) {
     return true;
 }
 
-/* Over the springs and back, until none is left to be eased. */
+/* Over the springs and back, until nothing is left to lower. */
 static void ease_off(ss_evener *evener) {
     const ss_spring *springs = evener->sheet->springs;
     int32_t count = evener->sheet->spring_count;

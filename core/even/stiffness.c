@@ -1,17 +1,17 @@
-/* K, in blocks of two by two, factored: J' k J + eta B, with
+/* Makes and factors K = J' k J + eta B, in blocks of two by two, with
  *
  *     d' B d = sum of k |D_b - D_a|^2 / l^2     over edges of length l at rest, D the slides in space
  *
- * and eta times the mean of what is painted on the ends; and the springs of weights, see weights.c. Each unknown is held where it is
- * by FIRMNESS of all that acts on it: so K is positive definite, rounded as it is, where nothing else holds skin and however far
- * apart densities, holds and weights are. A vertex of no weight keeps its unknowns, which come to 0. */
+ * and eta times the mean hold of the two ends; added are the springs of weights, see weights.c. Each unknown is held in place
+ * by FIRMNESS times all that acts on it, so that K, rounded as it is, is positive definite even if nothing else holds skin, and
+ * however much densities, holds and weights differ. A vertex of no weight keeps its unknowns, which come to 0. */
 #include "even.h"
 
 #include <string.h>
 
-#define HOLD     0.05  /* eta */
-#define TIE      1e6   /* of the ends of an edge without length: of eta k, over the square of the mean edge */
-#define FIRMNESS 1e-10 /* far over rounding, far under what holds skin of a million faces that is closed */
+#define HOLD     0.05  /* eta; at 4 times as much, less stretch goes; without crush.c, so little would be too rough */
+#define TIE      1e6   /* an edge without length ties its ends like one of a thousandth of the mean edge */
+#define FIRMNESS 1e-10 /* far above rounding, and far below what holds a closed skin of a million faces */
 
 /* ---- What the springs are ---- */
 
@@ -73,7 +73,7 @@ void ss_firm(double own[4]) {
         own[i] = own[i] > 0 ? (1 + FIRMNESS) * own[i] : 1;
 }
 
-/* Tangents at a vertex are at right angles, and of length 1 or, along a loop, the second of 0. */
+/* The two tangents at a vertex are at right angles, and of length 1, but on a loop the second is 0. */
 static void add_diagonal(ss_evener *evener, int32_t v) {
     int32_t unknown = ss_blocks_unknown(evener->K, v);
     if (unknown < 0)
@@ -93,7 +93,7 @@ static void add_stiffness(ss_evener *evener) {
         add_diagonal(evener, v);
 }
 
-/* Copies values; whether that changed any. */
+/* Copies values into own. Returns whether that changed any. */
 static bool take(double *own, const double *values, int32_t count) {
     bool same = memcmp(own, values, (size_t)count * sizeof *own) == 0;
     memcpy(own, values, (size_t)count * sizeof *own);

@@ -1,16 +1,16 @@
-/* What weights below 1 come to. All of a slide is multiplied by the largest of the weights. Where a vertex has a share 0 < u < 1 of
- * that, the slide D is found twice: once as if all shares were 1, then with springs that hold each vertex at its share of that,
+/* Weights below 1. The whole slide is multiplied by the largest weight. If a vertex has a share 0 < u < 1 of that, the slide is
+ * found twice: D as if all shares were 1, then d with springs that hold each vertex at its share of D,
  *
  *     (K + A) d = u (f + A D),     A = 2 (1 / u - 1) sum of k / l^2 over its edges,     f the force
  *
- * so that d = u D where u is the same all around, on a mesh of any fineness and in a region of any size; that skin of share 1
- * evens out with what its neighbours are held to; and that a share of nearly 0 is one of 0, which stays. */
+ * so that d = u D where u is the same all around, however fine the mesh and large the region; skin of share 1 evens out with
+ * neighbours that are held back; and a share of nearly 0 acts as 0, which stays. */
 #include "even.h"
 
 #include <string.h>
 
-#define STIFFNESS   2
-#define LEAST_SHARE 1e-6 /* by which A stays a number */
+#define STIFFNESS   2    /* spots of share 0.5, of any size, then slide by 0.48 to 0.53 of D on a face */
+#define LEAST_SHARE 1e-6 /* keeps A finite */
 
 /* Returns the largest weight. */
 static double spread(ss_evener *evener, const ss_frame *frame) {
