@@ -1,11 +1,12 @@
-/* How points of the pose move as their places slide over rest: of a triangle a linear map; at a vertex the mean of its
- * triangles', by their area at rest; between vertices blended by weights. That is continuous over edges, where the triangles'
- * own is not: what it moves does not jump as a vertex comes over one. */
+/* How points of the pose move as their places slide over rest. For a triangle that is a linear map; a vertex has the mean of
+ * its triangles' maps, weighted by their area at rest, and places between vertices a blend by their weights. The blend is
+ * continuous across edges, which the triangles' own maps are not: with those, vertices jump as they cross an edge. */
 #include "relax.h"
 
 #include <string.h>
 
-/* p g' + q h', times twice the area at rest, which is given too: p and q are sides of the pose, g and h what is dual to those of rest. */
+/* p g' + q h', times twice the area at rest, which is returned too: p and q are sides on the pose, g and h dual to those at
+ * rest. */
 static void weigh_triangle(const ss_posed *pose, int32_t triangle, const double p[3], const double q[3], double *area,
                            double out[3][3]) {
     const ss_facet *rest = &pose->facet[triangle];
@@ -57,8 +58,8 @@ static void blend(const ss_relaxer *relaxer, const ss_place *place, double out[3
     }
 }
 
-/* Two tangents at a unit normal, turned by the least rotation that takes this to another, of any length; false where they are nearly
- * opposite. */
+/* Turns two tangents at a unit normal by the least rotation that takes this normal to another, of any length. False if the
+ * normals are nearly opposite. */
 static bool turn_both(const double from[3], const double to[3], const double tangent[2][3], ss_pair out[3]) {
     double length = ss_length(to), inverse = length > 0 ? 1 / length : 0, whole = 1 + inverse * ss_dot(from, to);
     ss_pair share = {ss_dot(to, tangent[0]), ss_dot(to, tangent[1])};
@@ -68,7 +69,7 @@ static bool turn_both(const double from[3], const double to[3], const double tan
     return whole > SS_LEAST_TURN;
 }
 
-/* The tangents of the vertex, turned to the normal where it is, and from there into the pose. */
+/* The vertex's tangents, turned to the normal at its place and taken into the pose there. */
 static void set_axes(ss_relaxer *relaxer, int32_t vertex) {
     const ss_sheet *sheet = relaxer->evener->sheet;
     const ss_place *place = &relaxer->evener->place[vertex];

@@ -1,20 +1,21 @@
-/* The quadratic model of the energy of a relaxed slide where vertices are. With t the direction of an edge, L its length, blunted
- * where it is short, and f = s(z) its force for k = 1, the Hessian of S is
+/* The quadratic model of the energy of a relaxed slide, where the vertices are now. With t the direction of an edge, L its
+ * length, enlarged if it is short, and f = s(z) its force for k = 1, the Hessian of S is
  *
  *     1 / L^2 ((f' - f) t t' + f (1 - t t'))
  *
- * of which the model keeps what is positive, and of t t' a fifth at least. The matrix alone has DAMPING more of what holds. The
- * anchor of a vertex is its crush, as even.h has it, times ANCHOR and the sum of k / l^2 over its edges. */
+ * of which the model keeps the positive parts, and at least LEAST_ALONG of t t'. DAMPING adds to the hold in the matrix, and
+ * not in the force. The anchor of a vertex is its crush, see crush.c, times ANCHOR and the sum of k / l^2 over its edges. The
+ * constants were chosen together, for little stretch and smooth motion, on twelve shots. */
 #include "relax.h"
 
 #include <string.h>
 
-#define HOLD        0.03 /* where even has eta */
+#define HOLD        0.03 /* in place of eta in `even` */
 #define DAMPING     0.05
 #define ANCHOR      10.0
 #define LEAST_ALONG 0.2
-#define BLUNTNESS   0.1 /* of where what is kept begins */
-#define SHORT       0.3 /* of an edge at rest, as the pose is scaled: shorter ones do not pull harder for it */
+#define BLUNTNESS   0.1 /* over which the positive part bends at 0 */
+#define SHORT       0.3 /* of an edge at rest, at the pose's scale; with 0.02 a sleeve moves twice as roughly */
 
 /* ---- Anchors ---- */
 
@@ -30,12 +31,12 @@ void ss_set_anchors(ss_relaxer *relaxer) {
 
 enum { AT_ONCE = 256 };
 
-/* Some edges, from one on: where the second end is from the first, L^2, k, and z over the scale; and what of the model comes of
- * those alone. */
+/* For some consecutive edges: the way from the first end to the second, L^2, k, and z less the scale; and the numbers of the
+ * model that follow from these. */
 typedef struct edge_models {
     double way[AT_ONCE][3], square[AT_ONCE], k[AT_ONCE], z[AT_ONCE];
     double pull[AT_ONCE];                  /* k f / L^2 */
-    double more[AT_ONCE], across[AT_ONCE]; /* stiffness along it beyond that across, over L^2, and across */
+    double more[AT_ONCE], across[AT_ONCE]; /* stiffness along the edge less that across, over L^2; stiffness across */
 } edge_models;
 
 static void measure(const ss_relaxer *relaxer, double scale_square, int32_t begin, int32_t count, edge_models *m) {
@@ -50,7 +51,7 @@ static void measure(const ss_relaxer *relaxer, double scale_square, int32_t begi
     }
 }
 
-/* x where it is, else 0, smoothly. */
+/* max(x, 0), smoothed. */
 static inline double positive(double x) {
     return 0.5 * (x + sqrt(x * x + BLUNTNESS * BLUNTNESS));
 }
@@ -66,7 +67,8 @@ static void find_models(double stretch_response, double compression_response, in
 
 /* ---- The blocks ---- */
 
-/* Of one end of an edge: how its length over L changes, and what holds it there. */
+/* Adds the part of an edge that is one end's own. slope is how L^2 / 2 changes with the end's unknowns, hold what holds it
+ * back. */
 static inline void add_own(ss_relaxer *relaxer, int32_t unknown, ss_pair slope, double pull, double more, ss_pair hold) {
     ss_pair *own = (ss_pair *)ss_blocks_own(relaxer->blocks, unknown), *right = (ss_pair *)relaxer->blocks->right[unknown];
     *right -= pull * slope + hold;
@@ -79,12 +81,12 @@ static inline ss_pair slope_of(const ss_relaxer *relaxer, int32_t vertex, const 
     return way[0] * axis[0] + way[1] * axis[1] + way[2] * axis[2];
 }
 
-/* A row of the products of two vertices' axes. */
+/* A row of the dot products of two vertices' axes. */
 static inline ss_pair multiply_axes(const ss_pair a[3], int row, const ss_pair b[3]) {
     return a[0][row] * b[0] + a[1][row] * b[1] + a[2][row] * b[2];
 }
 
-/* Edge i, which is m's e. across [vertex_count] sums what is to be taken times products of a vertex's own axes. */
+/* Adds edge i, which is m's e. across [vertex_count] sums the stiffnesses across the edges at a vertex, for add_vertex. */
 static void add_edge(ss_relaxer *relaxer, int32_t i, const edge_models *m, int32_t e, double *across) {
     const ss_evener *evener = relaxer->evener;
     const ss_spring *spring = &evener->sheet->springs[i];
@@ -111,7 +113,7 @@ static void add_edge(ss_relaxer *relaxer, int32_t i, const edge_models *m, int32
                      m->across[e] * multiply_axes(axis, a, other);
 }
 
-/* What of a vertex is not of one edge: products of its axes, what holds and damps it, and its anchors. */
+/* Adds what is not one edge's own: across times the products of the vertex's axes, hold and damping, and the anchors. */
 static void add_vertex(ss_relaxer *relaxer, int32_t v, double across) {
     const ss_evener *evener = relaxer->evener;
     int32_t unknown = ss_blocks_unknown(relaxer->blocks, v);

@@ -1,4 +1,4 @@
-/* One relaxed slide: what `even` gives, then steps on the pose. */
+/* One relaxed slide: the slide of `even`, then steps on the pose. */
 #include "relax.h"
 
 #include <math.h>
@@ -6,9 +6,9 @@
 #include <string.h>
 
 #define STEPS       3
-#define LEAST_SPARE 0.01 /* of the cache's */
+#define LEAST_SPARE 0.01 /* of the cache's sum: keeps the part from vanishing where even gains nothing */
 
-/* The model says less of what large steps come to than the balance does. */
+/* More careful than `even`: the model is worse at large steps, which at even's caution folded a walking figure. */
 static const ss_caution caution = {.most_lost = 0.35, .least_area = 0.25};
 
 void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room) {
@@ -47,7 +47,7 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
     free(relaxer);
 }
 
-/* Finds the step from where vertices are, whose stretch is measured; false where the model cannot be solved. */
+/* Finds the step from where the vertices are; their stretch has been measured there. False if the model cannot be solved. */
 static bool find_step(ss_relaxer *relaxer, const ss_frame *frame) {
     ss_evener *evener = relaxer->evener;
     ss_find_axes(relaxer);
@@ -60,15 +60,15 @@ static bool find_step(ss_relaxer *relaxer, const ss_frame *frame) {
     return true;
 }
 
-/* Where rest is crumpled the model says little, and its steps may add stretch. Of three sums, that of the cache, where even leaves
- * skin and after the steps, the part of the way from the second to the third on which there is no more than the first, if it grows
- * evenly: all of it where there is no more in the end. It changes smoothly with all three. */
+/* Where rest is crumpled the model is poor, and its steps may add stretch. Given the sums of stretch in the cache, where `even`
+ * leaves skin, and after the steps, returns how much of the steps to take so that, if the sum changed evenly on the way, it
+ * would be no more than the cache's: 1 if it is no more in the end. Changes smoothly with all three. */
 static double part_without_gain(double cache, double even, double after) {
     double spare = fmax(cache - even, LEAST_SPARE * cache), gain = fmax(after - fmax(cache, even), 0);
     return gain > 0 ? spare / (spare + gain) : 1;
 }
 
-/* All steps from home, by weights [vertex_count]. */
+/* Takes all steps, from the vertices' own places, by weights [vertex_count]. */
 static skinslide_status slide_by(ss_relaxer *relaxer, const ss_frame *frame, const double *weight, int32_t *steps, int32_t *cut,
                                  skinslide_error *error) {
     ss_evener *evener = relaxer->evener;

@@ -1,4 +1,4 @@
-/* The rule `relaxed`: its functions, as every rule has them. What is made of a patch at rest is what `even` makes of it. */
+/* The rule `relaxed`: its functions, as every rule has them. A patch at rest is prepared as for `even`. */
 #include "relax.h"
 
 #include <stdlib.h>
