@@ -1,6 +1,5 @@
-/* Systems of two unknowns for each vertex: positive definite, with entries of any sign. Pivots are numbers and not blocks, so
- * that no more digits are lost than the condition of the matrix costs, even where the two unknowns of a vertex differ much in
- * scale. */
+/* Positive definite systems with two unknowns for each vertex and entries of any sign. Pivots are numbers, not blocks, so that
+ * no more digits are lost than the condition of the matrix costs, even if the two unknowns of a vertex differ much in scale. */
 #include "linear.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* The embedding's system. Its matrix is special: no entry off the diagonal is positive, and each diagonal entry is the sum of the
- * others of its row and of a slack >= 0, the densities to fixed vertices. Elimination keeps that form, so with the slack carried
- * along (Grassmann, Taksar, Heyman 1985) nothing is ever subtracted, no digit is lost however much densities differ, and u and v
- * are the convex combinations that they should be. */
+/* The embedding's system. Its matrix is special: no entry off the diagonal is positive, and each diagonal entry is the sum of
+ * the others of its row and of a slack >= 0, the densities to fixed vertices. Elimination keeps that form. So, with the slack
+ * carried along (Grassmann, Taksar, Heyman 1985), nothing is ever subtracted: no digits are lost however much densities differ,
+ * and u and v are the convex combinations that they should be. */
 #include "linear.h"
 
 #include <stdlib.h>

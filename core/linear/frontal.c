@@ -1,6 +1,6 @@
-/* L D L' front by front: the columns of a front are assembled from the matrix and from what its children left there, eliminated
- * densely, and what that leaves to the rows below is passed on (multifrontal, Duff and Reid 1983). Where the matrix is dominant
- * its slack and two right sides are eliminated with it, as rows below the others. */
+/* L D L' front by front (multifrontal, Duff and Reid 1983): the columns of a front are assembled from the matrix and from its
+ * children's updates, and eliminated densely; what that adds to the rows below is the front's own update, for its parent. If
+ * the matrix is dominant, its slack and two right sides are eliminated with it, as rows below the others. */
 #include "linear.h"
 
 #include <stdlib.h>
@@ -21,23 +21,24 @@ ss_shape ss_shape_of(const ss_frontal *frontal, const ss_front *front) {
     return s;
 }
 
-/* How far apart columns of a tile of an update are, of which c is one. */
+/* The distance from column c of an update to the next in its tile. */
 static ptrdiff_t next_in_update(const ss_shape *s, int32_t c) {
     return (ptrdiff_t)s->height - 4 * (ptrdiff_t)(c / 4);
 }
 
-/* Where column c of an update begins, so that row r is r further: columns are stored from their own tile of four on. */
+/* Where column c of an update begins, so that row r is r numbers further; columns are stored only from their own tile of four
+ * on. */
 static ptrdiff_t place_in_update(const ss_shape *s, int32_t c) {
     ptrdiff_t tile = c / 4, height = (ptrdiff_t)s->height;
     return 4 * tile * height - 8 * tile * (tile - 1) + c % 4 * next_in_update(s, c) - 4 * tile;
 }
 
-/* How many numbers it is. */
+/* How many numbers are in an update. */
 static int64_t size_of_update(const ss_shape *s) {
     return 4 * (int64_t)s->below_tiles * (int64_t)s->height - 8 * (int64_t)s->below_tiles * (s->below_tiles - 1);
 }
 
-/* Where a row of a front begins in its panel: its columns come first, then those below. */
+/* Where a row of a front begins in its panel: first the rows of its columns, then those below. */
 static size_t place_in_panel(const ss_front *front, const ss_shape *s, int32_t block, int32_t row) {
     int32_t place = row < front->count ? block * row : s->columns + block * (row - front->count);
     return ss_tile_start(s, place / 4) + (size_t)(place % 4);
@@ -47,7 +48,7 @@ static int64_t most(int64_t a, int64_t b) {
     return a > b ? a : b;
 }
 
-/* The place of a front's panel among all, and of its update in its stack, of which end is so far. */
+/* Places a front's panel after the others, and its update at the end of its stack. */
 static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2]) {
     ss_extent *room = &frontal->extent;
     ss_shape s = ss_shape_of(frontal, &frontal->system->fronts[f]);
@@ -60,8 +61,8 @@ static void place_front(ss_frontal *frontal, int32_t f, int64_t end[2]) {
     room->below = (int32_t)most(4 * (int64_t)s.below_tiles, room->below);
 }
 
-/* Updates are in two stacks, those of fronts at even depths and those at odd ones: so a front's children are at the end of theirs
- * when its own update is begun, and are taken off it. */
+/* Updates are in two stacks, one for fronts at even depths and one for those at odd depths. So when a front's own update is
+ * begun, its children's are at the end of the other stack, and are taken off it. */
 static void place_fronts(ss_frontal *frontal) {
     const ss_front *fronts = frontal->system->fronts;
     int64_t end[2] = {0, 0};
@@ -167,8 +168,8 @@ static void assemble_extras(const ss_front *front, const ss_shape *s, const doub
 
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
 
-/* Adds the columns of a row of a child's update, from that row on: they begin from_next and to_next after each other, and a row is
- * step times its place further. What is above the diagonal of a block is added, too, and not read. */
+/* Adds one column of a child's update, or the two of a block, from the diagonal on. The two are from_next and to_next apart,
+ * and a row is added at step times its place. What lies above the diagonal of a block is added too, but never read. */
 INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const int32_t *place,
                         int step, double *to, ptrdiff_t to_next) {
     for (int32_t i = begin; i < end; i++) {
@@ -182,7 +183,8 @@ INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int3
     }
 }
 
-/* Adds a child's update where its rows are, column by column: those that are columns of its parent come first. */
+/* Adds a child's update to its parent, column by column: to the panel if the parent has that column, else to the parent's
+ * update. */
 INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
                    double *update) {
     const ss_front *own = &frontal->system->fronts[child];
@@ -239,7 +241,7 @@ bool ss_factor_numbers(ss_frontal *frontal, const double *entries, const double 
     return good;
 }
 
-/* Blocks have the rows of the higher unknown. */
+/* Blocks between have the rows of the higher unknown. */
 static void assemble_blocks(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, const double (*own)[4],
                             const double (*between)[4], double *panel) {
     for (int32_t k = 0; k < front->count; k++) {

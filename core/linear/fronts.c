@@ -1,27 +1,29 @@
-/* The fronts of a factor: columns whose rows below them are the same, or so nearly that the zeros are worth their while (relaxed
- * supernodes, Ashcraft and Grimes 1989). They make a tree: what a front leaves to be done is added into that of its parent (Duff
- * and Reid 1983). Found for unknowns in an order that fills little; they are renumbered, so that the columns of a front follow
- * each other, and fronts their children. */
+/* The fronts of a factor: columns whose rows below them are the same, or so nearly that storing some zeros pays (relaxed
+ * supernodes, Ashcraft and Grimes 1989). They make a tree: a front's update is added into its parent (Duff and Reid 1983).
+ * Given unknowns in an order with little fill, renumbers them so that the columns of a front follow each other, and fronts
+ * follow their children. */
 #include "linear.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define ALWAYS_COLUMNS 12   /* a front of so few takes in any child */
-#define OFTEN_COLUMNS  32   /* ... of so few, one with which it has ... */
-#define OFTEN_ZEROS    0.3  /* ... this share of zeros; and of more, with ... */
-#define SELDOM_ZEROS   0.05 /* ... this */
+/* A child is merged into its parent if the two have few columns, or few zeros. Blocks count for two columns each, and may have
+ * half the share of zeros: solving with them is bound by memory, and a step of `relaxed` factored a tenth faster so. */
+#define ALWAYS_COLUMNS 12 /* up to so many, any child is */
+#define OFTEN_COLUMNS  32 /* up to so many, with this share of zeros: */
+#define OFTEN_ZEROS    0.3
+#define SELDOM_ZEROS   0.05 /* with more columns, with this */
 
-/* The elimination tree. A node is named by the last of its columns; what has been taken into another is none any more. */
+/* The elimination tree. A node has the number of its last column. A node that was merged into another is no node any more. */
 typedef struct tree {
     int32_t n, block;
     int32_t *parent;       /* [n] -1 of a root */
     int32_t *below;        /* [n] rows below its columns */
     int32_t *count;        /* [n] columns */
-    int32_t *child, *next; /* [n] first child, and next of the same parent; -1 */
-    int32_t *more, *least; /* [n] the column before in a node, -1; the first of a node */
+    int32_t *child, *next; /* [n] first child, and next child of the same parent; or -1 */
+    int32_t *more, *least; /* [n] the column before in its node, or -1; the first column of a node */
     int32_t *mark;         /* [n] */
-    double *zeros;         /* [n] stored for it */
+    double *zeros;         /* [n] stored in the node */
 } tree;
 
 static bool allocate(ss_memory *memory, int32_t n, tree *t) {
@@ -35,7 +37,7 @@ static bool allocate(ss_memory *memory, int32_t n, tree *t) {
 
 /* ---- The tree of columns ---- */
 
-/* Counts the entries of L by visiting each row of it, along the tree from the entries of that row of the matrix (Liu 1990). */
+/* Counts the entries of L, row by row: from each entry of the matrix in a row up the tree (Liu 1990). */
 static void find_columns(const ss_graph *graph, tree *t) {
     for (int32_t k = 0; k < t->n; k++) {
         t->parent[k] = t->more[k] = -1, t->count[k] = 1, t->below[k] = 0, t->mark[k] = t->least[k] = k;
@@ -66,7 +68,7 @@ static double entries_of(int32_t columns, int32_t below) {
     return (double)columns * below + 0.5 * columns * (columns - 1.0);
 }
 
-/* Zeros of a child and its parent as one front: a child's rows are among those of its parent. */
+/* Zeros of a child and its parent as one front, given that a child's rows are among those of its parent. */
 static double zeros_together(const tree *t, int32_t child, int32_t parent) {
     double apart = entries_of(t->count[child], t->below[child]) + entries_of(t->count[parent], t->below[parent]);
     double together = entries_of(t->count[child] + t->count[parent], t->below[parent]);
@@ -80,7 +82,7 @@ static bool is_worth(const tree *t, int32_t child, int32_t parent) {
            zeros_together(t, child, parent) <= most * entries_of(columns, t->below[parent]);
 }
 
-/* Puts a list of children before that of a node. */
+/* Puts a list of children in front of a node's own. */
 static void add_children(tree *t, int32_t node, int32_t list) {
     int32_t last = list;
     if (list < 0)
@@ -98,7 +100,7 @@ static void take_in(tree *t, int32_t child, int32_t node) {
     add_children(t, node, t->child[child]);
 }
 
-/* Children of those that are taken in become the node's own, and are not asked again. */
+/* Merges children into a node. Their children become the node's own, but are not considered again. */
 static void take_children(tree *t, int32_t node) {
     int32_t child = t->child[node], next;
     t->child[node] = -1;
@@ -122,7 +124,7 @@ static void number_node(const tree *t, int32_t node, ss_system *system, int32_t 
         place[k] = --last;
 }
 
-/* From each root down to the first child, and up again over the siblings. */
+/* In postorder, without recursion: trees may be as deep as they have columns. */
 static void number_columns(tree *t, ss_system *system, int32_t *place) {
     int32_t columns = 0;
     for (int32_t root = 0; root < t->n; root++) {
@@ -154,7 +156,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Adds to the rows of a front those below its columns that are not marked for it. */
+/* Adds those rows to a front that are below its columns and not marked as its own yet. */
 static void add_rows(ss_system *system, int32_t f, const int32_t *rows, int32_t count, int32_t *mark) {
     ss_front *own = &system->fronts[f];
     for (int32_t i = 0; i < count; i++)
@@ -173,7 +175,8 @@ static void name_fronts(ss_system *system, int32_t *front_of, int32_t *mark) {
     }
 }
 
-/* The rows of its columns in the matrix, and of its children. The front of the first of them is its parent. */
+/* Finds the rows of each front: those of its columns in the matrix, and those of its children. The first row tells the
+ * parent. */
 static void find_rows(ss_system *system, const ss_graph *graph, const int32_t *front_of, int32_t *mark) {
     int32_t start = 0;
     for (int32_t f = 0; f < system->front_count; f++) {
@@ -192,7 +195,7 @@ static void find_rows(ss_system *system, const ss_graph *graph, const int32_t *f
     }
 }
 
-/* Where a column or row is in a front: columns first. */
+/* The place of an unknown among the columns of a front, then the rows below them. */
 static int32_t place_in(const ss_system *system, const ss_front *front, int32_t unknown) {
     if (unknown < front->first + front->count)
         return unknown - front->first;
@@ -218,7 +221,7 @@ static void place_rows(ss_system *system) {
 
 /* ---- Entries ---- */
 
-/* The unknowns of an edge, the lower first; false where an end is fixed. */
+/* The unknowns of an edge, the lower first; false if an end is fixed. */
 static bool ends_of(const ss_system *system, int32_t edge, int32_t *low, int32_t *high) {
     int32_t a = system->unknown[system->edge_vertex[edge][0]], b = system->unknown[system->edge_vertex[edge][1]];
     *low = a < b ? a : b, *high = a < b ? b : a;

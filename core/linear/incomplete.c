@@ -1,19 +1,19 @@
-/* An incomplete factor of the normal equations of a sparse A, for conjugate gradients to be preconditioned with:
+/* An incomplete factor of the normal equations of a sparse A, to precondition conjugate gradients with:
  *
- *     L L' = A'A     but for what falls where A'A has no entry (Meijerink and van der Vorst 1977)
+ *     L L' = A'A     except for entries where A'A has none, which are dropped (Meijerink and van der Vorst 1977)
  *
- * found in double, kept and solved with in float. Where leaving that out makes a pivot vanish, the diagonal is enlarged until none
- * does; but A'A itself must be well enough conditioned then. */
+ * found in double, kept and solved with in float. If a pivot vanishes because of what was dropped, the diagonal is enlarged
+ * until none does; A'A itself must then be well enough conditioned. */
 #include "linear.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define WORST_CONDITION 1e10 /* leaves six digits of a double, as many as a float has */
-#define FIRST_SHIFT     1e-3 /* of the diagonal; then four times as much, and so on */
+#define FIRST_SHIFT     1e-3 /* share by which the diagonal is enlarged first, then four times as much, and so on */
 #define MOST_SHIFTS     20
 
-/* The entries of L off its diagonal, by rows or by columns. */
+/* The entries of L off the diagonal, by rows or by columns. */
 typedef struct lines {
     int32_t *start; /* [n + 1] */
     int32_t *other;
@@ -24,7 +24,7 @@ struct ss_incomplete {
     ss_memory memory;
     int32_t n;
     lines rows, columns;
-    float *inverse; /* [n] of the diagonal */
+    float *inverse; /* [n] 1 / the diagonal */
 };
 
 /* ---- A'A ---- */
@@ -36,7 +36,7 @@ static void new_rows(ss_memory *memory, int32_t row_count, int32_t column_count,
     rows->value = SS_NEW(memory, double, entries);
 }
 
-/* Its rows come out ascending, whatever those of rows are. */
+/* The columns of each row of out are ascending, whatever they were in rows. */
 static void transpose(const ss_rows *rows, ss_rows *out) {
     int32_t entries = rows->start[rows->row_count];
     for (int32_t k = 0; k < entries; k++)
@@ -53,8 +53,8 @@ static void transpose(const ss_rows *rows, ss_rows *out) {
     out->start[out->row_count] = entries;
 }
 
-/* Row j of A'A up to its diagonal, to out->column and value from out->start[j] on, or where out is NULL only counted. place
- * [columns] is -1 throughout, before and after. */
+/* Writes row j of A'A, up to its diagonal, to out's column and value from out->start[j] on; if out is NULL, only counts it.
+ * place [columns] must be -1 everywhere, and is again after. */
 static int32_t multiply_row(const ss_rows *rows, const ss_rows *transposed, int32_t j, int32_t *place, int32_t *touched,
                             ss_rows *out) {
     int32_t count = 0;
@@ -87,7 +87,7 @@ static skinslide_status refuse_singular(const char *label, skinslide_error *erro
     return ss_fail(error, SKINSLIDE_SINGULAR, "%s: its vertices do not follow from points of its limit surface", label);
 }
 
-/* The lower half of A'A. Both transposing and transposing back sort its rows. */
+/* The lower half of A'A. Transposing twice sorts its rows. */
 static skinslide_status multiply(const ss_rows *rows, const char *label, ss_memory *memory, ss_rows *out,
                                  skinslide_error *error) {
     int32_t n = rows->column_count;
@@ -118,8 +118,8 @@ static skinslide_status multiply(const ss_rows *rows, const char *label, ss_memo
 
 /* ---- The factor ---- */
 
-/* Row i of L in the place of that of A'A, whose diagonal is its last entry and is enlarged by shift. at [n] is where row i has each
- * column, -1 where it has none. False where the pivot is too small. */
+/* Finds row i of L, whose pattern is that of A'A; its last entry is the diagonal, enlarged by shift. at [n] is where row i has
+ * each column, or -1. False if the pivot is too small. */
 static bool factor_row(const ss_rows *square, int32_t i, double shift, const int32_t *at, ss_rows *L) {
     int32_t begin = L->start[i], last = L->start[i + 1] - 1;
     double whole = square->value[last], pivot = (1 + shift) * whole;
@@ -136,7 +136,7 @@ static bool factor_row(const ss_rows *square, int32_t i, double shift, const int
     return pivot * WORST_CONDITION > whole && isfinite(pivot);
 }
 
-/* False where a row has no diagonal, or a pivot is too small. */
+/* False if a row has no diagonal, or a pivot is too small. */
 static bool factor(const ss_rows *square, double shift, int32_t *at, ss_rows *L) {
     bool good = true;
     for (int32_t i = 0; i < square->row_count && good; i++) {
@@ -152,9 +152,10 @@ static bool factor(const ss_rows *square, double shift, int32_t *at, ss_rows *L)
     return good;
 }
 
-/* ---- Where a pivot vanishes ---- */
+/* ---- If a pivot vanishes ---- */
 
-/* Fills blocks with A'A, its diagonal scaled to ones and less the least that its condition lets be there; each number twice. */
+/* Fills blocks with A'A, scaled so that its diagonal is 1, less the smallest eigenvalue that its condition allows; each number
+ * twice. */
 static void fill_blocks(const ss_rows *square, ss_blocks *blocks) {
     int32_t edge = 0;
     ss_blocks_clear(blocks);
@@ -170,7 +171,7 @@ static void fill_blocks(const ss_rows *square, ss_blocks *blocks) {
     }
 }
 
-/* SINGULAR where that is not positive definite. */
+/* Fails with SINGULAR if that is not positive definite. */
 static skinslide_status check_blocks(const ss_rows *square, const ss_net *net, const char *label, skinslide_error *error) {
     const int going_on = 0;
     ss_system *system = NULL;
@@ -295,7 +296,7 @@ void ss_incomplete_destroy(ss_incomplete *incomplete) {
 
 /* ---- Solving ---- */
 
-/* The product of line i with x: of every second entry apart, so that sums need not wait for each other. */
+/* The product of line i with x, in two sums that need not wait for each other. */
 static inline float product(const lines *of, int32_t i, const float *x) {
     int32_t p = of->start[i], end = of->start[i + 1];
     float even = 0, odd = 0;

@@ -1,38 +1,38 @@
-/* The dense arithmetic of fronts, for processors with AVX2 and for those without: the same bytes.
+/* The dense arithmetic of fronts, for processors with AVX2 and for those without: both give the same bytes.
  *
- * The columns of a front are a panel of tiles of four rows, [tile][column][4]: the rows of the columns themselves, each tile up to the
- * columns that it has on the diagonal; those below them; both padded; then one tile of extras: slack, two right sides and nothing.
- * Of a column that has been eliminated its own row holds the pivot, inverted. Signs off the diagonal are turned, so that with p the
- * pivots elimination
+ * The columns of a front are a panel of tiles of four rows, [tile][column][4]: first the rows of the columns themselves, each
+ * tile up to the columns on its diagonal; then the rows below; both padded; then, if the matrix is dominant, one tile of
+ * extras: slack, two right sides, and one row unused. Once a column is eliminated, its diagonal holds 1 / pivot. Signs off the
+ * diagonal are turned, so that with pivots p elimination
  *
  *     l_ik = f_ik / p_k,     f_ij += l_ik f_jk
  *
- * only adds. Where the matrix is dominant p_k is the sum of column k below its diagonal, slack included; else - f_kk. */
+ * only adds. p_k is the sum of column k below its diagonal, slack included, if the matrix is dominant; else it is - f_kk. */
 #include "linear.h"
 
 #include <float.h>
 
 typedef ss_shape shape;
 typedef double narrow __attribute__((vector_size(16)));
-typedef double narrow_loose __attribute__((vector_size(16), aligned(8), may_alias)); /* wherever it is */
+typedef double narrow_loose __attribute__((vector_size(16), aligned(8), may_alias)); /* aligned as a double is */
 #define INLINE static inline __attribute__((always_inline))
 
-/* Of four numbers. */
+/* The sum of four numbers. */
 INLINE double sum_of(const double *x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
 /* ---- Within a tile of four columns: their own rows ---- */
 
-/* Adds what pulls four columns towards fixed vertices. */
+/* Adds the slacks of four columns. */
 INLINE void add_slack(const shape *s, const double *panel, int32_t tile, double sums[4]) {
     const double *extras = panel + ss_tile_start(s, s->own_tiles + s->below_tiles) + 16 * (size_t)tile;
     for (int j = 0; j < 4; j++)
         sums[j] += extras[4 * j];
 }
 
-/* own: [k][j] what column k had in the row of column j, and [k][k] what to divide column k by, inverted. sums are those of the
- * columns over all rows below the tile. Columns from count on are none. */
+/* Factors a tile on the diagonal. out own: [k][j] is what column k had in the row of column j before it was divided, [k][k] is
+ * 1 / pivot. sums are those of the columns over all rows below the tile. Columns from count on are padding. */
 INLINE bool factor_tile(double *tile, int32_t count, bool dominant, double sums[4], double own[4][4]) {
     bool good = true;
 #pragma GCC unroll 4

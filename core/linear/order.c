@@ -1,13 +1,13 @@
-/* The pattern of a symmetric system whose off-diagonal entries are the edges of a net: its unknowns in an order that fills its
- * factor little, and the fronts of that factor. Found once a net. Small systems are ordered by approximate minimum degree alone,
- * large ones so within the parts of a nested dissection (SuiteSparse's CAMD). */
+/* The pattern of a symmetric system whose off-diagonal entries are the edges of a net: an order of its unknowns with little
+ * fill in the factor, and the fronts of that factor. Found once for each net. Small systems are ordered by approximate minimum
+ * degree alone, large ones by a nested dissection, and by approximate minimum degree within its parts (SuiteSparse's CAMD). */
 #include "linear.h"
 
 #include <camd.h>
 #include <limits.h>
 #include <stdlib.h>
 
-#define LARGE 2000 /* unknowns from which on a dissection fills less */
+#define LARGE 2000 /* unknowns: from here on, dissection gives less fill */
 
 static skinslide_status refuse_large(const ss_system *system, double entries, skinslide_error *error) {
     return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s: its system is too large, %.0f entries", system->label, entries);
@@ -100,7 +100,7 @@ static skinslide_status analyse(ss_system *system, skinslide_error *error) {
     return status;
 }
 
-/* Numbers the free vertices of the net as they come. */
+/* Numbers the free vertices of the net in their own order. */
 static void number_free(ss_system *system, const ss_net *net) {
     for (int32_t v = 0; v < net->vertex_count; v++)
         system->unknown[v] = net->fixed[v] ? -1 : system->n++;

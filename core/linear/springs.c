@@ -1,7 +1,7 @@
-/* A net whose edges are springs, all alike, and whose vertices may each be held by one more: factored once in doubles, and solved
- * with in floats, four right sides at a time: one is a vector, which an entry of the factor is multiplied with.
+/* A net whose edges are springs, all alike, and whose vertices may each be held by one more. It is factored once in doubles,
+ * and solved in floats for four right sides at a time: an unknown's four numbers are one vector.
  *
- * The factor is in tiles of four rows as kernels.c has them, without extras: [tile][column][4]. */
+ * The factor is in tiles of four rows, [tile][column][4], as in kernels.c, but without extras. */
 #include "linear.h"
 
 #include <stdlib.h>
@@ -11,7 +11,7 @@ typedef float vector __attribute__((vector_size(16), may_alias));
 struct ss_springs {
     ss_memory memory;
     ss_system *system;
-    int64_t *panel; /* [front_count] where the tiles of each front are */
+    int64_t *panel; /* [front_count] where the tiles of the front begin */
     float *L;
 };
 
@@ -101,13 +101,13 @@ int32_t ss_springs_scratch(const ss_springs *springs) {
 
 /* ---- Solving ---- */
 
-/* sum[j] += l_j x, of four rows or columns j */
+/* sum[j] += l_j x, for four rows or columns j */
 static inline void add_four(vector sum[4], vector l, vector x) {
     for (int j = 0; j < 4; j++)
         sum[j] += (vector){l[j], l[j], l[j], l[j]} * x;
 }
 
-/* sum[j] += l' x, of one column and four rows */
+/* sum += l' x, for one column and four rows */
 static inline void add_column(vector *sum, vector l, const vector x[4]) {
     for (int j = 0; j < 4; j++)
         *sum += (vector){l[j], l[j], l[j], l[j]} * x[j];
@@ -125,7 +125,7 @@ static int32_t rows_left(int32_t count, int32_t tile) {
     return count - 4 * tile < 4 ? count - 4 * tile : 4;
 }
 
-/* x are the right sides of the front's columns, right all. */
+/* Eliminates a front: x are the right sides of its columns, right those of all unknowns. */
 static void eliminate(const ss_front *front, const vector *tile, const int32_t *rows, vector *x, vector *right) {
     int32_t columns = (front->count + 3) / 4 * 4;
     vector sum[4];
@@ -144,7 +144,7 @@ static void eliminate(const ss_front *front, const vector *tile, const int32_t *
     }
 }
 
-/* Four columns from begin on: sum is what they have of the solution below their own tile. */
+/* Solves for count columns from begin on, of one tile: sum is what the solution below that tile contributes. */
 static void finish_columns(const vector *tile, int32_t begin, int32_t count, const vector sum[4], vector *x) {
     for (int c = count - 1; c >= 0; c--) {
         vector l = tile[begin + c], solved = l[c] * x[begin + c] + sum[c];
@@ -154,7 +154,7 @@ static void finish_columns(const vector *tile, int32_t begin, int32_t count, con
     }
 }
 
-/* The solution for the front's columns; below [rows, and what pads them] has that of the rows. */
+/* Solves for a front's columns. below is the solution for the rows below it, padded with zeros to a multiple of four. */
 static void substitute(const ss_front *front, const vector *panel, const vector *below, vector *x) {
     int32_t own = (front->count + 3) / 4;
     const ss_shape s = {.own_tiles = own};

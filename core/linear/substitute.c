@@ -1,16 +1,16 @@
-/* The two halves of solving with a factor: right sides are eliminated from the first front on, and solutions put in from the last
- * one back. Two numbers belong to an unknown: two right sides of a system of numbers, [unknown][side], or one of a system of blocks,
- * [unknown][row]. */
+/* The two halves of solving with a factor: right sides are eliminated from the first front to the last, and solutions
+ * substituted from the last back to the first. Each unknown has two numbers: two right sides if entries are numbers,
+ * [unknown][side], or one if they are blocks, [unknown][row]. */
 #include "linear.h"
 
 #define INLINE                                                                                                                 \
-    static inline __attribute__((always_inline)) /* so that block is a constant, and count, of right sides, is, too */
+    static inline __attribute__((always_inline)) /* so that block is a constant, and with it the count of right sides */
 
-enum { MOST_AHEAD = 2048 }; /* numbers */
+enum { MOST_AHEAD = 2048 }; /* numbers read ahead */
 
 /* ---- Right sides of one front ---- */
 
-/* x [count][columns]: right sides of a front's columns, 0 of those that are none. */
+/* Copies the right sides of a front's columns to x [count][columns], with 0 for padding. */
 INLINE void take_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
                          const double (*right)[2]) {
     const double *from = right[front->first];
@@ -32,9 +32,9 @@ INLINE void put_columns(const ss_frontal *frontal, const ss_front *front, const 
             to[count * k + c] = frontal->x[c * s->columns + k];
 }
 
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias)); /* the two numbers of an unknown, at once */
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias)); /* the two numbers of an unknown */
 
-/* Adds what is below, [count][rows], to right sides of rows. */
+/* Adds below [count][rows] to the right sides of the rows. */
 INLINE void add_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
     const int32_t *rows = frontal->system->rows + front->row_start;
     const double *below = frontal->below, *other = below + 4 * s->below_tiles;
@@ -96,7 +96,7 @@ static void take_extras(const ss_frontal *frontal, const ss_shape *s, const doub
         frontal->x[k] = extras[4 * k + 1], frontal->x[s->columns + k] = extras[4 * k + 2];
 }
 
-/* Panels are met from the last one back, where processors expect nothing: has them read what is next, or the begin of it. */
+/* Processors read ahead only forwards, and panels are visited backwards: asks for the next one, or for its beginning. */
 static void prefetch(const double *panel, const double *end) {
     const double *last = end - panel < MOST_AHEAD ? end : panel + MOST_AHEAD;
 #pragma GCC unroll 4
