@@ -1,18 +1,19 @@
 /* Interpolation LIMIT: moves the cage so that the limit surface keeps its shape and only its parameters slide.
  *
  * Samples of the limit surface are the limit points of the free vertices, and the middles of the patch's faces, which keep the
- * surface from ringing in between. From the linear result, each is taken to the plane that touches the limit surface of Md where
- * the sample is looked up, a middle at the mean of its corners' queries, while edges keep the length that linear gave them:
+ * surface from ringing in between. Starting from the linear result, each sample is brought to the tangent plane of the limit
+ * surface of Md at the point where it is looked up (for a middle, the mean of its corners' queries), while edges keep their
+ * linear length:
  *
  *     d = argmin  sum (n.(L d - (t - L Md)))^2 + E(edges)      in fit.c
  *
- * A row of L has the weights with which free vertices make a sample; t is the point looked up, and n the normal there, shorter where
- * the pose crumples the surface: there samples are taken to t itself, as fit.c has it. To take all of them there would slide them by
- * exactly what was looked up, but rings where the slide changes within a few faces, and bunches the texture up. L depends on the mesh
- * alone, and what is factored of it is so once a shot.
+ * A row of L has the weights of the free vertices that make a sample; t is the point looked up, and n the normal there, shorter
+ * where the pose crumples the surface: there samples are drawn to t itself, see fit.c. If all were, they would slide by exactly
+ * what was looked up, but the surface would ring where the slide changes within a few faces, and the texture would bunch up. L
+ * depends only on the mesh, so that it is factored once for a shot.
  *
- * Solved for displacements, so that nothing slid is nothing moved, to the last bit; in offsets from a vertex near where each
- * sample is looked up, so that where the mesh is does not matter. */
+ * The unknowns are displacements, so that where nothing slides nothing moves, to the last bit; points are offsets from a vertex
+ * near the one looked up, so that the mesh's place in space does not matter. */
 #include "limit.h"
 
 #include <math.h>
@@ -22,24 +23,24 @@
 /* Where a sample is on the patch when nothing slides. */
 typedef struct sample {
     int32_t face;       /* patch face */
-    ss_parameter at;    /* in it */
-    int32_t free_index; /* of the vertex that it is the limit point of; -1 for the middle of the face */
+    ss_parameter at;    /* in that face */
+    int32_t free_index; /* of the vertex whose limit point it is; -1 for the middle of the face */
 } sample;
 
 struct ss_cage {
     ss_memory memory;
     const ss_patch *patch;
-    bool loop; /* the scheme is */
+    bool loop; /* whether the scheme is loop */
     ss_limit_surfaces *surfaces;
     ss_fit *fit;
     ss_crumple *crumple;
     int32_t sample_count; /* free_count limit points, then face_count middles */
     sample *samples;
     double *square;      /* [sample_count] how far from one line the tangents are at rest */
-    double *edge_share;  /* [vertex_count] 1 / how many edges are at each */
-    int32_t *free_index; /* [vertex_count] place in free_vertex, -1 where held */
+    double *edge_share;  /* [vertex_count] 1 / number of edges at the vertex */
+    int32_t *free_index; /* [vertex_count] place in free_vertex, -1 if held */
     ss_rows stencils;    /* [sample_count] columns are mesh vertices */
-    ss_rows free_rows;   /* [sample_count] L: of them those that are free, by place in free_vertex */
+    ss_rows free_rows;   /* [sample_count] L: the same with free vertices only, by place in free_vertex */
 };
 
 struct ss_cage_work {
@@ -47,13 +48,13 @@ struct ss_cage_work {
     const ss_cage *cage;
     ss_fit_work *fit;
     ss_middles *middles;
-    ss_place *place;       /* [sample_count] where each is looked up */
-    int32_t *face_start;   /* [face_count + 1] samples by the face that they are looked up in */
+    ss_place *place;       /* [sample_count] where the sample is looked up */
+    int32_t *face_start;   /* [face_count + 1] where samples looked up in a face begin in by_face */
     int32_t *by_face;      /* [sample_count] */
     double (*residual)[3]; /* [sample_count] t - L Md */
     double (*normal)[3];   /* [sample_count] n, shorter where the pose crumples the surface */
     double *part;          /* [free_count] scratch for that */
-    double *around;        /* [vertex_count] mean length of the edges at each */
+    double *around;        /* [vertex_count] mean length of the edges at the vertex */
     double (*solution)[3]; /* [free_count] d */
     double *scratch;       /* [ss_limit_surfaces_scratch] */
 };
@@ -87,9 +88,9 @@ static void count_edges(ss_cage *cage) {
 
 /* ---- The system ---- */
 
-static const double negligible = 1e-13; /* weights that OpenSubdiv leaves where there are none */
+static const double negligible = 1e-13; /* smaller weights are rounding of OpenSubdiv's */
 
-/* Adds to the value of a column in the row that begins there and ends at end, for which there is room. Returns where it ends. */
+/* Adds value to a column of the row from begin to end, after which there is room for one more. Returns the new end. */
 static int32_t add_entry(ss_rows *rows, int32_t begin, int32_t end, int32_t column, double value) {
     int32_t place = begin;
     while (place < end && rows->column[place] != column)
@@ -100,7 +101,7 @@ static int32_t add_entry(ss_rows *rows, int32_t begin, int32_t end, int32_t colu
     return end;
 }
 
-/* Row s of the stencils, for which there is room. */
+/* Appends row s of the stencils to rows, which has room for it. */
 static void append_stencil(const ss_cage *cage, int32_t s, double *weights, ss_rows *rows) {
     const sample *own = &cage->samples[s];
     const int32_t *vertices;
@@ -112,7 +113,8 @@ static void append_stencil(const ss_cage *cage, int32_t s, double *weights, ss_r
     rows->start[s + 1] = end;
 }
 
-/* Room for all rows, where a vertex that is in one twice counts twice: faces around a pole have many times what others have. */
+/* Counts the entries of all rows, since faces around a pole have many more than others. A vertex twice in a row counts
+ * twice. */
 static int64_t count_entries(const ss_cage *cage, double *weights) {
     int64_t entries = 0;
     for (int32_t s = 0; s < cage->sample_count; s++) {
@@ -150,7 +152,7 @@ static skinslide_status list_stencils(ss_cage *cage, skinslide_error *error) {
     return status;
 }
 
-/* Drops the columns of held vertices, whose p - Md is 0; columns of vertices that are one are one. */
+/* Drops the columns of held vertices, which are not displaced, and adds up those of copies of one vertex. */
 static skinslide_status restrict_to_free(ss_cage *cage, skinslide_error *error) {
     const ss_rows *all = &cage->stencils;
     ss_rows *rows = &cage->free_rows;
@@ -173,7 +175,7 @@ static skinslide_status restrict_to_free(ss_cage *cage, skinslide_error *error) 
 
 /* ---- Creation ---- */
 
-/* Gathers what makes the surface of a patch face, in offsets from one of its vertices, for scratch. */
+/* Fills scratch with the surface of a patch face, in offsets from one of its vertices, which becomes origin. */
 static void prepare_face(const ss_cage *cage, int32_t face, const float *points, double origin[3], double *scratch) {
     const ss_faces *faces = &cage->patch->faces;
     const float *near = points + 3 * (int64_t)cage->patch->mesh_vertex[faces->corner_vertex[faces->face_start[face]]];
@@ -182,7 +184,7 @@ static void prepare_face(const ss_cage *cage, int32_t face, const float *points,
     ss_limit_prepare(cage->surfaces, face, points, origin, scratch);
 }
 
-/* What is known of samples by their normals at rest. */
+/* Makes all that depends on the samples' normals at rest. */
 static skinslide_status learn_rest(ss_cage *cage, const float *rest_points, skinslide_error *error) {
     ss_memory memory = {0};
     double(*normal)[3] = ss_new(&memory, cage->sample_count, sizeof *normal), origin[3], point[3];
@@ -283,12 +285,12 @@ void ss_cage_work_destroy(ss_cage_work *work) {
 
 /* ---- Targets of one frame ---- */
 
-/* Where a sample is looked up. One that stays is looked up where it is. */
+/* The face that a sample is looked up in: its own if it stays. */
 static int32_t face_of(const ss_cage *cage, int32_t s, const ss_place *place) {
     return place->triangle == SS_STAYS ? cage->samples[s].face : cage->patch->triangles.face[place->triangle];
 }
 
-/* Finds where samples are looked up, and sorts them by faces: what makes the surface of a face is gathered once for all of them. */
+/* Finds where samples are looked up, and sorts them by face, so that each face is prepared once for all its samples. */
 static void sort_samples(ss_cage_work *work, const ss_slide *slide) {
     const ss_cage *cage = work->cage;
     int32_t *start = work->face_start, faces = cage->patch->faces.face_count;
@@ -304,7 +306,7 @@ static void sort_samples(ss_cage_work *work, const ss_slide *slide) {
         work->by_face[--start[face_of(cage, s, &work->place[s])]] = s;
 }
 
-/* residual = t - L Md, and n, of sample s, whose face is prepared in offsets from origin. */
+/* Finds residual = t - L Md and n of sample s. face, in which it is looked up, is prepared in offsets from origin. */
 static void list_target(const ss_cage_work *work, const float *points, const ss_flat *flat, int32_t s, int32_t face,
                         const double origin[3]) {
     const ss_cage *cage = work->cage;
@@ -338,7 +340,7 @@ static void list_targets(ss_cage_work *work, const ss_frame *frame, const ss_sli
 
 /* ---- Damping ---- */
 
-static const double most_deviation = 0.5; /* of the mean edge where a vertex slid to, between LIMIT and LINEAR */
+static const double most_deviation = 0.5; /* of LIMIT from LINEAR, in mean edges where the vertex slid to */
 
 static void measure_around(const ss_cage *cage, const double *lengths, double *around) {
     const ss_patch *patch = cage->patch;
@@ -348,7 +350,7 @@ static void measure_around(const ss_cage *cage, const double *lengths, double *a
             around[patch->edge_vertex[e][k]] += cage->edge_share[patch->edge_vertex[e][k]] * lengths[e];
 }
 
-/* Between corners linear, so that it goes from face to face without a jump. */
+/* Interpolated linearly between corners, so that it does not jump from face to face, and vertices with it. */
 static double bound(const ss_cage *cage, const double *around, const ss_place *place, int32_t i) {
     if (place->triangle == SS_STAYS)
         return most_deviation * around[cage->patch->free_vertex[i]];
@@ -359,8 +361,7 @@ static double bound(const ss_cage *cage, const double *around, const ss_place *p
     return most_deviation * mean;
 }
 
-/* Puts the solution in place of the linear displacement, no farther from it than the bound. Returns whether that held it back.
- */
+/* Replaces the linear displacement by the solution, but no farther from it than most. Returns whether that held it back. */
 static bool take_damped(const double solution[3], double most, double linear[3]) {
     double off[3], square = 0;
     for (int k = 0; k < 3; k++) {

@@ -1,12 +1,12 @@
-/* Where a pose crumples the surface, its normals turn from one sample to the next, and from one frame to the next, by more than there
- * is of a shape to keep: skin that followed them would jump. There a sample counts less along its normal, by n shortened twice, and
- * as fit.c has it in every direction instead:
+/* Where a pose crumples the surface, its normals turn so much from one sample to the next, and from one frame to the next, that
+ * there is no shape to keep, and skin that followed them would jump. There a sample is held less along its normal, and more in
+ * all directions, see fit.c, by shortening n twice:
  *
- *     n <- n / (1 + (0.35 c0 / c)^4)         c how far from one line the tangents are: ss_limit_normal; c0 at rest
- *     n <- n mean of 1 / (1 + (x / 0.25)^4)  over the vertices of the sample, by L
+ *     n <- n / (1 + (0.35 c0 / c)^4)         c how far the tangents are from one line, see ss_limit_normal; c0 at rest
+ *     n <- n mean of 1 / (1 + (x / 0.25)^4)  over the vertices of the sample, weighted by L
  *
- * with x of a vertex how much shorter the mean normal of the samples around it is than at rest, as a share of that, and no less than 0:
- * faces that are long, and rims that are sharp, at rest are not crumpled. */
+ * where x of a vertex is by which share the mean normal of the samples around it is shorter than at rest, and at least 0. Both
+ * are relative to rest, so that long faces and sharp rims do not count as crumpled. */
 #include "limit.h"
 
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static const double flat = 0.35, apart = 0.25;
 struct ss_crumple {
     ss_memory memory;
     const ss_rows *samples; /* L */
-    double *together;       /* [column_count] length of the mean normal at rest, times what L has of the vertex */
+    double *together; /* [column_count] length of L' normal at rest: the mean normal, times the sum of the vertex's weights */
 };
 
 /* sum = L' normal */

@@ -1,33 +1,35 @@
 /* The least squares of interpolation LIMIT: moves free vertices by y from their linear places, so that samples of the surface,
- * L y, come to the planes that they belong in while edges keep what linear made of them. The minimum of
+ * which move by L y, come to their planes while edges stay as linear made them. y minimises
  *
  *     E(y) = sum (L y - r)'N (L y - r) + s sum ((|e| - |e0|)^2 + t |e - e0|^2)      s = 0.03, t = 0.05
  *          samples                     edges
  *
  *     N = nn' + b (1 - n.n)^2                                                        b = 0.3
  *
- * where an edge is e0 in the linear result and e = e0 + D y after, D the edge-vertex incidence. Samples may slip in their planes,
- * which a coarse cage must let them; where vertices go there the edges say, by their length and a little by their direction. Without
- * edges nearness is bought with stretch: the stiffer they are, the less of both. The shorter n, the less a plane is what a sample
- * belongs in: it is held where it was looked up, which is on the surface, and goes on smoothly where normals turn.
+ * where an edge is e0 in the linear result and e = e0 + D y after, D the edge-vertex incidence. Samples may slip within their
+ * planes, as they must with a coarse cage; where in the plane is up to the edges, by their length and a little by their
+ * direction. Without edges the surface would be nearer, but skin more stretched: the stiffer they are, the less of both. The
+ * shorter n, see crumple.c, the more a sample is held at the point looked up, which lies on the surface and moves smoothly even
+ * where normals spin. b was chosen for that, on seven examples.
  *
  * Gauss-Newton, each step by conjugate gradients on
  *
  *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                u = e / |e|
  *
- * which differs from frame to frame. The preconditioner is factored once a shot, from scalar matrices, the first of them, which is
- * near to a mass matrix, incompletely. It takes a vertex apart across and along the plane of its own sample:
+ * whose matrix differs from frame to frame. The preconditioner does not: it is factored once for a shot, from matrices of
+ * numbers. It splits the move of a vertex into that across and that along the plane of its own sample:
  *
  *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D + C)^-1 (1 - nn')      1/2 the mean of uu' in the plane
  *
- * On a rim, as of lips, normals turn from one vertex to the next, so that samples around hold a vertex along its plane too. C, which
- * is diagonal, is how much they do at rest, rows of L'NL summed: of a vertex half the sum of L (1 - (n.n of its own sample)^2).
- * Without it the first step overshoots on rims, and all others are spent on undoing that.
+ * The first matrix is nearly a mass matrix, and is factored incompletely. On a rim, as of lips, normals turn from one vertex to
+ * the next, so that the samples around hold a vertex along its plane too. C, which is diagonal, is how much they do so at rest,
+ * with rows of L'NL summed: for a vertex half the sum of L (1 - (n.n of its own sample)^2). Without it the first step
+ * overshoots on rims, and all others are spent on undoing that.
  *
- * Where no vertex is held, as on a closed patch, D'D would let all of them go together: there it has 4 pi / n more of the n vertices'
- * own, which is the least that a sphere's first waves have of it.
+ * If no vertex is held, as on a closed patch, D'D would let all of them move together: then 4 pi / n times its stiffness is
+ * added at each of the n vertices, which is what D'D has for the longest waves of a sphere.
  *
- * Steps are counted and not watched, so that the time is known and neighbouring frames go the same way. */
+ * The number of steps is fixed, so that the time is known and neighbouring frames are solved alike. */
 #include "base.h"
 #include "limit.h"
 
@@ -40,21 +42,21 @@ static const double direction_stiffness = 0.05; /* t */
 static const double all_ways_stiffness = 0.3;   /* b */
 enum { GAUSS_NEWTON_STEPS = 2, GRADIENT_STEPS = 5 };
 
-/* x, y, z and 0, as every processor adds and multiplies them: where the model is made in doubles, two by two; what conjugate
- * gradients do with it in floats, in units of the largest of the gradient. What that loses the next step of Gauss-Newton mends. */
+/* x, y, z and 0, in vectors that every processor has: pairs of doubles where the model is made, floats in conjugate gradients,
+ * in units of the gradient's largest. What floats lose, the next step of Gauss-Newton mends. */
 typedef double pair __attribute__((vector_size(16)));
 typedef struct vector {
     pair xy, z;
 } vector;
 typedef float single __attribute__((vector_size(16)));
 
-/* An edge that has a free end. */
+/* An edge with a free end. */
 typedef struct edge {
     int32_t mesh_vertex[2];
-    int32_t end[2]; /* places in free_vertex, free_count where held */
+    int32_t end[2]; /* places in free_vertex, free_count if held */
 } edge;
 
-/* Where a vertex is in a term: a sample or, after them, an edge. */
+/* The weight of a vertex in a term: a sample or, numbered after those, an edge. */
 typedef struct share {
     int32_t term;
     float weight;
@@ -64,21 +66,21 @@ struct ss_fit {
     ss_memory memory;
     int32_t free_count, edge_count;
     const ss_rows *samples; /* L */
-    float *sample_weight;   /* its values */
+    float *sample_weight;   /* the values of samples */
     edge *edges;            /* [edge_count] */
-    int32_t *share_start;   /* [free_count + 1] L' and D' by rows */
+    int32_t *share_start;   /* [free_count + 1] the rows of L' and D' begin in shares */
     share *shares;
-    double *share_weight; /* of each, exact */
-    int32_t *unknown;     /* [free_count] of each free vertex in along */
+    double *share_weight; /* of each share, in double */
+    int32_t *unknown;     /* [free_count] the free vertex's unknown in along */
     ss_incomplete *across;
     ss_springs *along;
 };
 
-/* Arrays of free vertices have one vertex more, where held ones are: it is 0. */
+/* Arrays of free vertices have one vertex more, which stands for all that are held: it is 0. */
 struct ss_fit_work {
     ss_memory memory;
     const ss_fit *fit;
-    const int *stop;          /* a flag: the frame is not wanted any more */
+    const int *stop;          /* set if the frame is not wanted any more */
     vector *up;               /* [sample count] n ... */
     float *all_ways;          /* [sample count] ... and b (1 - n.n)^2 */
     vector *residual;         /* [sample count] r */
@@ -92,12 +94,12 @@ struct ss_fit_work {
     single *single_direction; /* [edge_count] u */
     single *single_force;     /* [sample count + edge_count] */
     single *gradient;         /* [free_count + 1] what y leaves of slope */
-    single *scaled;           /* [free_count + 1] the same through the preconditioner */
+    single *scaled;           /* [free_count + 1] gradient, preconditioned */
     single *search;           /* [free_count + 1] a direction of conjugate gradients ... */
-    single *image;            /* [free_count + 1] ... and what the system makes of it */
+    single *image;            /* [free_count + 1] ... and its product with the matrix */
     float *across;            /* [free_count] right sides */
-    single *along;            /* [free_count] by unknowns */
-    single *scratch;          /* of solving for them */
+    single *along;            /* [free_count] right sides, by unknown */
+    single *scratch;          /* for ss_springs_solve */
 };
 
 /* ---- Creation ---- */
@@ -114,7 +116,7 @@ static void list_edges(const ss_patch *patch, const int32_t *free_index, ss_fit 
     }
 }
 
-/* Adds a share, or in the first pass only counts it. */
+/* Adds a share; in the first pass, only counts it. */
 static void add_share(ss_fit *fit, bool count, int32_t vertex, int32_t term, double weight) {
     if (vertex == fit->free_count)
         return;
@@ -136,7 +138,7 @@ static void list_shares(ss_fit *fit, bool count) {
             add_share(fit, count, samples->column[k], s, samples->value[k]);
 }
 
-/* Row by row of D, times weight. */
+/* Appends the rows of D, times weight. */
 static void append_edges(const ss_fit *fit, double weight, ss_rows *rows) {
     int32_t end = rows->start[rows->row_count];
     for (int32_t e = 0; e < fit->edge_count; e++) {
@@ -188,7 +190,7 @@ static double turn_around(const ss_fit *fit, int32_t i, const double (*normal)[3
     return sum;
 }
 
-/* s (1/2 + t) D'D + C, and more where no vertex is held. */
+/* s (1/2 + t) D'D + C, and more if no vertex is held. */
 static skinslide_status factor_along(ss_fit *fit, const ss_patch *patch, const double (*normal)[3], skinslide_error *error) {
     ss_memory scratch = {0};
     ss_net net = ss_net_of(patch, patch->fixed);
@@ -356,7 +358,7 @@ static void gather_forces(const ss_fit_work *work, vector *out) {
 
 /* ---- The model where y is ---- */
 
-/* u, of zeros where an edge has no length, and |e| - |e0|. */
+/* Finds u, which is 0 if an edge has no length, and |e| - |e0|. */
 static void measure_edges(ss_fit_work *work) {
     for (int32_t e = 0; e < work->fit->edge_count; e++) {
         const vector *before = &work->linear[e];
@@ -402,7 +404,7 @@ static void round_model(ss_fit_work *work) {
         work->single_direction[e] = to_single(&work->direction[e]);
 }
 
-/* gradient = slope, in units of its largest. Returns that, 1 where all are 0. */
+/* gradient = slope, in units of its largest. Returns the unit, which is 1 if all are 0. */
 static double round_slope(ss_fit_work *work) {
     int32_t n = work->fit->free_count;
     double unit = 0;
@@ -416,7 +418,7 @@ static double round_slope(ss_fit_work *work) {
     return unit;
 }
 
-/* single_force: of samples N L search, of edges s (uu' + t) D search. */
+/* single_force = N L search for samples, s (uu' + t) D search for edges. */
 static void list_single_forces(ss_fit_work *work) {
     const ss_fit *fit = work->fit;
     const ss_rows *samples = fit->samples;
@@ -449,7 +451,7 @@ static void apply_system(ss_fit_work *work) {
 
 /* ---- Conjugate gradients ---- */
 
-/* scaled = what the preconditioner makes of gradient. Sample i is that of free vertex i. */
+/* scaled = gradient, preconditioned. Sample i is that of free vertex i. */
 static void precondition(ss_fit_work *work) {
     const ss_fit *fit = work->fit;
     for (int32_t i = 0; i < fit->free_count; i++) {
@@ -481,7 +483,7 @@ static void take_step(ss_fit_work *work, double unit, float step) {
     }
 }
 
-/* One step of Gauss-Newton. Nothing is left to do where gradient.scaled is 0. */
+/* One step of Gauss-Newton. Once gradient.scaled is 0, nothing is left to do. */
 static void improve(ss_fit_work *work) {
     int32_t n = work->fit->free_count;
     double before = 0;
@@ -509,7 +511,7 @@ static void improve(ss_fit_work *work) {
 
 /* ---- One frame ---- */
 
-/* Takes the linear displacement, which offset holds, off the residual, and takes e0 from it. */
+/* Subtracts the linear displacement, which is in offset, from the residual, and finds e0 with it. */
 static void start_linear(ss_fit_work *work, const float *points, const double (*residual)[3], const double (*normal)[3]) {
     const ss_fit *fit = work->fit;
     for (int32_t s = 0; s < fit->samples->row_count; s++) {

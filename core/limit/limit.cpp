@@ -1,5 +1,5 @@
-/* Limit surfaces of a subdivided mesh, face by face, and the weights with which mesh vertices make a point of them. The only
- * file that knows OpenSubdiv, whose Bfr surfaces need no refined mesh. Behind C functions: no exception leaves this file. */
+/* Limit surfaces of a subdivided mesh, face by face, and the weights of mesh vertices that make a point of them. The only file
+ * that knows OpenSubdiv, whose Bfr surfaces need no refined mesh. All is behind C functions: no exception leaves this file. */
 #include "limit.h"
 
 #include <algorithm>
@@ -15,12 +15,12 @@
 
 using namespace OpenSubdiv;
 using Surface = Bfr::Surface<double>;
-/* It keeps what it has made for faces alike, for one thread at a time. */
+/* Caches what faces alike share; for one thread at a time. */
 using SurfaceFactory = Bfr::RefinerSurfaceFactory<>;
 
 struct ss_topology {
     const skinslide_mesh *mesh;
-    std::vector<uint8_t> is_hole; /* [face_count] by holeIndices */
+    std::vector<uint8_t> is_hole; /* [face_count] listed in holeIndices */
     std::unique_ptr<Far::TopologyRefiner> refiner;
 };
 
@@ -33,7 +33,7 @@ struct ss_limit_surfaces {
 
 namespace {
 
-/* Runs body, which returns a status; what it throws becomes one. */
+/* Runs body, which returns a status. What it throws becomes a status too. */
 template <typename Body> skinslide_status guarded(skinslide_error *error, Body body) {
     try {
         return body();
@@ -72,7 +72,7 @@ float sharpness_of(float sharpness) {
     return std::min(sharpness, float(Sdc::Crease::SHARPNESS_INFINITE));
 }
 
-/* Creases edge by edge, corners within OpenSubdiv's range. */
+/* Creases, edge by edge, and corners, with sharpnesses in OpenSubdiv's range. */
 struct Sharp {
     std::vector<int> pairs;
     std::vector<float> edges, corners;
@@ -144,7 +144,7 @@ bool is_creased(const Far::TopologyLevel &level, int vertex) {
     return any_of(level.GetVertexEdges(vertex), is_crease, level);
 }
 
-/* Whether a face around the vertices of a face has an edge or a vertex, at which the mesh is not a surface. */
+/* Whether a face around a face's vertices has a vertex or an edge at which the mesh is not manifold. */
 bool is_near_non_manifold(const Far::TopologyLevel &level, const Far::ConstIndexArray &vertices) {
     auto vertex_is = [](const Far::TopologyLevel &own, int vertex) { return own.IsVertexNonManifold(vertex); };
     auto edge_is = [](const Far::TopologyLevel &own, int edge) { return own.IsEdgeNonManifold(edge); };
@@ -155,8 +155,9 @@ bool is_near_non_manifold(const Far::TopologyLevel &level, const Far::ConstIndex
     return false;
 }
 
-/* Why OpenSubdiv before 3.5.1 crashes at a face, or NULL. Around a creased vertex it reads creases that it has not written where
- * a boundary and a vertex of two faces meet in the face, and looks for edges that are not there where the mesh is no surface. */
+/* Why OpenSubdiv before 3.5.1 crashes at a face, or NULL. Around a creased vertex it reads creases that were never written if
+ * the face has both a boundary vertex and a vertex of two faces, and looks for edges that do not exist where the mesh is not
+ * manifold. */
 const char *crash_at(const ss_topology &topology, int32_t face) {
     Far::TopologyLevel level = topology.refiner->GetLevel(0);
     Far::ConstIndexArray vertices = level.GetFaceVertices(face);
@@ -167,11 +168,11 @@ const char *crash_at(const ss_topology &topology, int32_t face) {
     return is_near_non_manifold(level, vertices) ? "a crease, near where the mesh is not manifold" : nullptr;
 }
 
-/* Faces around a vertex, and vertices of a face, that surfaces are made for: what they take grows with the cube. 256 take a third of
- * a second a frame, and where creases tell all of them apart 2 GB. */
+/* The most faces around a vertex, and vertices of a face, for which surfaces are made: their cost grows with the cube. 256 take
+ * a third of a second a frame, and 2 GB if creases make all of them differ. */
 const int most_around = 256;
 
-/* The first vertex of a face with more faces than that, or -1. */
+/* The first vertex of a face with more faces around it than that, or -1. */
 int crowded_vertex(const ss_topology &topology, const Far::ConstIndexArray &vertices) {
     Far::TopologyLevel level = topology.refiner->GetLevel(0);
     auto is_crowded = [&](int vertex) { return level.GetVertexFaces(vertex).size() > most_around; };
@@ -192,7 +193,7 @@ skinslide_status refuse_crowd(const ss_topology &topology, int32_t face, const c
                    most_around);
 }
 
-/* OpenSubdiv is asked last: where it crashes at a face, it may do so when asked. */
+/* OpenSubdiv is asked last, since asking may be what crashes it. */
 ss_face_surface kind_of(const ss_topology &topology, const SurfaceFactory &factory, int32_t face) {
     if (topology.is_hole[size_t(face)])
         return SS_SURFACE_NONE;
@@ -233,7 +234,7 @@ skinslide_status build_surfaces(const ss_topology &topology, const int32_t *face
     return SKINSLIDE_OK;
 }
 
-/* From our parameters to OpenSubdiv's: the quads at the corners of polygons lie apart in a grid. */
+/* From our parameters to OpenSubdiv's, which lays the quads at a polygon's corners out in a grid. */
 glm::dvec2 coordinates(const Surface &surface, const ss_parameter &at) {
     glm::dvec2 uv(at.st[0], at.st[1]);
     if (at.corner >= 0)
@@ -241,7 +242,7 @@ glm::dvec2 coordinates(const Surface &surface, const ss_parameter &at) {
     return uv;
 }
 
-/* A place in the quad at a corner, in parameters of the face. Triangles of the loop scheme: barycentric. */
+/* A place in the quad at a corner, in parameters of the face, which in triangles of the loop scheme are barycentric. */
 ss_parameter place_in_face(const Surface &surface, int32_t corner, double s, double t) {
     Bfr::Parameterization parameters = surface.GetParameterization();
     if (parameters.GetType() == Bfr::Parameterization::QUAD_SUBFACES)

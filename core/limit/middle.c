@@ -1,5 +1,5 @@
-/* Where the middle of a face is looked up: at the mean of where its corners are, in the plane; without one, over rest from its own
- * place as far as its corners went in the mean. It stays where all of them do. */
+/* Where the middle of a face is looked up. With a plane, at the mean of its corners' queries; without one, by a walk over rest
+ * from its own place, as far as its corners went on average. It stays if all of them do. */
 #include "limit.h"
 
 #include <stdlib.h>
@@ -44,7 +44,7 @@ static bool stays(const ss_middles *middles, int32_t vertex) {
 
 /* ---- In the plane ---- */
 
-/* From where one of its corners was found. */
+/* Starts where one of its corners was found. */
 static ss_place look_up(const ss_middles *middles, int32_t face) {
     const ss_patch *patch = middles->patch;
     int32_t begin = patch->faces.face_start[face], end = patch->faces.face_start[face + 1];

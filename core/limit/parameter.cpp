@@ -1,7 +1,7 @@
-/* From a point in a face laid flat to the face's own parameters, as OpenSubdiv lays them: barycentric in triangles of
- * the loop scheme, bilinear in quads, and in other polygons bilinear in one of the quads that join a corner, the middles of its
- * two sides and the mean of all corners. Along every side all of these run evenly from corner to corner, so that faces of
- * different kinds meet in the same point. */
+/* From a point in a face laid flat to the face's own parameters, as OpenSubdiv has them: barycentric in triangles of the loop
+ * scheme, bilinear in quads, and in other polygons bilinear in one of the quads between a corner, the middles of its two sides
+ * and the mean of all corners. Along a side all of these run linearly from corner to corner, so that faces of different kinds
+ * agree there. */
 #include "limit.h"
 
 #include <cmath>
@@ -20,7 +20,7 @@ double cross(dvec2 a, dvec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/* Corners p00, p10, p11, p01, in the order in which they go round. */
+/* Corners p00, p10, p11, p01: in order around the quad. */
 struct Quad {
     dvec2 corners[4];
 
@@ -32,26 +32,25 @@ struct Quad {
     }
 };
 
-/* How far off a solution is, as a share of the quad's size; where it is no number, as far as can be. */
+/* How far off a solution is, as a share of the quad's size; infinite if it is not a number. */
 double miss(const Quad &quad, double size, dvec2 st, dvec2 p) {
     double share = glm::length(quad.at(st) - p) / size;
     return std::isfinite(share) ? share : INFINITY;
 }
 
-/* The real roots of  a x^2 + b x + c = 0,  or where there are none the middle between; one of them goes to -c/b as a goes to 0.
- */
+/* The real roots of  a x^2 + b x + c = 0,  or the real part if there are none. One of them goes to -c/b as a goes to 0. */
 dvec2 roots(double a, double b, double c) {
     double discriminant = b * b - 4 * a * c;
     double q = -0.5 * (b + std::copysign(std::sqrt(discriminant > 0 ? discriminant : 0), b));
     return {c / q, q / a};
 }
 
-/* Of solutions the nearest counts, and of those that are this near to each other the first: where a face is not convex several hit,
- * and rounding is not to choose among them. */
+/* The nearest solution is taken, and the first of several that differ by less than this: if a face is not convex, several may
+ * hit, and rounding must not choose among them. */
 const double accepted_miss = 1e-8;
 
 /* st with quad.at(st) nearest to p, clamped to the quad. With  e = p10 - p00,  f = p01 - p00,  g = p11 - p10 - f,  h = p - p00:
- * h = e s + f t + g s t;  the cross product with  e + g t  leaves a quadratic for t, and of its roots the better counts. */
+ * h = e s + f t + g s t;  the cross product with  e + g t  leaves a quadratic for t, of whose roots the better is taken. */
 dvec2 inverse_bilinear(const Quad &quad, dvec2 p, double *missed) {
     dvec2 e = quad.corners[1] - quad.corners[0], f = quad.corners[3] - quad.corners[0], h = p - quad.corners[0];
     dvec2 g = quad.corners[2] - quad.corners[1] - f;
@@ -68,8 +67,8 @@ dvec2 inverse_bilinear(const Quad &quad, dvec2 p, double *missed) {
     return best;
 }
 
-/* The parameters of a triangle of the fan, for faces on which the inverse fails: quads of no area or not convex, and polygons
- * none of whose quads has one; in these the corner that is nearest by weight. */
+/* The parameters of a triangle of the fan, for faces in which the inverse fails: quads without area or not convex, and polygons
+ * none of whose quads has a solution, which get their corner of the largest weight. */
 ss_parameter from_fan(const ss_patch *patch, const ss_place *place, int32_t n) {
     const double *weights = place->weight;
     int32_t second = place->triangle - patch->triangles.first_triangle[patch->triangles.face[place->triangle]] + 1;
@@ -84,8 +83,7 @@ ss_parameter from_fan(const ss_patch *patch, const ss_place *place, int32_t n) {
     return {corners[most], {0, 0}};
 }
 
-/* The quad at corner k of a polygon: the corner, the middle of the side after it, the mean of all, the middle of that before.
- */
+/* The quad at corner k of a polygon: the corner, the middle of the side after it, the mean, the middle of the side before. */
 Quad corner_quad(const ss_patch *patch, const ss_flat &flat, int32_t face, int32_t k, int32_t n, dvec2 mean) {
     dvec2 here = corner_of(patch, flat, face, k), next = corner_of(patch, flat, face, (k + 1) % n);
     dvec2 previous = corner_of(patch, flat, face, (k + n - 1) % n);

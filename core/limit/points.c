@@ -1,7 +1,7 @@
-/* Points of a limit surface for pictures and measures: skinslide_limit_points. */
+/* Points of a limit surface, for pictures and measures: skinslide_limit_points. */
 #include "limit.h"
 
-/* Faces that places are on, in the order of the mesh, and where they are in that list. */
+/* The faces that places are on, in the order of the mesh, and the place of each in that list. */
 typedef struct chosen_faces {
     int32_t count;
     int32_t *faces;       /* [count] */
@@ -46,7 +46,7 @@ static skinslide_status choose_faces(const skinslide_mesh *mesh, const skinslide
     return SKINSLIDE_OK;
 }
 
-/* scratch holds the surface of face *prepared. */
+/* scratch holds the surface of face *prepared, which changes with the face. */
 static void evaluate(const ss_limit_surfaces *surfaces, const chosen_faces *chosen, const float *points,
                      const skinslide_limit_place *place, int32_t *prepared, double *scratch, float out[3]) {
     int32_t face = chosen->corner_face[place->corner];
