@@ -8,7 +8,7 @@ import skinslide
 import stages
 from skinslide.author.setup import setup_to_file
 from skinslide.command.cli import main
-from skinslide.problems import FrameProblem, StageProblems, UsageError
+from skinslide.problems import StageProblems, UsageError
 from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage
 from stages import FRAMES
@@ -176,14 +176,84 @@ def test_frames_beyond_the_samples_are_told_of(shot, tmp_path):
     assert warning.frame == 1004 and "2 frames are beyond the samples, which go from 1001 to 1003" in warning.message
 
 
-def test_a_frame_that_cannot_be_looked_at(shot, tmp_path):
-    stage = Usd.Stage.Open(str(shot))
-    points = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN)).GetPointsAttr()
-    values = np.array(points.Get(FRAMES[1]))
+def three_at_an_edge(mesh):
+    counts, indices = mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()
+    counts.Set([*counts.Get(), 3])
+    indices.Set([*indices.Get(), 312, 313, 0])
+
+
+def hole(mesh):
+    mesh.CreateHoleIndicesAttr([300])
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.catmullClark)
+
+
+def without_rest(mesh):
+    points = mesh.GetPointsAttr()
+    samples = {frame: points.Get(frame) for frame in points.GetTimeSamples()}
+    points.Clear()
+    for frame, values in samples.items():
+        points.Set(values, frame)
+
+
+def not_finite(mesh):
+    values = np.array(mesh.GetPointsAttr().Get(FRAMES[1]))
     values[7] = np.nan
-    points.Set(Vt.Vec3fArray.FromNumpy(values), FRAMES[1])
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(values), FRAMES[1])
+
+
+def other_count(mesh):
+    mesh.GetPointsAttr().Set([(0, 0, 0)] * 5, FRAMES[1])
+
+
+def no_such_point(mesh):
+    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get())
+    indices[3] = 10_000
+    mesh.GetFaceVertexIndicesAttr().Set(indices.tolist())
+
+
+def pin_of_another_count(mesh):
+    stages.set_primvar(mesh, "lips", Sdf.ValueTypeNames.FloatArray, "vertex", [1.0] * 40)
+
+
+BAD = {
+    "an edge of three faces": (three_at_an_edge, None, "faces"),
+    "holes in a limit surface": (hole, None, "face 300 has no limit surface"),
+    "no rest": (without_rest, None, "rest"),
+    "a sample that is not finite": (not_finite, FRAMES[1], "points: vertex 7 is not finite"),
+    "a sample of another count": (other_count, FRAMES[1], "points has 5 values"),
+    "no such point": (no_such_point, None, "10000"),
+    "a pin that cannot be read": (pin_of_another_count, None, "lips"),
+}
+
+
+@pytest.mark.parametrize(("spoil", "frame", "said"), BAD.values(), ids=BAD.keys())
+def test_a_mesh_that_cannot_be_slid_does_not_stop_the_others(spoil, frame, said, shot, tmp_path):
+    """It is left as it was, with one warning; the others come out as they do without it."""
+    setup_to_file(shot, tmp_path / "alone.usda", SKIN, whole=True, pin="lips")
+    stage, twin = Usd.Stage.Open(str(shot)), "/World/char/geo/twin_GEO"
+    mesh = add(stage, twin, bulging(stages.squares(SIDE)))
+    stages.set_primvar(mesh, "lips", Sdf.ValueTypeNames.FloatArray, "vertex", [0.0] * 625)
+    spoil(mesh)
+    shot = stages.save(stage, tmp_path / "both.usda")
+    report = setup_to_file(shot, tmp_path / "both_set_up.usda", whole=True, pin="lips")
+    assert [mesh.path for mesh in report.meshes] == [SKIN] and not report.failed
+    (warning,) = [problem for problem in report.problems if problem.severity == "warning"]
+    assert (warning.prim, warning.patch, warning.frame) == (twin, None, frame)
+    assert warning.message.startswith("has no patch: ") and said in warning.message
+    layer = Sdf.Layer.FindOrOpen(str(tmp_path / "both_set_up.usda"))
+    assert not layer.GetPrimAtPath(twin)
+    one, other = (whole(tmp_path / name) for name in ("alone.usda", "both_set_up.usda"))
+    assert list(one) == list(other) and one[SKIN]["skin"].tolist() == other[SKIN]["skin"].tolist()
+    with pytest.raises(StageProblems) as alone:
+        setup_to_file(shot, tmp_path / "never.usda", twin, whole=True, pin="lips")
+    assert alone.value.problems[0].message in warning.message
+
+
+def test_nothing_is_authored_where_none_can_be_slid(shot):
+    stage = Usd.Stage.Open(str(shot))
+    not_finite(UsdGeom.Mesh(stage.GetPrimAtPath(SKIN)))
     before = stage.GetRootLayer().ExportToString()
-    with pytest.raises(FrameProblem, match=rf"{SKIN}: frame 1002: points: vertex 7 is not finite"):
+    with pytest.raises(StageProblems, match=rf"error: {SKIN}: frame 1002: points: vertex 7 is not finite"):
         skinslide.setup(stage, whole=True)
     assert stage.GetRootLayer().ExportToString() == before
 

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Usd
 
-from skinslide.arrays.geometry import least_stretch
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, checked, edited
@@ -21,8 +20,8 @@ from skinslide.author.layer import author_layer
 from skinslide.author.mirror import other_side
 from skinslide.author.payload import PayloadLayer
 from skinslide.author.settings import Settings, has_pin
-from skinslide.author.whole import moving_meshes, stretched_faces
-from skinslide.problems import Problem, StageProblems, UsageError
+from skinslide.author.whole import left_out, moving_meshes, needed_faces, never
+from skinslide.problems import Fault, Problem, StageProblems, UsageError
 from skinslide.shot.check import CheckReport
 from skinslide.shot.checks import positive, texts
 from skinslide.shot.frames import FramesLike, checked_frames
@@ -39,6 +38,7 @@ from skinslide.stage.given import (
 )
 from skinslide.stage.patch import primvar_faces, subset_faces
 from skinslide.write.earlier import without_earlier_bake
+from skinslide.write.target import check_target
 
 _RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
@@ -100,7 +100,7 @@ def setup(
             0.75.
         mirror: With `joint`, also makes the patch of the other side, found by the names of joints and patch.
         whole: The faces whose edges ever stretch by over 2 %, and enough around them to give. Each mesh that is
-            rendered and has such edges gets one patch.
+            rendered, has such edges and can be slid gets one patch.
         frames: With `whole`, the frames to look at: a spec such as 1001:1024, or numbers; None: every sample.
         pin: Points that stay, such as lips, lids and nails, by the names of GeomSubsets under the mesh or primvars on
             it: their weight is 0. With `whole` each mesh has those that it has.
@@ -116,8 +116,7 @@ def setup(
     Raises:
         TypeError: The stage or the prim is of another type.
         UsageError: The arguments cannot be used, or the edit target takes no opinions.
-        FrameProblem: With `whole`, the points of a frame cannot be used. Nothing is authored then.
-        StageProblems: The patch could not be slid, or nothing stretches. Nothing is authored then.
+        StageProblems: The patch could not be slid, or nothing that could be stretches. Nothing is authored then.
     """
     if sum(source is not None for source in (faces, subset, primvar, joint)) + whole != 1:
         raise UsageError("one of faces, subset, primvar, joint and whole is needed")
@@ -149,37 +148,46 @@ def setup(
 def _setup_whole(
     stage: Usd.Stage, prim: PrimLike | None, patch: str, frames: list[float] | None, settings: Settings
 ) -> CheckReport:
-    """Makes one patch for each mesh that stretches; all of them, or none."""
+    """Makes one patch for each mesh that stretches and can be slid; all of them, or none."""
+    check_target(stage)
     paths = None if prim is None else given_paths("prim", prim)
-    made, left = list[EditedMesh](), list[Problem]()
+    with without_earlier_bake(stage, paths):
+        moving, barred = moving_meshes(stage, paths)
+        _check_pins(moving, settings.pins)
+        faces, said, wrong = needed_faces(moving, frames)
+    wrong = [*barred, *wrong]
+    while faces:
+        try:
+            report = _make_each(stage, faces, patch, settings)
+        except StageProblems as bad:
+            own = [each for each in bad.problems if each.prim in faces]
+            if not own:
+                raise
+            wrong += own
+            for path in {each.prim for each in own}:
+                del faces[path]
+        else:
+            return replace(report, problems=[*report.problems, *said, *left_out(wrong)])
+    message = never("no edge of any mesh") if moving else "no mesh is rendered and has points that move"
+    raise StageProblems(wrong or [Problem("error", paths[0] if paths else "", None, None, message)])
+
+
+def _make_each(stage: Usd.Stage, faces: dict[str, np.ndarray], patch: str, settings: Settings) -> CheckReport:
+    """Makes the patch of some faces of each mesh, by its path. Raises StageProblems, with those of every mesh."""
+    made, wrong = list[EditedMesh](), list[Problem]()
     with ExitStack() as authoring:
-        with without_earlier_bake(stage, paths):
-            moving, barred = moving_meshes(stage, paths)
-            _check_pins(moving, settings.pins)
-            for each in moving:
-                mesh = authoring.enter_context(edited(stage, each, patch))
-                faces, warnings = stretched_faces(mesh.prim, frames)
-                left += warnings
-                if faces.any():
-                    _make(mesh, patch, faces, settings.for_mesh(each))
-                    made.append(mesh)
-                else:
-                    left.append(_left(str(each.GetPath()), "note", _never("no edge")))
-        if not made:
-            message = _never("no edge of any mesh") if left else "no mesh is rendered and has points that move"
-            nothing = Problem("error", paths[0] if paths else "", None, None, message)
-            raise StageProblems([replace(each, severity="error") for each in barred] or [nothing])
-        report = checked(made)
-    left += [_left(each.prim, "warning", each.message) for each in barred]
-    return replace(report, problems=[*report.problems, *left])
-
-
-def _left(path: str, severity: str, why: str) -> Problem:
-    return Problem(severity, path, None, None, f"has no patch: {why}")
-
-
-def _never(what: str) -> str:
-    return f"{what} ever stretches by over {least_stretch():.0%}"
+        for path, chosen in faces.items():
+            try:
+                mesh = authoring.enter_context(edited(stage, path, patch))
+                _make(mesh, patch, chosen, settings.for_mesh(mesh.prim))
+                made.append(mesh)
+            except StageProblems as bad:
+                wrong += bad.problems
+            except Fault as fault:
+                wrong.append(Problem("error", path, patch, None, str(fault)))
+        if wrong:
+            raise StageProblems(wrong)
+        return checked(made)
 
 
 def _check_pins(meshes: Sequence[Usd.Prim], pins: Sequence[str]) -> None:
@@ -247,8 +255,7 @@ def setup_to_file(
         TypeError: The stage or the prim is of another type.
         UsageError: The arguments cannot be used.
         StageError: The stage cannot be opened, or the layer cannot be written.
-        FrameProblem: With `whole`, the points of a frame cannot be used. Nothing is written then.
-        StageProblems: The patch could not be slid, or nothing stretches. Nothing is written then.
+        StageProblems: The patch could not be slid, or nothing that could be stretches. Nothing is written then.
     """
     also = None if payload is None else PayloadLayer(stage, output, payload, force)
     report = author_layer(stage, output, force, lambda layered: setup(layered, prim, patch, **choice))

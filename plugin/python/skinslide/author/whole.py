@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.geometry import mask_stretched, note_stretch
-from skinslide.problems import FrameProblem, Problem, SliderError
+from skinslide.arrays.geometry import least_stretch, mask_stretched, note_stretch
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError
 from skinslide.shot.plan import beyond
 from skinslide.stage.finding import is_skinned, prims_at, slidable
-from skinslide.stage.mesh import read_moving
+from skinslide.stage.mesh import PatchedMesh, read_moving
 from skinslide.stage.values import FIRST
 
 PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
@@ -20,12 +21,12 @@ PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
 def moving_meshes(stage: Usd.Stage, prims: Sequence[str] | None) -> tuple[list[Usd.Prim], list[Problem]]:
     """The meshes at and below prims, or on the stage, that are rendered and whose points move.
 
-    Those that can be slid where they are, and why the others cannot.
+    Those that can be slid where they are, and an error for each of the others.
     """
     meshes = [prim for prim in prims_at(stage, prims) if prim.IsA(UsdGeom.Mesh) and prim.IsDefined()]
     moving = [prim for prim in meshes if _moves(prim) and _has_faces(prim) and _is_rendered(prim)]
     found, problems = slidable(stage, moving)
-    return [mesh.prim for mesh in found], problems
+    return [mesh.prim for mesh in found], [replace(each, severity="error") for each in problems]
 
 
 def _moves(prim: Usd.Prim) -> bool:
@@ -40,12 +41,58 @@ def _is_rendered(prim: Usd.Prim) -> bool:
     return UsdGeom.Imageable(prim).ComputePurpose() in PURPOSES
 
 
-def stretched_faces(prim: Usd.Prim, frames: Sequence[float] | None) -> tuple[np.ndarray, list[Problem]]:
-    """Whether a patch needs each face, bool (F,), by the frames given or every sample; and warnings.
+def needed_faces(
+    prims: Sequence[Usd.Prim], frames: Sequence[float] | None
+) -> tuple[dict[str, np.ndarray], list[Problem], list[Problem]]:
+    """The faces of which each mesh needs a patch, by the frames given or every sample.
 
-    There is a warning of frames beyond the samples. Raises Fault, and FrameProblem for points that cannot be used.
+    Args:
+        prims: Meshes.
+        frames: Those to look at; None: every sample.
+
+    Returns:
+        Of each mesh that needs one, by its path, whether a patch needs each face, bool (F,); notes of the others, and
+        warnings of frames beyond samples; an error for each mesh that cannot be looked at.
     """
-    mesh = read_moving(prim)
+    found, said, wrong = dict[str, np.ndarray](), list[Problem](), list[Problem]()
+    for prim in prims:
+        path = str(prim.GetPath())
+        try:
+            mesh = read_moving(prim)
+            faces = _stretched_faces(mesh, frames)
+        except Fault as fault:
+            wrong.append(Problem("error", path, None, None, str(fault)))
+            continue
+        except FrameProblem as bad:
+            wrong.append(bad.problem)
+            continue
+        said += beyond(mesh, frames or ())
+        if faces.any():
+            found[path] = faces
+        else:
+            said.append(_without_patch("note", path, None, never("no edge")))
+    return found, said, wrong
+
+
+def left_out(wrong: Iterable[Problem]) -> Iterator[Problem]:
+    """Warnings of meshes that get no patch: of each the first of its errors."""
+    firsts: dict[str, Problem] = {}
+    for each in wrong:
+        firsts.setdefault(each.prim, each)
+    for each in firsts.values():
+        yield _without_patch("warning", each.prim, each.frame, each.message)
+
+
+def _without_patch(severity: str, path: str, frame: float | None, why: str) -> Problem:
+    return Problem(severity, path, None, frame, f"has no patch: {why}")
+
+
+def never(what: str) -> str:
+    return f"{what} ever stretches by over {least_stretch():.0%}"
+
+
+def _stretched_faces(mesh: PatchedMesh, frames: Sequence[float] | None) -> np.ndarray:
+    """Whether a patch needs each face, bool (F,). Raises Fault, and FrameProblem for points that cannot be used."""
     counts, indices, rest = mesh.face_counts, mesh.face_indices, mesh.rest_points
     stretch = np.zeros(len(indices), np.float32)
     times = map(Usd.TimeCode, mesh.points_times() if frames is None else frames)
@@ -54,4 +101,4 @@ def stretched_faces(prim: Usd.Prim, frames: Sequence[float] | None) -> tuple[np.
             note_stretch(counts, indices, rest, mesh.points_at(time), stretch)
         except SliderError as error:
             raise FrameProblem(mesh.problem(str(error), time)) from error
-    return mask_stretched(counts, indices, rest, stretch), list(beyond(mesh, frames or ()))
+    return mask_stretched(counts, indices, rest, stretch)
