@@ -19,12 +19,13 @@ import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.slider import version
-from skinslide.problems import FrameProblem, Problem, StageProblems, errors, lines_text, told
+from skinslide.problems import FrameProblem, Problem, StageProblems, errors, first_of, lines_text, told
 from skinslide.shot.frames import AskedFrames
 from skinslide.shot.options import Frames, Prims, SlideOptions
 from skinslide.shot.plan import times_of
 from skinslide.shot.products import Shot
 from skinslide.shot.report import time_text
+from skinslide.shot.samples import finite_problem
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh, read_skinned
@@ -118,6 +119,7 @@ def cache(
                 done += 1
                 if progress:
                     progress(done, total)
+    problems += [warning for plan in plans for warning in plan.warnings()]
     return CacheReport([plan.report() for plan in plans], problems)
 
 
@@ -133,6 +135,7 @@ class _Cached:
     def __init__(self, mesh: PatchedMesh, times: list[Usd.TimeCode]):
         self._mesh, self.times = mesh, times
         self._vectors: list[SkinnedVectors] = []
+        self._told: list[Problem] = []  # of points that are not finite, at each frame
 
     def write(self, overs: OverLayer) -> Iterator[Usd.TimeCode]:
         """Yields each time once it is written."""
@@ -144,6 +147,7 @@ class _Cached:
             cached = self._mesh.points_at(time)
             if time == self.times[0]:
                 self._vectors = [each for each in self._mesh.skinned_vectors() if each.skinned(time) is not None]
+            self._told += filter(None, [finite_problem(self._mesh, cached, time)])
             overs.set_points(self._mesh.prim, cached, time)
             for source in self._vectors:
                 skinned = source.skinned(time)
@@ -156,6 +160,10 @@ class _Cached:
             if source.indices and source.indices.HasAuthoredValue():
                 overs.block(source.indices)
         overs.end_skinning(self._mesh.prim)
+
+    def warnings(self) -> Iterator[Problem]:
+        """What there is to say of what was written."""
+        return first_of(self._told)
 
     def report(self) -> CachedMesh:
         mesh, names = self._mesh, [source.name for source in self._vectors]

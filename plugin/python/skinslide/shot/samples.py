@@ -10,7 +10,7 @@ from pxr import Usd
 
 from skinslide.arrays.native import Controls
 from skinslide.arrays.slider import Slider
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError, first_of
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError, counted, first_of
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.values import FIRST
 
@@ -22,6 +22,17 @@ def sample_problems(mesh: PatchedMesh, slider: Slider | None, times: Sequence[fl
     for index, animation in enumerate(mesh.animation):
         moments = codes if animation.varies else [FIRST]
         yield from _by_severity(_controls_problem(mesh, index, moment) for moment in moments)
+
+
+def finite_problem(mesh: PatchedMesh, points: np.ndarray, time: Usd.TimeCode) -> Problem | None:
+    """A warning of points that are not finite, where all are made, and none is slid."""
+    try:
+        mesh.meaning.check_points(points)
+        return None
+    except Fault as fault:
+        more = int(np.count_nonzero(~np.isfinite(points).all(axis=1))) - 1
+        also = f", and {counted(more, 'more is not', 'more are not')}" if more else ""
+        return replace(mesh.problem(f"{fault}{also}", time), severity="warning")
 
 
 def _by_severity(found: Iterable[Problem | None]) -> Iterator[Problem]:
