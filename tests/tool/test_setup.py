@@ -193,6 +193,23 @@ def test_prim_that_is_no_mesh(prim, message, cache, tmp_path):
         setup_to_file(cache, tmp_path / "shot.usda", prim, "elbow_L", faces="0")
 
 
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_fault_of_an_older_patch_is_a_warning(whole, tmp_path, capfd):
+    """The new one is written, and nothing is called an error where the command has done what it was asked for."""
+    stage = stages.new_stage()
+    mesh = stages.add_mesh(stage, stages.grid())
+    mesh.GetPointsAttr().Set(stages.vectors(2 * stages.grid().points), FRAMES[-1])
+    stages.add_patch(mesh, np.arange(20, 30), "old")
+    mesh.GetPrim().CreateAttribute("skinSlide:old:holes", Sdf.ValueTypeNames.Token, False).Set("open")
+    cache, output = stages.save(stage, tmp_path / "cache.usda"), tmp_path / "shot.usda"
+    words = ["--whole"] if whole else ["--patch", "elbow_L", "--faces", "0-2"]
+    assert main(["setup", str(cache), "-o", str(output), "--prim", MESH, *words]) == 0
+    said = capfd.readouterr().out
+    assert f"warning: {MESH}: patch old: stops every bake of the mesh: skinSlide:old:holes is 'open'" in said
+    assert "error" not in said
+    assert main(["bake", str(output), "-o", str(tmp_path / "slid.usda")]) == 3
+
+
 USAGE = {
     "input is output": dict(output="publish/cache.usda"),
     "extension": dict(output="shot.txt"),

@@ -53,7 +53,10 @@ class EditedMesh:
 
 
 def checked(meshes: Sequence[EditedMesh]) -> CheckReport:
-    """What `check` says of one or more meshes of a stage. Raises StageProblems where a patch cannot be slid."""
+    """What `check` says of one or more meshes of a stage; of their other patches, errors become warnings.
+
+    Raises StageProblems where a patch that was authored cannot be slid.
+    """
     stage, paths = meshes[0].prim.GetStage(), [str(mesh.prim.GetPath()) for mesh in meshes]
     patches = {None, *(mesh.patch for mesh in meshes)}
     with without_earlier_bake(stage, paths):
@@ -61,7 +64,15 @@ def checked(meshes: Sequence[EditedMesh]) -> CheckReport:
     bad = [problem for problem in errors(report.problems) if problem.patch in patches]
     if bad:
         raise StageProblems(bad)
-    return replace(report, problems=[*report.problems, *(each for mesh in meshes for each in mesh.hidden())])
+    hidden = (each for mesh in meshes for each in mesh.hidden())
+    return replace(report, problems=[*map(_of_another, report.problems), *hidden])
+
+
+def _of_another(problem: Problem) -> Problem:
+    """A problem, where an error is of another patch, which was there before."""
+    if problem.severity != "error":
+        return problem
+    return replace(problem, severity="warning", message=f"stops every bake of the mesh: {problem.message}")
 
 
 @contextmanager
