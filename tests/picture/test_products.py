@@ -167,7 +167,7 @@ def test_the_command_writes_all_and_says_so(shot, tmp_path, capsys, slides):
         (["--follow", "--maps", "maps"], "no folder (--pictures) and no page (--html)"),
         (["--map-size", "16", "--html", "page.html"], "no folder (--maps)"),
         (["--maps", "maps", "--map-size", "0"], "must be at least 1"),
-        (["--maps", "maps", "--map-size", "16385"], "size is 16385; it must be at most 16384"),
+        (["--maps", "maps", "--map-size", "16385"], "error: --map-size is 16385; it must be at most 16384"),
     ],
 )
 def test_options_of_what_is_not_asked_for(words, message, shot, tmp_path, monkeypatch, capsys):

@@ -220,6 +220,8 @@ USAGE = {
     "faces: words": dict(faces="all"),
     "faces: backwards": dict(faces="9-3"),
     "faces: empty": dict(faces=""),
+    "pin: empty": dict(pin=""),
+    "weight: empty": dict(weight=""),
     "rule": dict(rule="stiff"),
     "holes": dict(holes="open"),
     "interpolation": dict(interpolation="cubic"),
@@ -237,6 +239,23 @@ def test_bad_usage(change, cache, tmp_path, monkeypatch, capfd):
     assert capfd.readouterr().err.startswith("error: ")
     assert cache.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["publish"]
+
+
+@pytest.mark.parametrize(
+    ("choice", "what"),
+    [
+        (dict(faces="0-2", pin=["mask", ""]), "a pin"),
+        (dict(whole=True, pin=""), "a pin"),
+        (dict(faces="0-2", weight=""), "a primvar"),
+        (dict(primvar=""), "a primvar"),
+        (dict(subset=""), "a GeomSubset"),
+        (dict(joint=["arm", ""]), "a joint"),
+    ],
+)
+def test_an_empty_name(choice, what, cache, tmp_path):
+    with pytest.raises(UsageError, match=f"^the name of {what} is empty$"):
+        setup_to_file(cache, tmp_path / "shot.usda", MESH, "elbow_L", **choice)
+    assert not (tmp_path / "shot.usda").exists()
 
 
 def test_a_set_up_cannot_sit_on_a_set_up(cache, tmp_path, capfd):

@@ -32,6 +32,7 @@ from skinslide.stage.given import (
     StrPath,
     check_face,
     given_faces,
+    given_name,
     given_paths,
     given_primvar,
     given_subset,
@@ -122,7 +123,7 @@ def setup(
         raise UsageError("one of faces, subset, primvar, joint and whole is needed")
     if joint is None and (reach is not None or mirror):
         raise UsageError("reach and mirror go with joint")
-    settings = Settings(texts("pin", pin), weight, rule, holes, interpolation, grow)
+    settings = Settings(_names("pin", pin), weight, rule, holes, interpolation, grow)
     if whole:
         name, times = "skin" if patch is None else patch, None if frames is None else checked_frames(frames)
         return _setup_whole(stage, prim, name, times, settings)
@@ -130,7 +131,7 @@ def setup(
         raise UsageError("a prim and a patch are needed, and no frames, where whole is not asked for")
     if joint is not None:
         patches = [patch, other_side(patch)] if mirror else [patch]
-        return _setup_joints(stage, prim, patches, texts("joint", joint), reach, settings)
+        return _setup_joints(stage, prim, patches, _names("joint", joint), reach, settings)
     with edited(stage, prim, patch) as mesh:
         own, chosen = SkinSlideAPI(mesh.prim, patch), None
         if isinstance(faces, str):
@@ -143,6 +144,10 @@ def setup(
             chosen = _of_primvar(own, primvar, mesh.meaning)
         _make(mesh, patch, chosen, settings)
         return mesh.checked()
+
+
+def _names(argument: str, given: Sequence[str] | str) -> list[str]:
+    return [given_name(f"a {argument}", name) for name in texts(argument, given)]
 
 
 def _setup_whole(

@@ -13,7 +13,6 @@ from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, number_or_name, positive_text
 from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
 
-_MAP_SIZE = "--map-size"  # of bake, whose --size is that of pictures; maps understands it too
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
 
 
@@ -184,7 +183,8 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     _add_options(pictures, PictureOptions)
     maps = command.add_argument_group("maps of the same frames, as maps draws them, with --patch and --st")
     maps.add_argument("--maps", metavar="DIR", help="folder for them, as maps -o")
-    _add_option(maps, MapOptions.__dataclass_fields__["size"], "map_size", _MAP_SIZE)
+    size = MapOptions.__dataclass_fields__["size"]
+    _add_option(maps, size, "map_size", size.metadata["flag"])
     _add_options(maps, MapOptions, "strain")
 
 
@@ -226,7 +226,7 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
     _add_options(command, SlideOptions)
     _add_options(command, MapOptions, "patches", "st", "strain")
     size = MapOptions.__dataclass_fields__["size"]
-    _add_option(command, size, "size", _MAP_SIZE, size.metadata["flag"])
+    _add_option(command, size, "size", size.metadata["flag"], "--size")  # of bake that is the size of pictures
     _add_printing(command)
 
 

@@ -314,7 +314,7 @@ class MapOptions(Options):
     size: int = option(
         1024,
         checks.map_size,
-        "--size",
+        "--map-size",
         type=checks.positive_text,
         metavar="N",
         help="texels along each side, 1 to 16384 (default: %(default)s)",

@@ -106,19 +106,26 @@ def check_face(face: int, face_count: int) -> None:
 
 
 def given_subset(prim: Usd.Prim, name: str) -> Usd.Prim:
-    """The child of a mesh that is to be a GeomSubset. Raises Fault."""
-    child = schema.child(prim, name)
+    """The child of a mesh that is to be a GeomSubset. Raises Fault, and UsageError for an empty name."""
+    child = schema.child(prim, given_name("a GeomSubset", name))
     if not child:
         raise Fault(f"there is no GeomSubset {name} under the mesh")
     return child
 
 
 def given_primvar(prim: Usd.Prim, name: str) -> UsdGeom.Primvar:
-    """A primvar that a mesh is to have. Raises Fault."""
-    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(name)
+    """A primvar that a mesh is to have. Raises Fault, and UsageError for an empty name."""
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(given_name("a primvar", name))
     if not primvar:
         raise Fault(f"there is no primvar {name} on the mesh")
     return primvar
+
+
+def given_name(what: str, name: str) -> str:
+    """The name of something on a mesh, which is not empty."""
+    if not name:
+        raise UsageError(f"the name of {what} is empty")
+    return name
 
 
 def given_value(name: str, value: Any, type_name: Sdf.ValueTypeName) -> Any:
