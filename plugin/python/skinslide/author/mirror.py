@@ -75,7 +75,7 @@ def mirror(
             units; None: 1e-4 of its largest extent.
 
     Returns:
-        What `check` says of the mesh.
+        What `check` says of the mesh; errors of its other patches are warnings.
 
     Raises:
         TypeError: The stage or the prim is of another type.
@@ -119,7 +119,7 @@ def mirror_to_file(
         **reflection: As for `mirror`.
 
     Returns:
-        What `check` says of the mesh.
+        What `check` says of the mesh; errors of its other patches are warnings.
 
     Raises:
         TypeError: The stage or the prim is of another type.

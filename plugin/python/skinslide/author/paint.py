@@ -47,7 +47,7 @@ class PaintReport:
         painted: How many edges were painted now.
         left_out: How many more were chosen, but are not of the patch.
         total: How many are painted by edge in all.
-        check: What `check` says of the mesh.
+        check: What `check` says of the mesh; errors of its other patches are warnings.
     """
 
     patch: str

@@ -112,7 +112,7 @@ def setup(
         grow: How far around its faces the patch grows, in the mesh's units.
 
     Returns:
-        What `check` says of the meshes.
+        What `check` says of the meshes; errors of their other patches are warnings.
 
     Raises:
         TypeError: The stage or the prim is of another type.
@@ -254,7 +254,7 @@ def setup_to_file(
         **choice: As for `setup`.
 
     Returns:
-        What `check` says of the meshes.
+        What `check` says of the meshes; errors of their other patches are warnings.
 
     Raises:
         TypeError: The stage or the prim is of another type.
