@@ -1,7 +1,7 @@
-/* Faces laid flat: all in one plane, or each in its own, where places on it have coordinates of two numbers. */
+/* Faces laid flat, all in one plane or each in its own, so that places on them have two coordinates. */
 #include "surface.h"
 
-/* The corners of a triangle: those of its face, first and one after the other. */
+/* The corners of a triangle of a fan: the face's first, and two that follow each other. */
 static void triangle_corners(const ss_patch *patch, const ss_flat *flat, int32_t triangle, const double *corners[3]) {
     int32_t face = patch->triangles.face[triangle], begin = patch->faces.face_start[face];
     int32_t second = begin + 1 + triangle - patch->triangles.first_triangle[face];
@@ -16,7 +16,7 @@ void ss_flat_place(const ss_patch *patch, const ss_flat *flat, const ss_place *p
         out[k] = flat->uv ? place->uv[k] : weight[0] * corners[0][k] + weight[1] * corners[1][k] + weight[2] * corners[2][k];
 }
 
-/* Solves p = sum of weight times corner; false where the triangle has no area. */
+/* Solves p = sum of weight times corner. False if the triangle has no area. */
 static bool weigh(const double *corners[3], const double p[2], double weight[3]) {
     double a[2], b[2], c[2];
     for (int k = 0; k < 2; k++)

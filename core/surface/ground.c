@@ -1,5 +1,6 @@
-/* Normals of a surface: at a vertex the mean of its triangles' by the sine of half the angle that each has there, which plain
- * arithmetic gives, and between vertices blended by the weights of a place. And how directions lie in what is seen along them. */
+/* Normals of a surface: at a vertex the mean of its triangles' normals, weighted by the sine of half the angle of each there;
+ * between vertices a blend by the weights of a place. And tangents, and the triangles around a vertex as seen along its
+ * normal. */
 #include "surface.h"
 
 #include <string.h>
@@ -12,7 +13,7 @@ bool ss_ground_allocate(ss_memory *memory, const ss_patch *patch, ss_ground *gro
     return ss_posed_allocate(memory, patch, &ground->pose);
 }
 
-/* The first is the axis that is least along the normal, made tangent. */
+/* The first tangent is the axis least along the normal, projected. */
 static void set_tangents(const double normal[3], double tangent[2][3]) {
     int axis = 0;
     for (int k = 1; k < 3; k++)
@@ -24,7 +25,7 @@ static void set_tangents(const double normal[3], double tangent[2][3]) {
     ss_cross(normal, tangent[0], tangent[1]);
 }
 
-/* False where the wedge is not seen, or has no area. */
+/* False if the wedge is seen from behind, or has no area. */
 static bool see_wedge(const ss_ground *ground, int32_t triangle, int corner, ss_wedge *out) {
     const ss_posed *pose = &ground->pose;
     const int32_t *v = pose->patch->triangles.vertex[triangle];

@@ -1,4 +1,4 @@
-/* Places on a patch: a triangle of it, weights of its vertices, and the same in a plane that the patch is laid out in. */
+/* Places on a patch: a triangle, weights of its vertices, and the same point in the plane that the patch is laid out in. */
 #include "surface.h"
 
 #include <string.h>
@@ -40,7 +40,7 @@ static double distance(const double a[2], const double b[2]) {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]));
 }
 
-/* In a triangle of no area: along its longest side. */
+/* For a triangle without area: weights along its longest side. */
 static void weigh_side(const double *corners[3], const double p[2], double weights[3]) {
     int longest = 0;
     for (int k = 1; k < 3; k++)

@@ -1,4 +1,4 @@
-/* Steps of a walk over a side into the next triangle, and how long they are in a pose. */
+/* Steps of a walk: over a side into the next triangle, and their length in a pose. */
 #include "surface.h"
 
 int ss_cross_side(const ss_patch *patch, ss_place *place, int corner) {
@@ -20,6 +20,6 @@ double ss_measure(ss_meter *meter, int32_t triangle, const double rates[3], doub
     ss_vector_along(meter->pose, triangle, rates, vector);
     double length = part * ss_length(vector), allowed = meter->limit - meter->walked;
     bool too_far = length > allowed;
-    meter->walked = too_far ? meter->limit : meter->walked + length; /* where a walk ends it says so to the bit */
+    meter->walked = too_far ? meter->limit : meter->walked + length; /* exactly, so that callers can tell */
     return too_far ? part * (allowed / length) : part;
 }

@@ -1,5 +1,5 @@
-/* How far each vertex goes along its way: no farther than the artist lets it, measured along the deformed surface. The way is the
- * straight line in the embedding from the vertex's own place to where it belongs. */
+/* Limits how far each vertex goes along its way, measured along the deformed surface, to what the artist allows. The way is the
+ * straight line in the embedding from the vertex's own place to where it was looked up. */
 #include "surface.h"
 
 #include <stdlib.h>
@@ -32,11 +32,11 @@ void ss_traveller_destroy(ss_traveller *traveller) {
     free(traveller);
 }
 
-/* Where a vertex may go, and what became of it. */
+/* The way of a vertex, and where it ends. */
 typedef struct journey {
     int32_t vertex;
     double limit;   /* along the way */
-    ss_place place; /* where it leads, then where it ends */
+    ss_place place; /* in: where the way leads; out: where it ends */
     bool cut, at_hole;
 } journey;
 
@@ -49,7 +49,7 @@ static void go_along_loop(const ss_traveller *traveller, const ss_place *own, jo
     ss_walk_border(&traveller->pose, &j->place, distance < 0 ? -goal : goal);
 }
 
-/* What is missing of a way that ends at a hole is measured through the air. */
+/* If a walk ends at a hole, the rest of the way is measured straight through space. */
 static double rest_of_way(const ss_traveller *traveller, const ss_place *end, const ss_place *place) {
     double a[3], b[3], gap[3];
     ss_place_point(&traveller->pose, end, a);

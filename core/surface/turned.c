@@ -1,26 +1,26 @@
-/* Walks over a surface in a direction that depends on the place alone, so that where a walk ends does not jump as the way there
- * comes to pass on the other side of a vertex. The direction is a vector tangent where the walk sets out, a vertex most often, at
- * each place turned by the least rotation that takes the normal there to the blended normal here, then carried along that
- * normal into the plane of the triangle and given the length that is left of the walk. A walk ends at the border. */
+/* Walks over a surface in a direction that depends only on the place, so that the end of a walk does not jump when its way
+ * comes to pass a vertex on the other side. The walk begins, mostly at a vertex, with a tangent vector. At each place this is
+ * turned by the least rotation from the normal where the walk began to the blended normal here, projected along that normal
+ * into the plane of the triangle, and given the length that is left of the walk. A walk ends at the border. */
 #include "surface.h"
 
 #define MOST_CROSSED     1000
 #define MOST_TURNED_BACK 100
-#define LEAST_SLANT      0.1 /* cosine between the normals of place and triangle, that carrying takes for less */
+#define LEAST_SLANT      0.1 /* of the cosine between the normals of place and triangle, by which projecting divides */
 
-enum { WALKERS = 32 }; /* that go on in turn */
+enum { WALKERS = 32 }; /* walks that take their steps in turn */
 
 typedef struct walker {
     const ss_ground *ground;
-    const double *up;      /* normal where it set out */
+    const double *up;      /* normal where it began */
     double heading[3];     /* unit, tangent there */
-    double left, whole;    /* of its length, and all of that */
-    double rates[3];       /* of the weights of its place, to its end */
-    int came, turned_back; /* corner opposite the side that it came over, or -1; how often the direction led back over one */
+    double left, whole;    /* of its length; and the whole length */
+    double rates[3];       /* of the weights of its place, for what is left */
+    int came, turned_back; /* corner opposite the side that it came over, or -1; how often the direction led back */
 } walker;
 
-/* Sets the rates in a triangle by the blended normal at the place, of any length; false where there is no direction. What is along
- * the normal n is left out of the direction turned, heading - turn (up + n): carrying takes it off. */
+/* Sets the rates in a triangle, from the blended normal at the place, of any length. False if there is no direction. The
+ * heading turned is heading - turn (up + n); its part along n is left to carry, which projecting along n removes anyway. */
 static inline bool aim(walker *w, int32_t triangle, const double blended[3]) {
     const ss_facet *facet = &w->ground->pose.facet[triangle];
     double length = ss_length(blended), share = length > 0 ? 1 / length : 0; /* n = share blended */
@@ -37,14 +37,14 @@ static inline bool aim(walker *w, int32_t triangle, const double blended[3]) {
 
 /* ---- From the vertex ---- */
 
-/* The shares of a way in a wedge. Returns the lesser one. */
+/* The shares of a way along the sides of a wedge. Returns the smaller one. */
 static inline double share_way(const ss_wedge *wedge, const double way[2], double rates[2]) {
     rates[0] = wedge->first[0] * way[0] + wedge->first[1] * way[1];
     rates[1] = wedge->second[0] * way[0] + wedge->second[1] * way[1];
     return ss_least(rates[0], rates[1]);
 }
 
-/* The wedge that a way which is in none is nearest to, or NULL. */
+/* The wedge nearest to a way that is in none, or NULL. */
 static const ss_wedge *nearest_wedge(const ss_wedge *wedges, int32_t count, const double way[2], double rates[2]) {
     const ss_wedge *chosen = NULL;
     double best = -INFINITY, own[2];
@@ -56,7 +56,7 @@ static const ss_wedge *nearest_wedge(const ss_wedge *wedges, int32_t count, cons
     return chosen;
 }
 
-/* The first wedge that the way is in; else the one that it is nearest to, or NULL. */
+/* The first wedge that the way is in; else the nearest, or NULL. */
 static inline const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vertex, const double way[2], double rates[2]) {
     const ss_wedge *wedges = ground->wedges + ground->wedge_start[vertex];
     int32_t count = ground->wedge_start[vertex + 1] - ground->wedge_start[vertex];
@@ -66,13 +66,14 @@ static inline const ss_wedge *choose_wedge(const ss_ground *ground, int32_t vert
     return nearest_wedge(wedges, count, way, rates);
 }
 
-/* Scales the shares that a way, whose length has that square, comes to as it is seen, to those of one as long in the triangle. */
+/* Scales shares of a way as seen along the normal so that the way keeps its length in the triangle, where it is slanted. square
+ * is that length squared. */
 static inline void scale_shares(const ss_wedge *wedge, const double way[2], double square, double rates[2]) {
     double rise = wedge->lean[0] * way[0] + wedge->lean[1] * way[1], scale = sqrt(square / (square + rise * rise));
     rates[0] = ss_most(scale * rates[0], 0), rates[1] = ss_most(scale * rates[1], 0);
 }
 
-/* The end of a walk that does not leave the triangle. */
+/* The end of a walk that does not leave its first triangle. */
 static void end_at_once(const ss_wedge *wedge, const double rates[2], ss_place *place) {
     double weight[3];
     int k = (int)(wedge->corner & 3);
@@ -93,7 +94,7 @@ static void aim_in_wedge(const ss_wedge *wedge, const double rates[2], walker *w
 
 /* ---- Over sides ---- */
 
-/* Where the direction leads back over the side that the walk came over: along that side. */
+/* If the direction leads back over the side that the walk came over, goes along that side. False if the walk ends. */
 static bool go_along_side(walker *w, int32_t triangle) {
     const ss_posed *pose = &w->ground->pose;
     const int32_t *v = pose->patch->triangles.vertex[triangle];
@@ -106,7 +107,7 @@ static bool go_along_side(walker *w, int32_t triangle) {
     return ++w->turned_back <= MOST_TURNED_BACK && isfinite(w->rates[to]);
 }
 
-/* Over the side opposite a corner; false where the walk ends there. */
+/* Goes over the side opposite a corner. False if the walk ends there. */
 static inline bool go_over(walker *w, ss_place *place, int corner) {
     const ss_posed *pose = &w->ground->pose;
     int32_t there = pose->patch->triangles.neighbour[place->triangle][(corner + 1) % 3];
@@ -118,13 +119,13 @@ static inline bool go_over(walker *w, ss_place *place, int corner) {
     return aim(w, there, blended) && (w->rates[w->came] >= 0 || go_along_side(w, there));
 }
 
-/* To the end, or over a side: false where it is the end. */
+/* Goes to the end of the walk, or over a side. False if it has ended. */
 static inline bool go_on(walker *w, ss_meter *meter, ss_place *place) {
     int corner;
     double whole = ss_reach(place, w->rates, w->came, &corner);
     double part = meter ? ss_measure(meter, place->triangle, w->rates, whole) : whole;
     ss_advance(place, w->rates, part, part < whole ? -1 : corner);
-    place->weight[0] = ss_most(place->weight[0], 0); /* which is what rounding leaves of 1 */
+    place->weight[0] = ss_most(place->weight[0], 0); /* which is 1 - the others, rounded */
     w->left *= 1 - part;
     return corner >= 0 && part >= whole && go_over(w, place, corner);
 }
@@ -136,7 +137,7 @@ static void walk(walker *w, ss_meter *meter, ss_place *place) {
 
 /* ---- From the first triangle on ---- */
 
-/* False where the walk ends there, of which *part is walked. */
+/* Begins a walk. False if it has ended at once, after *part of it. */
 static bool set_out(const ss_ground *ground, int32_t vertex, const double way[2], const ss_meter *meter, walker *w,
                     ss_place *place, double *part) {
     double square = way[0] * way[0] + way[1] * way[1], rates[2];
@@ -173,7 +174,7 @@ static void cut(double way[2], double part) {
     way[0] *= part, way[1] *= part;
 }
 
-/* All of them to their ends, in turn. */
+/* Takes all walks to their ends, one step of each in turn. */
 static void walk_in_turn(walker *w, int32_t count, const int32_t *vertices, ss_place *place) {
     int32_t going[WALKERS], left = count;
     for (int32_t i = 0; i < count; i++)

@@ -1,13 +1,13 @@
-/* Walks over a patch: straight in the plane that it is laid out in, or along its border in a pose. Straight means that where a
- * walk crosses a side it goes on in the next triangle at the same angle to that side. It ends at the border of the patch, so a
- * place never leaves it. */
+/* Walks over a patch: straight in the plane that it is laid out in, or along its border in a pose. Straight means that a walk
+ * that crosses a side goes on in the next triangle at the same angle to that side. Walks end at the border, so that a place
+ * never leaves the patch. */
 #include "surface.h"
 
 #define MOST_CROSSED 1000
 
-/* ---- Setting out: a step as rates of the weights ---- */
+/* ---- Beginning: a step as rates of the weights ---- */
 
-/* Solves step = a p + b q; false where p and q turn right or make no angle. */
+/* Solves step = a p + b q. False if p and q turn right or make no angle. */
 static bool split(const double p[3], const double q[3], const double step[3], double out[2]) {
     double area = p[0] * q[1] - p[1] * q[0];
     out[0] = (step[0] * q[1] - step[1] * q[0]) / area;
@@ -15,7 +15,7 @@ static bool split(const double p[3], const double q[3], const double step[3], do
     return area > 0 && isfinite(out[0]) && isfinite(out[1]);
 }
 
-/* From a vertex: into the triangle that the step points into; where none is, the one that it nearly does. */
+/* From a vertex, into the triangle that the step points into, else the one nearest to that. */
 static void leave_vertex(const ss_posed *plane, ss_place *place, const double step[3], double rates[3]) {
     const ss_patch *patch = plane->patch;
     int32_t vertex = patch->triangles.vertex[place->triangle][ss_place_corner(place)];
@@ -46,7 +46,7 @@ static void leave(const ss_posed *plane, ss_place *place, const double step[3], 
 
 /* ---- Walking ---- */
 
-/* Over the side opposite a corner into the next triangle, at the same angle to it. */
+/* Goes over the side opposite a corner into the next triangle, at the same angle to the side. */
 static void go_over(const ss_posed *pose, ss_place *place, int corner, double rates[3]) {
     const ss_patch *patch = pose->patch;
     int32_t here = place->triangle, there = patch->triangles.neighbour[here][(corner + 1) % 3];
@@ -64,7 +64,7 @@ static void go_over(const ss_posed *pose, ss_place *place, int corner, double ra
     ss_cross_side(patch, place, corner);
 }
 
-/* One straight walk. A facet without area ends it, and so does the border. */
+/* One straight walk. It ends at the border, and at a triangle without area. */
 static void walk(const ss_posed *plane, ss_place *place, const double step[3], ss_meter *meter) {
     double rates[3];
     leave(plane, place, step, rates);
@@ -97,13 +97,13 @@ double ss_walk_measured(const ss_posed *plane, const ss_posed *pose, ss_place *p
 
 /* ---- Along the border ---- */
 
-/* A place on the border as the triangle has it whose side it is on: at a vertex that of the side that leaves it. */
+/* A place on the border, given in the triangle whose side it is on; at a vertex, in that of the side that begins there. */
 static ss_place on_border(const ss_patch *patch, const ss_place *place) {
     int corner = ss_place_corner(place);
     return corner < 0 ? *place : ss_place_of_vertex(patch, NULL, patch->triangles.vertex[place->triangle][corner]);
 }
 
-/* The border side that the place is on, up to rounding: at a vertex the one that leaves it. */
+/* The border side that the place is on, up to rounding; at a vertex, the one that begins there. */
 static int border_side(const ss_patch *patch, const ss_place *place) {
     int nearest = 0;
     double least = INFINITY;
@@ -157,7 +157,7 @@ void ss_border_way(const ss_posed *pose, const ss_place *place, double out[3]) {
 
 void ss_walk_border(const ss_posed *pose, ss_place *place, double distance) {
     const ss_patch *patch = pose->patch;
-    if (distance == 0) /* not on over sides that have no length */
+    if (distance == 0) /* else it would go on over sides without length */
         return;
     ss_place from = on_border(patch, place);
     int32_t triangle = from.triangle;
