@@ -1,6 +1,7 @@
-/* Takes the first steps of several walks side by side. As a step of a walk does, a hop crosses the side of a slab that the point is
- * farthest outside of; but it is computed without branches, because a processor cannot predict which side that is, and near a side
- * it may err: the walks that follow are exact. Hops of one point have to wait for each other; those of several points overlap. */
+/* Takes the first steps of several walks side by side. Like a step of a walk, a hop crosses the side of a slab that the point
+ * is farthest outside of; but it is computed without branches, because a processor cannot predict which side that is. Near a
+ * side it may err, but the walks that follow are exact. Hops of one point have to wait for each other; those of several points
+ * overlap. */
 #include "plane.h"
 
 #define INLINE static inline __attribute__((always_inline))
@@ -9,7 +10,7 @@ enum { LANES = 2, HOPS = 3 }; /* enough for most points from where a neighbour l
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t lane_bits __attribute__((vector_size(8 * LANES)));
 
-/* The sides that two points are farthest outside of, each of its own slab; 3 where it is outside of none. */
+/* For two points, each with its own slab: the side that it is farthest outside of, or 3 if it is outside of none. */
 INLINE lane_bits sides_to_leave_by(const ss_paving *paving, const int32_t slab[LANES], const double (*p)[2]) {
     lanes x[3], y[3], turn[3], px = {p[0][0], p[1][0]}, py = {p[0][1], p[1][1]};
     for (int k = 0; k < 3; k++) {

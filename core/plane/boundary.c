@@ -1,11 +1,11 @@
-/* Where the outer boundary goes (paper, section 3.2): to the unit square between four corners, or to its inscribed circle, each
- * vertex at its share of rest arc length. The same places serve rest and every frame. */
+/* Where the outer boundary goes (paper, section 3.2): onto the unit square between four corners, or onto its inscribed circle,
+ * each vertex at its share of the arc length at rest. Rest and all frames have the same places. */
 #include "plane.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* cos and sin of |angle| <= pi/4 by their series: the rest is under 1e-17 there. */
+/* cos and sin of |angle| <= pi/4 by their series, whose remainder is under 1e-17 there. */
 static void small_circle(double angle, double out[2]) {
     double square = angle * angle, cosine = 1, sine = 1;
     for (int k = 9; k > 0; k--) {
@@ -66,7 +66,7 @@ static void place_on_circle(const ss_patch *patch, double (*uv)[2]) {
 
 /* ---- The square ---- */
 
-/* Places from corner number side, at loop position from, up to the next corner at to. */
+/* Places the vertices from the corner numbered side, at loop position from, up to the next corner, at position to. */
 static void place_on_side(const ss_patch *patch, int side, int32_t from, int32_t to, double (*uv)[2]) {
     static const double corners[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     const double *a = corners[side], *b = corners[side + 1];
@@ -115,7 +115,7 @@ static skinslide_status find_corners(const ss_patch *patch, int32_t positions[4]
     return SKINSLIDE_OK;
 }
 
-/* Cosine and sine of the angle between two sides at a corner; 1 and 0 where a side has no length. */
+/* Cosine and sine of the angle between the two sides at a corner; 1 and 0 if a side has no length. */
 static void corner_angle(const ss_patch *patch, int32_t corner, const float *points, double out[2]) {
     const ss_faces *faces = &patch->faces;
     const float *here = points + 3 * (int64_t)patch->mesh_vertex[faces->corner_vertex[corner]];
@@ -133,8 +133,8 @@ static void corner_angle(const ss_patch *patch, int32_t corner, const float *poi
     out[0] = length > 0 ? dot / length : 1, out[1] = length > 0 ? sqrt(cross) / length : 0;
 }
 
-/* A number that grows with the angle at which the patch is open at a boundary vertex, however many faces share it: two for every
- * half turn, then 1 - cosine of what is left. Angles are added as complex numbers are multiplied. */
+/* A number that grows with the interior angle of the patch at a boundary vertex, which several faces may share: 2 for every
+ * half turn, plus 1 - cosine of the rest. Angles are added by multiplying complex numbers. */
 static double opening(const ss_patch *patch, int32_t vertex, const float *points) {
     double cosine = 1, sine = 0, half_turns = 0;
     for (int32_t c = patch->vertex_corner[vertex]; c >= 0; c = patch->faces.corner_twin[ss_previous_corner(&patch->faces, c)]) {
@@ -158,7 +158,7 @@ static void choose_corners(const ss_patch *patch, const float *rest_points, int3
     int32_t i = 0;
     positions[0] = sharpest;
     for (int k = 1; k < 4; k++) {
-        do /* at least one step from the corner before, and leave a vertex for each corner to come */
+        do /* at least one step from the last corner, leaving a vertex for each corner to come */
             walked += side_length(patch, sharpest + i++);
         while (walked + 0.5 * side_length(patch, sharpest + i) < 0.25 * k * whole && count - i > 4 - k);
         positions[k] = (sharpest + i) % count;

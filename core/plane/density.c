@@ -1,13 +1,13 @@
-/* Force densities (paper, section 3.1): what every edge pulls with. */
+/* Force densities of the edges (paper, section 3.1). */
 #include "plane.h"
 
-/* q = 1/l, in units of the patch's shortest length so that its size does not matter. */
+/* q = 1/l, in units of the patch's shortest length, so that the patch's size does not matter. */
 static void unit_rule(const ss_patch *patch, const double *lengths, double *density) {
     for (int32_t e = 0; e < patch->faces.edge_count; e++)
         density[e] = patch->shortest / lengths[e];
 }
 
-/* q = m - l^2 + 1e-4 m with m the largest l^2, in units of m. */
+/* q = m - l^2 + 1e-4 m, with m the largest l^2, in units of m. */
 static void fast_rule(const ss_patch *patch, const double *lengths, double *density) {
     double longest = 0;
     for (int32_t e = 0; e < patch->faces.edge_count; e++)

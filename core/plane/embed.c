@@ -1,10 +1,10 @@
-/* The embedding (paper, section 3.1, equations of Schek 1974): for the free vertices, and for u and v each,
+/* The embedding (paper, section 3.1, equations of Schek 1974). For the free vertices, with u and v each as X,
  *
  *     (C' Q C) X = -(C' Q Cf) Xf
  *
- * C is the edge-vertex incidence of the free vertices, Cf that of the fixed, Q = diag(density). The pattern of the matrix is that
- * of the net, so its ordering and the pattern of its factor are found once, and each pose costs one numeric factorisation and one
- * solve for u and v together. */
+ * C is the edge-vertex incidence of the free vertices, Cf that of the fixed, Q = diag(density). The matrix has the pattern of
+ * the net, so that its ordering and the pattern of its factor are found once; each pose costs one numeric factorisation, and
+ * one solve for u and v together. */
 #include "plane.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
-/* Faces of an embedding by place: a tree of boxes, for what a walk cannot reach. It is as deep as the logarithm of the count of
- * faces however unevenly they lie, so that a patch whose faces crowd together (a finger tip in a circle) cannot stall a frame.
- * Faces are sorted along a Z-order curve and halved. */
+/* A tree of boxes around the faces of an embedding, for points that a walk cannot reach. Faces are sorted along a Z-order curve
+ * and halved, so that the depth is the logarithm of their number however unevenly they lie, and a patch whose faces crowd
+ * together (a finger tip in a circle) cannot stall a frame. */
 #include "plane.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@ enum { LEAF = 4, STACK = 64 };
 
 typedef struct node {
     double low[2], high[2];
-    int32_t lowest; /* face under this node */
+    int32_t lowest; /* face in this node */
 } node;
 
 typedef struct key {
@@ -24,7 +24,7 @@ struct ss_face_tree {
     const double (*uv)[2];
     key *keys;   /* [face_count] in Z-order */
     key *others; /* [face_count] scratch */
-    node *nodes; /* node i has children 2i + 1 and 2i + 2, each with half of its keys */
+    node *nodes; /* node i has children 2i + 1 and 2i + 2, with half of its keys each */
 };
 
 static int32_t node_count(int32_t faces) {
@@ -59,7 +59,7 @@ void ss_face_tree_destroy(ss_face_tree *tree) {
 
 /* ---- Building ---- */
 
-/* Spreads the low 31 bits to the even places. */
+/* Spreads the low 31 bits to the even bits. */
 static uint64_t spread(uint64_t bits) {
     bits = (bits | bits << 16) & 0x0000ffff0000ffff;
     bits = (bits | bits << 8) & 0x00ff00ff00ff00ff;
@@ -81,7 +81,7 @@ static uint64_t z_order(const ss_face_tree *tree, int32_t face) {
     return spread(quantized(sum[0] / (end - begin))) | spread(quantized(sum[1] / (end - begin))) << 1;
 }
 
-/* By code, and those of one code as they were: by each byte, from the lowest on. */
+/* Sorts by code, byte by byte from the lowest on; keys of one code keep their order. */
 static void sort_keys(ss_face_tree *tree) {
     enum { BITS = 8, DIGITS = 1 << BITS };
     int32_t count = tree->patch->faces.face_count;
@@ -120,7 +120,7 @@ static void add_node(node *box, const node *part) {
     box->lowest = part->lowest < box->lowest ? part->lowest : box->lowest;
 }
 
-/* As deep as the tree: under 32 calls. */
+/* The recursion is as deep as the tree: under 32 calls. */
 static void build_node(ss_face_tree *tree, int32_t index, int32_t begin, int32_t end) {
     node box = empty_node();
     if (end - begin <= LEAF) {
@@ -144,7 +144,7 @@ void ss_face_tree_build(ss_face_tree *tree, const double (*uv)[2]) {
     build_node(tree, 0, 0, tree->patch->faces.face_count);
 }
 
-/* ---- Queries: depth first, with what the stack of ranges has left to see ---- */
+/* ---- Queries: depth first, with a stack of ranges still to be visited ---- */
 
 typedef struct range {
     int32_t node, begin, end;
@@ -208,7 +208,7 @@ static double box_distance(const node *box, const double p[2]) {
 /* The nearest side so far. */
 typedef struct nearest {
     int32_t face, corner;
-    double square, at[2]; /* of the distance; the point on it */
+    double square, at[2]; /* the distance squared; the point */
 } nearest;
 
 static void nearest_on_face(const ss_face_tree *tree, int32_t face, const double p[2], nearest *best) {

@@ -1,8 +1,8 @@
-/* Where the loops of holes go: where they fall in the rest embedding with every hole capped.
+/* Where the loops of holes go: where they fall in the rest embedding if every hole is capped.
  *
- * The paper leaves hole loops free at rest and pins them where they fall; left free they fold. So each hole gets a virtual
- * vertex, joined to every vertex of its loop at density 1/(rest distance to the loop's centroid): the patch is then a disk,
- * whose embedding (rule unit, unpainted) cannot fold. The caps are dropped again, and the loops stay. */
+ * The paper leaves hole loops free at rest and then pins them where they fall, but free loops fold. So each hole gets a virtual
+ * vertex, joined to every vertex of its loop with density 1 / (rest distance to the loop's centroid). The patch is then a disk,
+ * whose embedding (rule unit, unpainted) cannot fold. The caps are dropped again, and the loops stay where they are. */
 #include "plane.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
-/* From a point in a face laid flat, that of the embedding or that of rest, to a point on the deformed mesh (paper, section 3.4):
- * the weights of the face's corners there, applied to the corners of the deformed face. `linear`: barycentric in a triangle of the
- * fan. `meanValue`: mean value coordinates in the polygon (Floater 2003; Hormann and Floater 2006), smooth across the fan's
- * diagonals. */
+/* From a point in a face laid flat, in the embedding or at rest, to a point on the deformed mesh (paper, section 3.4): the
+ * weights of the face's corners at that point are applied to the corners of the deformed face. `linear`: barycentric weights in
+ * a triangle of the fan. `meanValue`: mean value coordinates in the polygon (Floater 2003; Hormann and Floater 2006), smooth
+ * across the fan's diagonals. */
 #include "plane.h"
 
 #include <math.h>
@@ -18,10 +18,10 @@ static spoke spoke_to(const ss_patch *patch, const ss_flat *flat, int32_t corner
     return (spoke){x, y, sqrt(x * x + y * y)};
 }
 
-/* tan of half the angle between two spokes; infinite where the point is between their ends, on the side. */
+/* tan of half the angle between two spokes; infinite if the point is on the side between their ends. */
 static double half_tangent(spoke a, spoke b) {
     double product = a.length * b.length, dot = a.x * b.x + a.y * b.y, area = a.x * b.y - a.y * b.x;
-    if (fabs(area) <= 1e-14 * product) /* less than rounding leaves of it */
+    if (fabs(area) <= 1e-14 * product) /* within rounding */
         return dot > 0 ? 0 : INFINITY;
     return (product - dot) / area;
 }
@@ -67,7 +67,7 @@ bool ss_mean_value_weights(const ss_patch *patch, const ss_flat *flat, int32_t f
 
 /* ---- Points ---- */
 
-/* The weighted sum of deformed corners, as an offset from where a vertex is now. */
+/* The weighted sum of a face's deformed corners, as an offset from where the vertex is now. */
 static void offset_from(const ss_patch *patch, const float *points, int32_t vertex, const int32_t *corners, int32_t count,
                         const double *weights, double out[3]) {
     const float *here = points + 3 * (int64_t)patch->mesh_vertex[vertex];

@@ -1,4 +1,4 @@
-/* How the faces of an embedding lie: which hold a point, which turned over, whether any can overlap. */
+/* How the faces of an embedding lie: which hold a point, which are turned over, whether any can overlap. */
 #include "plane.h"
 
 #include <float.h>
@@ -15,7 +15,7 @@ int32_t ss_triangle_holding(const ss_patch *patch, int32_t face, const double (*
     return -1;
 }
 
-/* Twice the area of a triangle, and how much of it may be rounding of its corners. */
+/* Twice the area of a triangle, and how much of that may be due to rounding of its corners. */
 static double doubled_area(const double a[2], const double b[2], const double c[2], double *rounding) {
     double x1 = b[0] - a[0], y1 = b[1] - a[1], x2 = c[0] - a[0], y2 = c[1] - a[1];
     *rounding = 8 * DBL_EPSILON * (fabs(x1) + fabs(y1) + fabs(x2) + fabs(y2));
@@ -37,14 +37,14 @@ static void count_face(const ss_faces *faces, int32_t face, const double (*uv)[2
 }
 
 typedef double pair __attribute__((vector_size(16)));
-typedef double loose_pair __attribute__((vector_size(16), aligned(8), may_alias)); /* wherever it is */
+typedef double loose_pair __attribute__((vector_size(16), aligned(8), may_alias)); /* aligned as a double is */
 typedef int64_t pair_bits __attribute__((vector_size(16)));
 
 static inline pair size_of(pair x) {
     return (pair)((pair_bits)x & INT64_MAX);
 }
 
-/* Of two triangles: areas and roundings are those of doubled_area, to the bit. */
+/* Whether each of two triangles turns left beyond doubt, by the same areas and roundings as doubled_area's, to the bit. */
 static inline pair_bits two_turn_left(const int32_t (*v)[3], const double (*uv)[2]) {
     pair way[2][2];
     for (int t = 0; t < 2; t++)
@@ -55,8 +55,8 @@ static inline pair_bits two_turn_left(const int32_t (*v)[3], const double (*uv)[
     return x1 * y2 - y1 * x2 > 8 * DBL_EPSILON * (size_of(x1) + size_of(y1) + size_of(x2) + size_of(y2));
 }
 
-/* Whether all triangles turn left beyond doubt: each area is above a rounding that, in an embedding of size 1, is also above that of
- * the area itself. */
+/* Whether all triangles turn left beyond doubt: each area is larger than the rounding of its corners, which in an embedding of
+ * size 1 is larger than that of the area itself. */
 static bool clearly_turn_left(const ss_triangles *triangles, const double (*uv)[2]) {
     const int32_t(*v)[3] = (const int32_t(*)[3])triangles->vertex;
     pair_bits left = {-1, -1};
@@ -67,7 +67,7 @@ static bool clearly_turn_left(const ss_triangles *triangles, const double (*uv)[
     return left[0] && left[1] && area > rounding;
 }
 
-/* Exactly, or straight on, every triangle of the fan: so the face does not go round twice. */
+/* Whether every triangle of the fan turns left or is flat, exactly: then the face does not go round twice. */
 static bool fan_turns_left(const ss_faces *faces, int32_t face, const double (*uv)[2]) {
     for (int32_t t = 0; t < ss_fan_size(faces, face); t++) {
         int32_t v[3];
@@ -78,14 +78,15 @@ static bool fan_turns_left(const ss_faces *faces, int32_t face, const double (*u
     return true;
 }
 
-/* Of a quad the two corners that are not its fan's, beyond doubt. */
+/* Whether a quad turns left beyond doubt at the two corners where its fan has no triangle. */
 static bool clearly_turns_left(const int32_t *corners, const double (*uv)[2]) {
     const int32_t v[2][3] = {{corners[1], corners[2], corners[3]}, {corners[3], corners[0], corners[1]}};
     pair_bits left = two_turn_left(v, uv);
     return left[0] & left[1];
 }
 
-/* Exactly, or straight on, every corner that is not the fan's: its first triangle is at the second, its last at the last. */
+/* Whether a face turns left or goes straight on, exactly, at every corner that fan_turns_left did not test. The fan's first
+ * triangle is the second corner's, its last triangle the last corner's. */
 static bool corners_turn_left(const ss_faces *faces, int32_t face, const double (*uv)[2]) {
     const int32_t *corners = faces->corner_vertex + faces->face_start[face];
     int32_t n = ss_fan_size(faces, face) + 2;
@@ -105,7 +106,7 @@ ss_layout ss_lay_out(const ss_patch *patch, const double (*uv)[2]) {
         count_face(faces, f, uv, &layout);
         layout.regular = layout.regular && fan_turns_left(faces, f, uv);
     }
-    bool of_triangles = patch->triangles.count == faces->face_count; /* whose corners have been looked at */
+    bool of_triangles = patch->triangles.count == faces->face_count; /* whose corners were all tested */
     for (int32_t f = 0; f < faces->face_count && layout.regular && !of_triangles; f++)
         layout.regular = corners_turn_left(faces, f, uv);
     return layout;

@@ -1,11 +1,11 @@
 /* Looks rest vertices up in the frame's embedding (paper, section 3.3), exactly.
  *
- * Which face: the lowest that holds the point, its border included, among faces with area. All tests are exact, so the answer
- * depends on the embedding alone and not on how it was found. A vertex whose point is its own place stays, whatever else is
- * there. Where candidates are proposed, from a texture, the first that holds the point begins; else a walk over triangles, see
- * paving.c, which starts where the neighbour before it landed; of its two steps or so most are made beforehand, see approach.c.
- * Where faces may overlap, where a walk goes round or runs into a hole, a tree of faces answers. A point in no face goes to the
- * nearest, and is counted. */
+ * A point is in the lowest face with area that holds it, border included. All tests are exact, so that the answer depends only
+ * on the embedding, and not on how it was found. A vertex whose point is its own place stays, whatever else is there. The
+ * search begins with the first face that holds the point among those that a texture proposed; else with a walk over triangles,
+ * see paving.c, from where the neighbour before it landed, whose two steps or so are mostly made beforehand, see approach.c. If
+ * faces may overlap, or a walk goes round or runs into a hole, a tree of faces is asked. A point in no face is put on the
+ * nearest, and counted. */
 #include "plane.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ struct ss_locator {
     ss_memory memory;
     const ss_patch *patch;
     ss_face_tree *tree;
-    bool tree_built; /* for the embedding at hand */
+    bool tree_built; /* for the current embedding */
     ss_paving paving;
     int32_t *own;    /* [free_count] a slab at each vertex */
     int32_t *landed; /* [free_count] a slab near where each query was found */
@@ -60,7 +60,7 @@ static const double *corner_uv(const ss_locator *locator, int32_t corner) {
     return locator->uv[locator->patch->faces.corner_vertex[corner]];
 }
 
-/* On which side of the side that begins at a corner p is: 1 inside, 0 on its line, -1 outside. */
+/* Where p is relative to the side that begins at a corner: 1 inside, 0 on its line, -1 outside. */
 static int side_of(const ss_locator *locator, int32_t corner, const double p[2]) {
     return ss_orient(corner_uv(locator, corner), corner_uv(locator, ss_next_corner(&locator->patch->faces, corner)), p);
 }
@@ -79,11 +79,11 @@ static bool touches(const ss_locator *locator, int32_t face, const double p[2], 
             return false;
         *on_border |= side == 0;
     }
-    return left && right && below && above; /* a face of no area has its whole line inside */
+    return left && right && below && above; /* for a face without area, the whole line would be inside */
 }
 
-/* p is on the border of a face: gathers all faces that p is on the border of, over the sides p is on. Returns their count; -1
- * where p is on the boundary, since beyond a hole without area there may be more. */
+/* Given a face whose border p is on, gathers all such faces, going over the sides that p is on. Returns their count, or -1 if p
+ * is on the boundary, since there may be more beyond a hole without area. */
 static int32_t gather_touching(ss_locator *locator, int32_t face, const double p[2]) {
     const ss_faces *faces = &locator->patch->faces;
     int32_t count = 0;
@@ -106,7 +106,7 @@ static int32_t gather_touching(ss_locator *locator, int32_t face, const double p
     return bounded ? -1 : count;
 }
 
-/* The lowest face with area that holds p, given one that does. */
+/* Finds the lowest face with area that holds p, given one that does. False if that is not certain. */
 static bool settle(ss_locator *locator, int32_t face, const double p[2], bool on_border, ss_place *out) {
     int32_t count = 1, lowest = INT32_MAX, holding = -1;
     locator->stack[0] = face;
@@ -125,7 +125,7 @@ static bool settle(ss_locator *locator, int32_t face, const double p[2], bool on
 
 /* ---- What a texture proposed ---- */
 
-/* The place in the candidates of the first that holds p, with its answer; -1 where none does. Faces are convex. */
+/* Finds p's place with the first candidate that holds it. Returns which that is, or -1. Faces must be convex. */
 static int32_t try_candidates(ss_locator *locator, const ss_candidates *candidates, const double p[2], ss_place *out) {
     for (int32_t k = 0; candidates && k < SS_CANDIDATES; k++) {
         bool on_border;
@@ -151,11 +151,11 @@ static void search(ss_locator *locator, const double p[2], ss_place *out, ss_loc
 
 /* A point on the border. */
 typedef struct border_point {
-    int32_t corner;       /* that its side begins at */
-    double at[2], square; /* of the distance */
+    int32_t corner;       /* where its side begins */
+    double at[2], square; /* the point; the distance squared */
 } border_point;
 
-/* Side i of the loop's sides, counted round it, where that is nearer to p; returns whether it was. */
+/* Takes the nearest point of side i of a loop, counted cyclically, if that is nearer to p. Returns whether it was. */
 static bool try_side(const ss_locator *locator, int32_t loop, int32_t i, const double p[2], border_point *nearest) {
     const ss_patch *patch = locator->patch;
     int32_t begin = patch->loop_start[loop], count = patch->loop_start[loop + 1] - begin;
@@ -167,8 +167,8 @@ static bool try_side(const ss_locator *locator, int32_t loop, int32_t i, const d
     return true;
 }
 
-/* A vertex on a free loop slides along it, from its own sides one way or the other for as long as that is nearer to p: it never
- * jumps across the hole. */
+/* A vertex on a free loop slides along it, from its own sides one way or the other for as long as that comes nearer to p, so
+ * that it never jumps across the hole. */
 static void slide_on_loop(const ss_locator *locator, int32_t vertex, const double p[2], ss_place *out) {
     const ss_patch *patch = locator->patch;
     int32_t loop = patch->vertex_loop[vertex], own = patch->loop_place[vertex] - patch->loop_start[loop];
@@ -189,7 +189,7 @@ void ss_locator_set(ss_locator *locator, const double (*uv)[2], bool regular) {
     ss_paving_lay_out(&locator->paving, uv);
 }
 
-/* The slab that a walk from another leads to, and p's place; -1 where it leads nowhere. */
+/* Walks from a slab to the one that holds p, and finds p's place. Returns that slab, or -1 if the walk fails. */
 static int32_t walk_to(ss_locator *locator, int32_t from, const double p[2], int64_t *steps, ss_place *out) {
     bool on_border;
     int32_t slab = ss_paving_walk(&locator->paving, from, p, &on_border, steps);
@@ -209,7 +209,7 @@ ss_place ss_locate_near(ss_locator *locator, int32_t triangle, const double p[2]
     return place;
 }
 
-/* from is a slab near by. */
+/* Looks up query i, whose walk begins at the slab from. */
 static void locate_one(ss_locator *locator, int32_t i, int32_t from, const double p[2], const ss_candidates *candidates,
                        ss_place *out, ss_located *located) {
     const ss_patch *patch = locator->patch;
@@ -234,7 +234,8 @@ static void locate_one(ss_locator *locator, int32_t i, int32_t from, const doubl
     locator->landed[i] = slab < 0 ? locator->paving.slab_of[out->triangle] : slab;
 }
 
-/* Those of count queries from begin on, which begin where their neighbours before them landed; of one among themselves, at its own. */
+/* Looks up count queries from begin on. Each begins where the neighbour before it landed; if that is among these, at that one's
+ * own place. */
 static void locate_some(ss_locator *locator, int32_t begin, int32_t count, const double (*query)[2],
                         const ss_candidates *candidates, ss_place *places, ss_located *located) {
     int32_t near[SS_AT_ONCE];

@@ -1,11 +1,11 @@
-/* On which side of a line a point is: exact, so that neighbouring faces never both disown a point on their common edge.
+/* On which side of a line a point is, exactly, so that no point on a common edge is outside both faces.
  *
  *     orient(a, b, c) = sign of (a - c) x (b - c)
  *
- * ss_orient tries in double, with a bound on its error. Where that cannot tell, the six products of the expanded determinant are
+ * ss_orient tries in double, with a bound on its error. If that cannot tell, the six products of the expanded determinant are
  * split into sums of two doubles and added up without rounding (Dekker 1971, Knuth, Shewchuk 1997: expansions). Both must be
- * compiled without contraction of products and sums. Exact while no product underflows: coordinates of an embedding are in
- * [0,1] and, where not 0, far above 1e-140. */
+ * compiled without contraction of products and sums. Exact if no product underflows: coordinates of an embedding are in [0,1]
+ * and, unless 0, far above 1e-140. */
 #include "plane.h"
 
 /* x + y = a + b exactly, x the rounded sum. */
@@ -30,7 +30,7 @@ static void two_product(double a, double b, double *x, double *y) {
     *y = al * bl - (((*x - ah * bh) - al * bh) - ah * bl);
 }
 
-/* Adds b to an expansion of n components, smallest first; returns how many it has then. */
+/* Adds b to an expansion of n components, smallest first. Returns its new n. */
 static int grow(double *expansion, int n, double b) {
     int kept = 0;
     for (int i = 0; i < n; i++) {

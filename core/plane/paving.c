@@ -1,6 +1,6 @@
-/* The triangles of an embedding as walks go over them: numbered anew, so that what is near in the patch is near in memory however
- * its vertices and faces were numbered. Vertices come in the order of free_vertex, which goes from one to those beside it, then
- * the fixed ones; triangles by the first of their vertices. */
+/* The triangles of an embedding for walks: renumbered so that neighbours in the patch are near in memory, however its vertices
+ * and faces were numbered. Vertices come in the order of free_vertex, in which neighbours follow each other, and then the fixed
+ * ones; triangles are sorted by the first of their vertices. */
 #include "plane.h"
 
 #include <string.h>
@@ -74,7 +74,7 @@ void ss_paving_lay_out(ss_paving *paving, const double (*uv)[2]) {
         memcpy(paving->uv[i], uv[paving->vertex[i]], sizeof *uv);
 }
 
-/* Exactly: the first side that p is outside of; -1 where it is outside of none. */
+/* The first side that p is outside of, exactly; -1 if it is outside of none. */
 static int exact_side(const ss_paving *paving, const ss_slab *slab, const double p[2], bool *on_border) {
     for (int k = 0; k < 3; k++) {
         int side = ss_orient(paving->uv[slab->vertex[k]], paving->uv[slab->vertex[(k + 1) % 3]], p);
@@ -85,8 +85,8 @@ static int exact_side(const ss_paving *paving, const ss_slab *slab, const double
     return -1;
 }
 
-/* The side that p is farthest outside of, by the area of the triangle that it makes with it, since walks that leave by the first
- * may go round; -1 where it is outside of none. */
+/* The side that p is farthest outside of, by the area of its triangle with p, since walks that leave by the first such side may
+ * go round; -1 if it is outside of none. */
 static inline int side_to_leave_by(const ss_paving *paving, const ss_slab *slab, const double p[2], bool *on_border) {
     double x[3], y[3], turn[3], sum = 0;
     for (int k = 0; k < 3; k++)

@@ -1,5 +1,5 @@
-/* The rules by force density (the paper): the patch laid out in the plane at rest and in every frame, and each vertex looked up
- * in the frame's where it is at rest. */
+/* The rules by force density (the paper): the patch is laid out in the plane at rest and in every frame, and each vertex is
+ * looked up in the frame's layout at its place at rest. */
 #include "plane.h"
 
 #include <stdlib.h>
@@ -9,22 +9,22 @@ typedef struct plane_rest {
     ss_rest head;
     ss_memory memory;
     ss_system *system;
-    double (*uv)[2]; /* [vertex_count] the head's */
+    double (*uv)[2]; /* [vertex_count] U0, the head's */
 } plane_rest;
 
 typedef struct plane_slide {
     ss_slide head;
     ss_memory memory;
-    ss_room *room; /* of an embedding: */
+    ss_room *room; /* of the factor and the next two, used while embedding */
     ss_factor *factor;
     double (*own_rest_uv)[2]; /* [vertex_count] U0 with the frame's paint */
     double *density;          /* [edge_count] */
     ss_locator *locator;
-    ss_traveller *traveller;    /* NULL before the first limit */
+    ss_traveller *traveller;    /* NULL before the first frame with limits */
     ss_idbuffer *idbuffer;      /* NULL: nothing proposes faces */
-    int32_t number;             /* in it */
-    ss_candidates *candidates;  /* [free_count] where it does */
-    const double (*rest_uv)[2]; /* that of rest, or own_rest_uv */
+    int32_t number;             /* the patch's in idbuffer */
+    ss_candidates *candidates;  /* [free_count] with idbuffer */
+    const double (*rest_uv)[2]; /* the rest's uv, or own_rest_uv */
     double (*uv)[2];            /* [vertex_count] Ud, the head's */
 } plane_slide;
 
@@ -49,7 +49,7 @@ static skinslide_status embed_rest(plane_rest *own, skinslide_error *error) {
     return status;
 }
 
-/* Whether anything of a hole stays. */
+/* Whether a vertex of a hole is fixed. */
 static bool holds_hole(const ss_patch *patch) {
     bool holds = false;
     for (int32_t v = 0; v < patch->vertex_count; v++)
@@ -152,7 +152,7 @@ static skinslide_status open_slide(const ss_rest *rest, ss_room *room, ss_idbuff
 
 /* ---- In every frame ---- */
 
-/* Paint that differs from the set-up's costs an embedding of rest. */
+/* If the frame's paint differs from the set-up's, embeds rest anew. */
 static skinslide_status choose_rest(plane_slide *own, const ss_frame *frame, skinslide_error *error) {
     const ss_rest *rest = own->head.rest;
     own->rest_uv = rest->uv;
@@ -164,7 +164,7 @@ static skinslide_status choose_rest(plane_slide *own, const ss_frame *frame, ski
     return ss_embed(system_of(own), own->factor, own->density, own->own_rest_uv, error);
 }
 
-/* u = lerp(own place in Ud, rest place in U0, weight): what each free vertex is looked up at. */
+/* u = lerp(own place in Ud, rest place in U0, weight): where each free vertex is looked up. */
 static void ask(plane_slide *own, const double *weights) {
     const ss_patch *patch = own->head.rest->patch;
     for (int32_t i = 0; i < patch->free_count; i++) {
@@ -175,7 +175,7 @@ static void ask(plane_slide *own, const double *weights) {
     }
 }
 
-/* The frame's embedding; its texture is being drawn while what follows goes on. */
+/* Embeds the frame. A device draws its texture while the caller goes on. */
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
     plane_slide *own = (plane_slide *)slide;
     const ss_patch *patch = slide->rest->patch;
@@ -217,7 +217,7 @@ static void locate(plane_slide *own, skinslide_patch_result *result) {
     result->walk_steps = located.steps;
 }
 
-/* Where each vertex is in it, no farther than the artist lets it. */
+/* Looks each vertex up in the embedding, and limits its way. */
 static skinslide_status finish(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
     plane_slide *own = (plane_slide *)slide;
     double time = ss_now();
