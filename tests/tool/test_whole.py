@@ -98,6 +98,22 @@ def test_of_a_prim_and_below(shot, tmp_path):
         setup_to_file(shot, tmp_path / "c.usda", STILL, whole=True)
 
 
+@pytest.mark.parametrize("rest", ["points", "rest"])
+def test_one_pose_is_compared_with_rest(rest, shot, tmp_path):
+    """It is a sample beside default points, or default points beside a primvar. One that is rest moves nothing."""
+    stage, shape, still = stages.new_stage(), stages.squares(SIDE), STILL.replace("still", "at_rest")
+    for path, points in ((SKIN, bulging(shape)[FRAMES[-1]]), (still, shape.points)):
+        mesh = stages.add_mesh(stage, shape, path, frames=(), rest=rest)
+        time = FRAMES[0] if rest == "points" else Usd.TimeCode.Default()
+        mesh.GetPointsAttr().Set(stages.vectors(points.astype(np.float32)), time)
+    report = setup_to_file(stages.save(stage, tmp_path / "pose.usda"), tmp_path / "one.usda", whole=True)
+    assert not [problem for problem in report.problems if problem.prim == still]
+    setup_to_file(shot, tmp_path / "many.usda", SKIN, whole=True)
+    one, many = whole(tmp_path / "one.usda"), whole(tmp_path / "many.usda")
+    assert list(one) == [SKIN] and one[SKIN]["skin"].tolist() == many[SKIN]["skin"].tolist()
+    assert main(["bake", str(tmp_path / "one.usda"), "-o", str(tmp_path / "slid.usda")]) == 0
+
+
 def test_pins(shot, tmp_path):
     setup_to_file(shot, tmp_path / "x.usda", whole=True, pin="lips")
     skinslide.bake(stage := open_stage(tmp_path / "x.usda"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -24,13 +25,21 @@ def moving_meshes(stage: Usd.Stage, prims: Sequence[str] | None) -> tuple[list[U
     Those that can be slid where they are, and an error for each of the others.
     """
     meshes = [prim for prim in prims_at(stage, prims) if prim.IsA(UsdGeom.Mesh) and prim.IsDefined()]
-    moving = [prim for prim in meshes if _moves(prim) and _has_faces(prim) and _is_rendered(prim)]
+    moving = [prim for prim in meshes if _is_rendered(prim) and _has_faces(prim) and _moves(prim)]
     found, problems = slidable(stage, moving)
     return [mesh.prim for mesh in found], [replace(each, severity="error") for each in problems]
 
 
 def _moves(prim: Usd.Prim) -> bool:
-    return UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying() or is_skinned(prim)
+    return UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying() or is_skinned(prim) or _leaves_rest(prim)
+
+
+def _leaves_rest(prim: Usd.Prim) -> bool:
+    """Whether the first pose of a mesh, which may be all there is, is another than rest."""
+    with suppress(Fault, FrameProblem):  # without rest, for one, it is a mesh that stays
+        mesh = read_moving(prim)
+        return not np.array_equal(mesh.points_at(FIRST), mesh.rest_points)
+    return False
 
 
 def _has_faces(prim: Usd.Prim) -> bool:
