@@ -195,6 +195,15 @@ typedef struct ss_triangles {
     int32_t *vertex_triangle; /* [vertex_count] a triangle at the vertex; on the border the one whose side leaves along it */
 } ss_triangles;
 
+/* Faces of a set-up that are connected through edges. */
+typedef struct ss_piece {
+    const int32_t *faces; /* [face_count] of the mesh, ascending */
+    int32_t face_count;
+    int32_t number, count;        /* of the set-up */
+    const int32_t *shared_vertex; /* [shared_count] mesh vertices that are of other pieces, too, among others; ascending */
+    int32_t shared_count;
+} ss_piece;
+
 typedef struct ss_patch {
     ss_memory memory;
     char label[160]; /* "patch elbow" or "patch elbow (piece 2 of 2)" */
@@ -205,6 +214,7 @@ typedef struct ss_patch {
     ss_faces faces;       /* corners hold patch vertices */
     int32_t *mesh_vertex; /* [vertex_count], ascending; the parts of a split vertex have the same */
     uint8_t *split;       /* [vertex_count] whether it is a part of a split vertex */
+    uint8_t *shared;      /* [vertex_count] whether other pieces of the set-up have the vertex, too */
     int32_t *copy_start;  /* [vertex_count + 1] */
     int32_t *copy;        /* the mesh vertices that are each patch vertex, ascending: one, but for welded ones */
     int32_t *mesh_face;   /* [face_count], ascending */
@@ -233,8 +243,7 @@ static inline bool ss_has_plane(skinslide_rule rule) {
 
 /* The mesh's weld must outlive the patch. face_start as for ss_take_faces. */
 skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup,
-                                 int32_t setup_index, const int32_t *mesh_faces, int32_t face_count, int32_t piece,
-                                 int32_t piece_count, ss_patch **out, skinslide_error *error);
+                                 int32_t setup_index, const ss_piece *piece, ss_patch **out, skinslide_error *error);
 void ss_patch_destroy(ss_patch *patch);
 /* BAD_PATCH where it is closed or has handles: only a disk with holes can be laid out in the plane. */
 skinslide_status ss_check_disk(const ss_patch *patch, skinslide_error *error);

@@ -46,6 +46,12 @@ static bool number_vertices(ss_patch *patch, ss_memory *scratch) {
     return !splits_vertices(patch) || ss_split_vertices(patch);
 }
 
+static void mark_shared(ss_patch *patch, const ss_piece *piece) {
+    for (int32_t v = 0; v < patch->vertex_count && piece->shared_count > 0; v++)
+        if (bsearch(&patch->mesh_vertex[v], piece->shared_vertex, (size_t)piece->shared_count, sizeof(int32_t), ss_ascending))
+            patch->shared[v] = 1;
+}
+
 /* Copies the vertices from scratch memory to arrays of the size that they came to. False where memory is short. */
 static bool keep_vertices(ss_patch *patch) {
     int32_t *mesh_vertex = SS_NEW(&patch->memory, int32_t, patch->vertex_count);
@@ -263,6 +269,11 @@ static bool holds_loop(const ss_patch *patch, int32_t loop) {
     return loop == 0 ? patch->setup->holes != SKINSLIDE_HOLES_FREE_ALL : patch->setup->holes == SKINSLIDE_HOLES_PINNED;
 }
 
+/* Faces that meet only in a point, be they of one piece or of several, cannot each move it. In a plane, what is held is on loops. */
+static bool touches_others(const ss_patch *patch, int32_t vertex) {
+    return patch->split[vertex] || (patch->shared[vertex] && (patch->vertex_loop[vertex] >= 0 || splits_vertices(patch)));
+}
+
 /* Whether the set-up holds any copy of a vertex. */
 static bool is_held(const ss_patch *patch, int32_t vertex) {
     bool held = false;
@@ -274,7 +285,7 @@ static bool is_held(const ss_patch *patch, int32_t vertex) {
 static void hold_vertices(ss_patch *patch) {
     for (int32_t v = 0; v < patch->vertex_count; v++) {
         int32_t loop = patch->vertex_loop[v];
-        patch->fixed[v] = patch->split[v] || (loop >= 0 && holds_loop(patch, loop));
+        patch->fixed[v] = touches_others(patch, v) || (loop >= 0 && holds_loop(patch, loop));
         bool held = !patch->fixed[v] && loop >= 0 && is_held(patch, v);
         patch->held_count += held;
         patch->fixed[v] = patch->fixed[v] || held;
@@ -310,6 +321,7 @@ static void allocate(ss_patch *patch) {
     patch->vertex_loop = SS_NEW(memory, int32_t, vertices);
     patch->loop_place = SS_NEW(memory, int32_t, vertices);
     patch->fixed = SS_NEW(memory, uint8_t, vertices);
+    patch->shared = SS_NEW(memory, uint8_t, vertices);
     patch->free_vertex = SS_NEW(memory, int32_t, vertices);
     patch->free_before = SS_NEW(memory, int32_t, vertices);
 }
@@ -330,29 +342,28 @@ static skinslide_status build(ss_patch *patch, const float *rest_points, int32_t
 }
 
 skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face_start, const skinslide_patch_setup *setup,
-                                 int32_t setup_index, const int32_t *mesh_faces, int32_t face_count, int32_t piece,
-                                 int32_t piece_count, ss_patch **out, skinslide_error *error) {
+                                 int32_t setup_index, const ss_piece *piece, ss_patch **out, skinslide_error *error) {
     ss_patch *patch = calloc(1, sizeof *patch);
     if (!patch)
         return ss_out_of_memory(error);
     ss_memory scratch = {0};
-    patch->setup = setup, patch->setup_index = setup_index, patch->piece = piece, patch->piece_count = piece_count;
+    patch->setup = setup, patch->setup_index = setup_index, patch->piece = piece->number, patch->piece_count = piece->count;
     patch->weld = mesh->weld, patch->mesh_vertex_count = mesh->vertex_count;
-    ss_label(setup, piece, piece_count, patch->label, sizeof patch->label);
+    ss_label(setup, piece->number, piece->count, patch->label, sizeof patch->label);
     if (!face_start)
         face_start = ss_list_starts(mesh, &scratch);
     skinslide_status status =
-        ss_take_faces(mesh, face_start, mesh_faces, face_count, patch->label, &patch->memory, &patch->faces, error);
+        ss_take_faces(mesh, face_start, piece->faces, piece->face_count, patch->label, &patch->memory, &patch->faces, error);
     if (!status && !(number_vertices(patch, &scratch) && keep_vertices(patch)))
         status = ss_out_of_memory(error);
     if (!status) {
         allocate(patch);
-        patch->mesh_face = SS_NEW(&patch->memory, int32_t, face_count);
+        patch->mesh_face = SS_NEW(&patch->memory, int32_t, piece->face_count);
         int32_t *arrays[2] = {SS_NEW(&scratch, int32_t, patch->vertex_count), SS_NEW(&scratch, int32_t, patch->vertex_count)};
         int32_t(*pairs)[2] = ss_new(&scratch, patch->faces.corner_count, sizeof *pairs);
         status = patch->memory.failed || scratch.failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
         if (!status)
-            pair_corners(&patch->faces, mesh, face_start, mesh_faces, pairs);
+            mark_shared(patch, piece), pair_corners(&patch->faces, mesh, face_start, piece->faces, pairs);
         if (!status && !list_copies(patch, pairs))
             status = ss_out_of_memory(error);
         if (!status)
@@ -363,8 +374,8 @@ skinslide_status ss_patch_create(const skinslide_mesh *mesh, const int32_t *face
         ss_patch_destroy(patch);
         return status;
     }
-    for (int32_t f = 0; f < face_count; f++)
-        patch->mesh_face[f] = mesh_faces[f];
+    for (int32_t f = 0; f < piece->face_count; f++)
+        patch->mesh_face[f] = piece->faces[f];
     *out = patch;
     return SKINSLIDE_OK;
 }

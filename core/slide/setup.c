@@ -140,6 +140,8 @@ typedef struct split_faces {
     int32_t count;
     int32_t *start; /* [count + 1] */
     int32_t *faces;
+    int32_t *shared; /* [shared_count] vertices of several pieces, ascending */
+    int32_t shared_count;
 } split_faces;
 
 /* Puts faces [face_count], which ascend, in the order of their pieces. */
@@ -155,6 +157,26 @@ static skinslide_status sort_by_piece(const int32_t *faces, const int32_t *piece
         out->start[piece + 2] += out->start[piece + 1];
     for (int32_t i = 0; i < face_count; i++)
         out->faces[out->start[piece_of_face[i] + 1]++] = faces[i];
+    return SKINSLIDE_OK;
+}
+
+/* Pieces have no edge in common, but may touch in vertices. */
+static skinslide_status list_shared(const ss_faces *faces, const int32_t *piece_of_face, split_faces *out,
+                                    skinslide_error *error) {
+    if (out->count == 1)
+        return SKINSLIDE_OK;
+    int32_t(*pairs)[2] = ss_new(&out->memory, faces->corner_count, sizeof *pairs);
+    out->shared = SS_NEW(&out->memory, int32_t, faces->corner_count);
+    if (out->memory.failed)
+        return ss_out_of_memory(error);
+    for (int32_t c = 0; c < faces->corner_count; c++)
+        pairs[c][0] = faces->corner_vertex[c], pairs[c][1] = piece_of_face[faces->corner_face[c]];
+    qsort(pairs, (size_t)faces->corner_count, sizeof *pairs, ss_ascending_pairs);
+    for (int32_t c = 1, vertex; c < faces->corner_count; c++) {
+        bool meets = (vertex = pairs[c][0]) == pairs[c - 1][0] && pairs[c][1] != pairs[c - 1][1];
+        if (meets && (out->shared_count == 0 || out->shared[out->shared_count - 1] != vertex))
+            out->shared[out->shared_count++] = vertex;
+    }
     return SKINSLIDE_OK;
 }
 
@@ -180,7 +202,8 @@ static skinslide_status split(const skinslide_build *build, const skinslide_patc
     if (status)
         return status;
     out->count = ss_number_pieces(&faces, piece_of_face, stack);
-    return sort_by_piece(sorted, piece_of_face, setup->face_count, out, error);
+    status = sort_by_piece(sorted, piece_of_face, setup->face_count, out, error);
+    return status ? status : list_shared(&faces, piece_of_face, out, error);
 }
 
 /* What the limit surface asks for beyond prepare(). */
@@ -197,10 +220,10 @@ static skinslide_status add_piece(const skinslide_build *build, int32_t setup, c
                                   skinslide_error *error) {
     const skinslide_mesh *mesh = &build->taken.mesh;
     const skinslide_patch_setup *own = &build->slider->setups[setup];
-    int32_t piece = out->part_count, first = pieces->start[piece];
-    ss_part *part = &out->parts[piece];
-    skinslide_status status = ss_patch_create(mesh, build->face_start, own, setup, pieces->faces + first,
-                                              pieces->start[piece + 1] - first, piece, pieces->count, &part->patch, error);
+    int32_t number = out->part_count, first = pieces->start[number], face_count = pieces->start[number + 1] - first;
+    ss_piece piece = {pieces->faces + first, face_count, number, pieces->count, pieces->shared, pieces->shared_count};
+    ss_part *part = &out->parts[number];
+    skinslide_status status = ss_patch_create(mesh, build->face_start, own, setup, &piece, &part->patch, error);
     if (!status) {
         out->part_count++;
         status = prepare(&out->memory, part, mesh, own->controls, error);

@@ -134,9 +134,20 @@ static void slide_once(const rig *r, const test_mesh *mesh, const float *points,
     free(slid), free(results);
 }
 
+static void check_shared(const skinslide_slider *slider, int32_t part) {
+    const ss_patch *patch = slider->parts[part].patch;
+    for (int32_t v = 0; v < patch->vertex_count; v++) {
+        bool shared = false;
+        for (int32_t p = 0; p < slider->part_count; p++)
+            shared = shared || (p != part && ss_patch_vertex(slider->parts[p].patch, patch->mesh_vertex[v]) >= 0);
+        assert_int_equal(patch->shared[v], shared);
+    }
+}
+
 static void exercise(const rig *r, const test_mesh *mesh, dice *d, painted *paint) {
     for (int32_t p = 0; p < r->slider->part_count; p++) {
         const ss_patch *patch = r->slider->parts[p].patch;
+        check_shared(r->slider, p);
         (ss_has_plane(patch->setup->rule) ? assert_patch_holds : assert_surface_holds)(patch);
     }
     float *points = malloc(POINT_BYTES(mesh)), *posed = random_pose(mesh, roll(d));

@@ -224,7 +224,8 @@ typedef struct skinslide_controls {
     { sizeof(skinslide_controls), 0, 0, 0, 0, 0, 1.0f, 0, 0, 0, 1.0f, 1.0f }
 
 /* One patch as an artist sets it up. Faces that fall into several pieces, connected through edges, become several patches with
- * the same settings; corners then count for the piece that has them. Start from SKINSLIDE_PATCH_SETUP_DEFAULT. */
+ * the same settings; corners then count for the piece that has them. A vertex in which pieces touch stays; under UNIT and FAST,
+ * only on borders. Start from SKINSLIDE_PATCH_SETUP_DEFAULT. */
 typedef struct skinslide_patch_setup {
     size_t size;            /* sizeof(skinslide_patch_setup) */
     const char *name;       /* used in messages; copied */

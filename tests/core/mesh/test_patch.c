@@ -72,7 +72,8 @@ static void expect_patch(const test_mesh *mesh, const char *text) {
     skinslide_patch_setup setup = setup_of(faces, mesh->face_count);
     skinslide_error error;
     ss_patch *patch = NULL;
-    skinslide_status status = ss_patch_create(&view, NULL, &setup, 0, faces, mesh->face_count, 0, 1, &patch, &error);
+    const ss_piece piece = {.faces = faces, .face_count = mesh->face_count, .count = 1};
+    skinslide_status status = ss_patch_create(&view, NULL, &setup, 0, &piece, &patch, &error);
     free(faces);
     assert_true((patch == NULL) == (status != SKINSLIDE_OK));
     if (!status)

@@ -189,7 +189,8 @@ static void expect_corners(const test_mesh *mesh, const int32_t corners[4], cons
     setup.corners = corners, setup.boundary = SKINSLIDE_BOUNDARY_SQUARE;
     skinslide_error error;
     ss_patch *patch = NULL;
-    assert_ok(ss_patch_create(&view, NULL, &setup, 0, faces, mesh->face_count, 0, 1, &patch, &error), &error);
+    const ss_piece piece = {.faces = faces, .face_count = mesh->face_count, .count = 1};
+    assert_ok(ss_patch_create(&view, NULL, &setup, 0, &piece, &patch, &error), &error);
     double uv[9][2];
     assert_fails(ss_place_boundary(patch, setup.boundary, mesh->points, uv, &error), &error, SKINSLIDE_BAD_CONTROL, text);
     ss_patch_destroy(patch);

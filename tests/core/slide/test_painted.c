@@ -77,8 +77,9 @@ static void copies_count_as_their_mean(void **state) {
     ss_patch *patch;
     ss_edge_paint edges[5];
     double paint[5], values[4];
+    const ss_piece piece = {.faces = faces, .face_count = 2, .count = 1};
     view.weld = weld;
-    assert_ok(ss_patch_create(&view, NULL, &setup, 0, faces, 2, 0, 1, &patch, &error), &error);
+    assert_ok(ss_patch_create(&view, NULL, &setup, 0, &piece, &patch, &error), &error);
     assert_int_equal(patch->vertex_count, 4);
     controls.vertex_density = by_vertex; /* 2, 2, 4, 4 */
     ss_paint(patch, &controls, edges, paint);

@@ -477,6 +477,49 @@ static void pieces_slide_as_if_alone(void **state) {
     free_mesh(&left), free_mesh(&right), free_mesh(&mesh);
 }
 
+/* ---- Pieces that touch in a point ---- */
+
+static bool is_in_quarters(int32_t i, int32_t j) {
+    return (i < 4) == (j < 4);
+}
+
+/* A ring with a face that reaches into its hole, and there, corner to corner with that, an island. */
+static bool is_ring_or_island(int32_t i, int32_t j) {
+    bool ring = i < 1 || j < 1 || i > 5 || j > 5, reaches = i == 4 && j == 5, island = i == 3 && (j == 3 || j == 4);
+    return ring || reaches || island;
+}
+
+/* What `holes` frees of a border slides along it, in each piece its own way: what several pieces share stays, and nothing leaves the
+ * surface. */
+static void check_touching(bool (*is_in)(int32_t i, int32_t j), int32_t shared, skinslide_patch_setup choices) {
+    test_mesh mesh = quad_grid(8, 8);
+    int32_t faces[64], count = 0;
+    for (int32_t f = 0; f < mesh.face_count; f++)
+        if (is_in(f % 8, f / 8))
+            faces[count++] = f;
+    skinslide_patch_setup setup = setup_of(faces, count);
+    setup.rule = choices.rule, setup.holes = choices.holes;
+    float *points = random_pose(&mesh, 3), *slid = slide_setup(&mesh, points, &setup);
+    double size = extent_of(points, mesh.vertex_count);
+    for (int32_t v = 0; v < mesh.vertex_count; v++)
+        assert_near(distance_to_mesh(&mesh, points, slid + 3 * v), 0, FLOAT_EPSILON * size);
+    assert_same_bytes(slid + 3 * shared, points + 3 * shared, sizeof(float[3]));
+    assert_true(largest_difference(slid, points, 3 * (int64_t)mesh.vertex_count) > 0.01);
+    free(points), free(slid);
+    free_mesh(&mesh);
+}
+
+static void what_pieces_share_stays(void **state) {
+    (void)state;
+    for (skinslide_rule rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_EVEN; rule++)
+        for (int way = 0; way < (ss_has_plane(rule) ? 2 : 3); way++) {
+            skinslide_patch_setup choices = {.rule = rule, .holes = (skinslide_holes)way};
+            check_touching(is_in_quarters, 4 * 9 + 4, choices);
+            if (way > 0)
+                check_touching(is_ring_or_island, 5 * 9 + 4, choices);
+        }
+}
+
 /* ---- What a set-up holds ---- */
 
 /* Slides a pose with every other vertex held, those inside too, which are not meant: they slide as all others. */
@@ -545,6 +588,7 @@ int main(void) {
         cmocka_unit_test(overlaps_are_weighted_means),
         cmocka_unit_test(what_is_held_of_free_borders_stays),
         cmocka_unit_test(pieces_slide_as_if_alone),
+        cmocka_unit_test(what_pieces_share_stays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

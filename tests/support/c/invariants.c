@@ -71,7 +71,8 @@ static void check_free(const ss_patch *patch) {
     for (int32_t v = 0; v < patch->vertex_count; v++) {
         bool outer = patch->vertex_loop[v] == 0, hole = patch->vertex_loop[v] > 0;
         bool hold = (outer && patch->setup->holes != SKINSLIDE_HOLES_FREE_ALL) ||
-                    (hole && patch->setup->holes == SKINSLIDE_HOLES_PINNED) || patch->split[v];
+                    (hole && patch->setup->holes == SKINSLIDE_HOLES_PINNED) || patch->split[v] ||
+                    (patch->shared[v] && (outer || hole || !ss_has_plane(patch->setup->rule)));
         assert_int_equal(patch->fixed[v], hold);
         fixed += hold;
     }

@@ -46,7 +46,8 @@ ss_patch *patch_of(const test_mesh *mesh, skinslide_patch_setup choices) {
     int32_t *faces = all_faces(mesh);
     skinslide_error error;
     ss_patch *patch = NULL;
-    skinslide_status status = ss_patch_create(&view, NULL, &kept, 0, faces, mesh->face_count, 0, 1, &patch, &error);
+    const ss_piece piece = {.faces = faces, .face_count = mesh->face_count, .count = 1};
+    skinslide_status status = ss_patch_create(&view, NULL, &kept, 0, &piece, &patch, &error);
     free(faces);
     assert_ok(status, &error);
     return patch;

@@ -139,7 +139,8 @@ class SkinSlideAPI(AppliedPatch):
         """What happens at the rims of holes in the patch, such as eyes, nostrils and mouth.
 
         pinned: rims stay on the cached points. free: rims slide too, and faces near them may fold, which is counted.
-        freeAll: the outer boundary slides along itself too, under the rules relaxed and even.
+        freeAll: the outer boundary slides along itself too, under the rules relaxed and even. Border points in which
+        pieces of the patch touch stay.
 
         Returns:
             The attribute skinSlide:NAME:holes, token, uniform; invalid if there is none.
