@@ -120,7 +120,7 @@ static float *own_values(skinslide_stage_controls *controls, int32_t row) {
     return own->own;
 }
 
-/* Paint of one number for each point or face: as it stands, or made so, in memory that is kept as well. */
+/* Paint with one number for each point or face: the record itself, or converted, in memory that is kept as well. */
 static skinslide_status make_plain(skinslide_stage_controls *controls, int32_t row, ss_record *record, skinslide_error *error) {
     control *own = &controls->controls[row];
     if (ss_is_plain_paint(record))

@@ -1,5 +1,5 @@
-/* What is painted, as any tool leaves it: under the schema's name or one like it, of halves, floats or doubles, as one channel of
- * colours, by point, by face, or by face corner. */
+/* Paint as any tool leaves it: under the schema's name or one like it; as halves, floats, doubles or a channel of colours; by
+ * point, by face, or by face corner. */
 #include "stage.h"
 
 #include "schema.inc"
@@ -10,7 +10,7 @@
 
 /* ---- Names ---- */
 
-/* How like a name is to the schema's: best last. Colons become underscores where names have none. */
+/* How like a name is to the schema's, the best last. Underscores stand for colons, which names may not have in some tools. */
 typedef enum likeness { LIKE_NOTHING, LIKE_FOLDED, LIKE_UNDERSCORED, LIKE_ITSELF } likeness;
 
 static char folded(char letter) {
@@ -18,17 +18,17 @@ static char folded(char letter) {
     return lower == ':' ? '_' : lower;
 }
 
-/* Of letters that are the same folded. */
+/* For two letters that are equal when folded. */
 static likeness like_letter(char wanted, char letter) {
     return letter == wanted ? LIKE_ITSELF : wanted == ':' && letter == '_' ? LIKE_UNDERSCORED : LIKE_FOLDED;
 }
 
-/* An input of a patch under the schema's name: the parts of that. more: what follows, such as SS_INDICES. */
+/* The parts of the schema's name for an input of a patch. more: an ending, such as SS_INDICES. */
 enum { PARTS = 5 };
 #define PARTS_OF(patch, input, more)                                                                                           \
     { (input)->prefix, patch, ":", (input)->name, more }
 
-/* As strcmp, folded, of a text that is joined of parts with a name; NULL is an empty one. */
+/* Like strcmp, folded, for the parts joined and a name; a NULL name is empty. */
 static int compare(const char *const *parts, int count, const char *name) {
     name = name ? name : "";
     for (int i = 0; i < count; i++)
@@ -62,7 +62,7 @@ static likeness like_parts(const char *const *parts, const char *name) {
     return found;
 }
 
-/* Of sorted names, the first that is not before an input's. */
+/* The first of the sorted names that does not come before an input's. */
 static int32_t first_like(const char *const *parts, const char *const *names, int32_t count) {
     int32_t low = 0, high = count;
     while (low < high) {
@@ -90,9 +90,9 @@ int32_t skinslide_stage_patch_property(const skinslide_stage_patch *patch, const
     return found;
 }
 
-/* ---- What of a prim's names is like those of paint ---- */
+/* ---- Names of a prim that are like those of paint ---- */
 
-/* Whether a name begins as those of paint do, folded. */
+/* Whether a name, folded, begins like those of paint. */
 static bool begins_like_paint(const char *name) {
     static const char start[] = SS_PRIMVARS SS_NAMESPACE;
     size_t i = 0;
@@ -101,7 +101,7 @@ static bool begins_like_paint(const char *name) {
     return strncmp(name, SS_PRIMVARS, strlen(SS_PRIMVARS)) == 0 && !start[i];
 }
 
-/* Of a name that is like paint of several patches, the one whose case it has. */
+/* A name that is like paint of several patches is given to the one whose case matches. */
 static void match_input(const char *patch, const skinslide_stage_input *input, const char *more, ss_paint_names *all) {
     const char *const parts[PARTS] = PARTS_OF(patch, input, more);
     int32_t first = first_like(parts, all->names, all->count);
@@ -158,7 +158,7 @@ static bool is_choice(const skinslide_value *value) {
     return (value->type == SKINSLIDE_VALUE_BOOL || value->type == SKINSLIDE_VALUE_INT32) && value->width == 1;
 }
 
-/* more: what else it might be. */
+/* more: what else the type may be. */
 static skinslide_status refuse_type(const skinslide_value *value, bool of_faces, const char *more, skinslide_status status,
                                     skinslide_error *error) {
     const char *format = of_faces ? SS_NAMED " is " SS_NAMED "; it must be bool[], int[] or float[]%s"
@@ -210,7 +210,7 @@ bool ss_is_plain_paint(const ss_record *record) {
     return record->value.width == 1 && !is_by_corner(record);
 }
 
-/* The mean over the corners at each vertex; 0 where there are none. */
+/* The mean over the corners at each vertex; 0 if there are none. */
 static void average(const skinslide_mesh *mesh, const ss_record *record, int32_t k, double *means, double *counts) {
     memset(means, 0, (size_t)mesh->vertex_count * sizeof *means);
     memset(counts, 0, (size_t)mesh->vertex_count * sizeof *counts);

@@ -3,7 +3,8 @@
  *
  *     |p A|^2 = p G p^T,   G = A A^T = L L^T,   so p L has the lengths that p has in the world
  *
- * L is lower triangular, and does not depend on how the mesh is rotated or where it is, which may change from frame to frame. */
+ * L is lower triangular, and does not depend on how the mesh is rotated or where it is, which may change from frame to
+ * frame. */
 #include "stage.h"
 
 #include <math.h>

@@ -27,7 +27,7 @@ typedef struct held_images {
 struct ss_texture {
     const ss_input *input;
     const skinslide_stage_patch *patch;
-    ss_memory memory; /* of the asset at hand */
+    ss_memory memory; /* of the current asset */
     const char *name; /* of the attribute */
     const char *asset;
     int32_t *tiles; /* [tile_count], ascending; NULL: not known yet */
