@@ -11,12 +11,12 @@ _PARTS = (settings, patches, paint, rest, files, live, panel)
 
 
 def register() -> None:
-    """Called by Blender as the extension is enabled."""
+    """Called by Blender when the extension is enabled."""
     for part in _PARTS:
         part.register()
 
 
 def unregister() -> None:
-    """Called by Blender as it is disabled."""
+    """Called by Blender when the extension is disabled."""
     for part in reversed(_PARTS):
         part.unregister()

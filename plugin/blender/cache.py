@@ -1,4 +1,4 @@
-"""Frames of a mesh as USD, each by Blender's own exporter: between two of them Blender goes on."""
+"""Frames of a mesh as USD, each by Blender's own exporter, so that Blender stays in use between two of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .live import unheard
 
 
 def export_frame(context: bpy.types.Context, path: str, frame: int, *, materials: bool) -> None:
-    """Exports the active object alone, as it is at a frame of an animation. Raises Fault."""
+    """Exports only the active object, as it is at a frame of an animation. Raises Fault."""
     with unheard(), _selected_alone(context), _frame_alone(context.scene, frame):
         try:
             bpy.ops.wm.usd_export(

@@ -1,7 +1,7 @@
-"""What an object has, fetched under the names and in the kinds that a USD cache would have. Nothing is meant here.
+"""What an object has, fetched under the names and with the types of a USD cache. Nothing is interpreted here.
 
 An attribute of a mesh, or a group of its vertices, called NAME is the primvar primvars:NAME. Edges have no primvars:
-a float attribute of edges called skinSlide:PATCH:edgeForceDensities is both settings of painted edges, 0 of others.
+a float attribute of edges called skinSlide:PATCH:edgeForceDensities says which are painted and how, with 0 for others.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .reading import Fetched, FetchedPatch
 
 EDGES = "edgeForceDensities"
 INTERPOLATIONS = {"POINT": "vertex", "FACE": "uniform", "CORNER": "faceVarying", "EDGE": "edge"}
-# Of a type of attribute: the property that holds an element, how many numbers that is, their type, USD's name for it.
+# By type of attribute: the property that holds an element, how many numbers it has, their type, USD's name for it.
 KINDS = {
     "FLOAT": ("value", 1, np.float32, "float[]"),
     "INT": ("value", 1, np.int32, "int[]"),
@@ -31,7 +31,7 @@ KINDS = {
     "FLOAT_COLOR": ("color", 4, np.float32, "color4f[]"),
     "BYTE_COLOR": ("color", 4, np.float32, "color4f[]"),
 }
-# Modifiers that move points, and neither make nor take any away.
+# Modifiers that move points, but neither add nor remove any.
 DEFORMING = {
     "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
     "LATTICE",
@@ -42,7 +42,7 @@ DEFORMING = {
 
 
 def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None) -> Fetched:
-    """All that there is to slide an object by; None: without modifiers. Raises Fault for one that cannot be."""
+    """All that is needed to slide an object; depsgraph None: without modifiers. Raises Fault if it cannot be slid."""
     check(thing)
     own, mesh = settings.of(thing), thing.data
     primvars = {value.name: value for value in (*_attributes(mesh), *_groups(thing))}
@@ -61,7 +61,7 @@ def fetch(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None) -> Fet
 
 
 def _faces(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """How many vertices each face has, and which."""
+    """How many vertices each face has, and which they are."""
     counts, indices = np.empty(len(mesh.polygons), np.int32), np.empty(len(mesh.loops), np.int32)
     mesh.polygons.foreach_get("loop_total", counts)
     mesh.loops.foreach_get("vertex_index", indices)
@@ -77,7 +77,7 @@ def check(thing: bpy.types.Object) -> None:
 
 
 def basis_points(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Points (V, 3) without shape keys: those of the basis, where there is one."""
+    """Points (V, 3) without shape keys: those of the basis, if there is one."""
     points = np.empty(3 * len(mesh.vertices), np.float32)
     held = mesh.shape_keys.reference_key.data if mesh.shape_keys else mesh.vertices
     held.foreach_get("co", points)
@@ -85,7 +85,7 @@ def basis_points(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def evaluated_points(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
-    """Points (V, 3) as modifiers and shape keys leave them. Raises Fault where the faces are not the mesh's own."""
+    """Points (V, 3) as modifiers and shape keys leave them. Raises Fault if the faces are not the mesh's own."""
     mesh, evaluated = thing.data, thing.evaluated_get(depsgraph).data
     if not _same_faces(mesh, evaluated):
         names = [each.name for each in thing.modifiers if each.show_viewport and each.type not in DEFORMING]
@@ -109,7 +109,7 @@ def _same_faces(mesh: bpy.types.Mesh, other: bpy.types.Mesh) -> bool:
 
 
 def numbers(thing: bpy.types.Object) -> tuple[tuple[tuple[Input, Value], ...], ...]:
-    """Of each patch the settings that may be animated, as they are now."""
+    """For each patch, the settings that may be animated, as they are now."""
     animated = [each for each in inputs("controls") if each.type_name == "float"]
     return tuple(
         tuple((each, settings.value_of(patch, each, each.property(patch.name))) for each in animated)
@@ -135,7 +135,7 @@ def _attributes(mesh: bpy.types.Mesh) -> Iterator[Value]:
 
 
 def attribute_value(attribute: bpy.types.Attribute) -> Value:
-    """What an attribute holds, as the primvar of its name."""
+    """The primvar that an attribute is, by its name."""
     name, interpolation = f"primvars:{attribute.name}", INTERPOLATIONS.get(attribute.domain, attribute.domain)
     if attribute.data_type not in KINDS:
         return Value(name, Other(), attribute.data_type.lower(), interpolation)
@@ -152,7 +152,7 @@ def _groups(thing: bpy.types.Object) -> Iterator[Value]:
 
 
 def group_weights(thing: bpy.types.Object, groups: Sequence[bpy.types.VertexGroup]) -> list[np.ndarray]:
-    """The weights (V,) in some groups of vertices, 0 of what is not in one."""
+    """The weights (V,) in some groups of vertices; 0 for vertices that are not in a group."""
     weights = {group.index: np.zeros(len(thing.data.vertices), np.float32) for group in groups}
     for vertex in thing.data.vertices if groups else ():
         for element in vertex.groups:
@@ -182,7 +182,7 @@ def edges_of(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def edge_keys(edges: np.ndarray, vertex_count: int) -> np.ndarray:
-    """A number for each of some edges (n, 2), the same either way round."""
+    """A number for each edge (n, 2), which does not depend on its direction."""
     keys: np.ndarray = np.sort(edges, axis=1).astype(np.int64) @ (vertex_count, 1)
     return keys
 

@@ -1,4 +1,4 @@
-"""Import and export of `.skinslide` set-ups, the export with a USD cache beside it where that is wanted."""
+"""Import and export of `.skinslide` set-ups, the export with a USD cache beside it if that is wanted."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
     prim: bpy.props.StringProperty(**_PRIM)  # type: ignore[valid-type]
 
     def fetch(self, context: bpy.types.Context) -> Callable[[], Read]:
-        """The faces of the mesh, by which its prim is known."""
+        """The faces of the mesh, by which its prim is found."""
         fetched = fetch(context.active_object, context.evaluated_depsgraph_get())
         path, prim = bpy.path.abspath(self.filepath), self.prim
         bpy.utils.expose_bundled_modules()  # its pxr
         return lambda: read_setup(path, prim, fetched.counts, fetched.indices)
 
     def write(self, context: bpy.types.Context, found: Read) -> str:
-        """Puts all that was read on the mesh."""
+        """Writes all that was read to the mesh."""
         thing = context.active_object
         take(thing, found)
         own = settings.of(thing)
@@ -56,7 +56,7 @@ class SKINSLIDE_OT_import_setup(Waiting, ImportHelper):
 
 
 def take(thing: bpy.types.Object, read: Read) -> None:
-    """Has an object carry the set-up that was read, and no other."""
+    """Gives an object the set-up that was read, in place of any other."""
     own, mesh = settings.of(thing), thing.data
     for fetched in read.patches:
         check_fits(fetched.name)
@@ -83,7 +83,7 @@ def take(thing: bpy.types.Object, read: Read) -> None:
 
 
 def _take_primvar(thing: bpy.types.Object, value: Value) -> None:
-    """A weight of 0 to 1 goes on a group of vertices, for which Blender has brushes; all else on an attribute."""
+    """Weights of 0 to 1 become a group of vertices, for which Blender has brushes; all else an attribute."""
     array = np.asarray(value.value)
     for_brushes = value.name.endswith(":weight") and value.interpolation in ("vertex", "varying") and array.ndim == 1
     if not (for_brushes and array.dtype == np.float32 and np.all((array >= 0) & (array <= 1))):
@@ -135,7 +135,7 @@ def _curves(thing: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
 
 
 def fetch_keys(thing: bpy.types.Object) -> Keys:
-    """What is animated of patches: keys, where lines join them, else each frame from the first to the last."""
+    """What is animated on patches: the keys if lines join them, else every frame from the first to the last."""
     found: Keys = {}
     for curve in _curves(thing):
         for index, patch in enumerate(settings.of(thing).patches):
@@ -171,7 +171,7 @@ class SKINSLIDE_OT_export_setup(Waiting, ExportHelper):
     prim: bpy.props.StringProperty(**_PRIM)  # type: ignore[valid-type]
 
     def steps(self, context: bpy.types.Context) -> Steps:
-        """The cache frame by frame, where it is to be made, and the set-up; both are put in place together."""
+        """Makes the cache, if wanted, frame by frame, and the set-up; both are put in place together."""
         thing, scene = context.active_object, context.scene
         fetched, keys = fetch(thing, context.evaluated_depsgraph_get()), fetch_keys(thing)
         path = bpy.path.abspath(self.filepath)
@@ -205,12 +205,12 @@ _CLASSES = (SKINSLIDE_OT_import_setup, SKINSLIDE_OT_export_setup)
 
 
 def register() -> None:
-    """Tells Blender of the operators."""
+    """Registers the operators."""
     for each in _CLASSES:
         bpy.utils.register_class(each)
 
 
 def unregister() -> None:
-    """Takes them back."""
+    """Unregisters them."""
     for each in reversed(_CLASSES):
         bpy.utils.unregister_class(each)

@@ -1,4 +1,4 @@
-"""A USD cache made of exports of single frames, as one of all of them would have been. No Blender here; for any thread.
+"""Joins exports of single frames to the USD cache that one export of all would be. No Blender here; for any thread.
 
 Of each attribute the first frame's value is the default, and what differs from it at any frame has time samples at all.
 """
@@ -17,10 +17,10 @@ from .usd import as_fault, import_usd
 
 
 class Joined:
-    """The cache, in memory until it is put in place; `part` is the file for the next frame, beside where it will be."""
+    """The cache, in memory until it is put in place. `part` is the file for the next frame, in the same folder."""
 
     def __init__(self, cache: str):
-        """Raises Fault where no file can be put there."""
+        """Raises Fault if no file can be put there."""
         import_usd()
         from pxr import Sdf
 
@@ -42,13 +42,13 @@ class Joined:
         Path(self.part).unlink(missing_ok=True)
 
     def add(self, frame: int) -> None:
-        """Takes a frame up from its file, which goes."""
+        """Adds a frame from its file, and deletes the file."""
         from pxr import Sdf, UsdUtils
 
         part = Sdf.Layer.OpenAsAnonymous(self.part)
         Path(self.part).unlink()
         part.Traverse(Sdf.Path.absoluteRootPath, lambda path: self._take(part.GetAttributeAtPath(path), frame))
-        UsdUtils.StitchLayers(self._layer, part)  # what no frame before has
+        UsdUtils.StitchLayers(self._layer, part)  # adds what no earlier frame has
         self._frames.append(frame)
 
     def _take(self, attribute: Any, frame: int) -> None:
@@ -68,7 +68,7 @@ class Joined:
         self._layer.SetTimeSample(held.path, frame, attribute.default)
 
     def put(self, write: Callable[[], str]) -> str:
-        """Puts the cache in place, and has the rest written."""
+        """Puts the cache in place, and calls write for the rest."""
         from skinslide.write.place import replacing, saved
 
         self._layer.startTimeCode, self._layer.endTimeCode = self._frames[0], self._frames[-1]
@@ -79,11 +79,11 @@ class Joined:
 
     @contextmanager
     def _put_back(self) -> Iterator[None]:
-        """Where anything is raised, what there was before is there again."""
+        """If anything is raised, restores what was there before."""
         if self._cache.exists():
             try:
                 os.link(self._cache, self._kept)
-            except OSError:  # not every file system can
+            except OSError:  # not every file system has links
                 shutil.copy2(self._cache, self._kept)
         try:
             yield

@@ -31,16 +31,16 @@ SHADES = 256
 
 @dataclass
 class Session:
-    """One object that is live: its slider, which the thread that slides makes, and the frame that is being slid."""
+    """A live object: its slider, which is made on the thread that slides, and the frame that is being slid."""
 
     name: str
     sliding: Sliding | None = None
     future: Future[Slid] | None = None
-    brings: bool = False  # a new set-up
-    stale: bool = False  # what is painted or set has changed since one was brought
+    brings: bool = False  # the frame comes with a new set-up
+    stale: bool = False  # paint or settings have changed since the last set-up
 
     def slide(self, fetched: Fetched | None, points: np.ndarray, own: Numbers) -> Slid:
-        """Slides a frame, of a new set-up or of the one before. Raises Fault."""
+        """Slides a frame, with a new set-up or the last one. Raises Fault."""
         if fetched:
             self.sliding = None
             self.sliding = Sliding(fetched)
@@ -49,24 +49,24 @@ class Session:
         return self.sliding.slide(points, own)
 
     def fits(self, thing: bpy.types.Object) -> bool:
-        """Whether the slider is that of the set-up as it is now."""
+        """Whether the slider is up to date with the set-up."""
         names = [patch.name for patch in settings.of(thing).patches]
         return not self.stale and self.sliding is not None and self.sliding.names == names
 
     def drop(self) -> None:
-        """Lets go of a frame that was not begun, but not of the set-up that it was to bring."""
+        """Drops a frame that is not begun yet, but remembers the set-up that it came with."""
         if self.future and self.future.cancel():
             self.stale = self.stale or self.brings
 
 
 _sessions: dict[str, Session] = {}
 _shades: list[np.ndarray] = []
-_unheard = False  # what changes now is not the scene
+_unheard = False  # whether changes are ignored, since they are not the scene's
 
 
 @contextmanager
 def unheard() -> Iterator[None]:
-    """Has no frame or change refresh what is shown: that itself changes, or another view of the scene."""
+    """Ignores frames and changes meanwhile: they come from what is shown itself, or from another view of the scene."""
     global _unheard
     before, _unheard = _unheard, True
     try:
@@ -76,14 +76,14 @@ def unheard() -> Iterator[None]:
 
 
 def live_objects() -> list[bpy.types.Object]:
-    """Those whose switch is on."""
+    """The objects whose switch is on."""
     return [each for each in bpy.data.objects if each.type == "MESH" and settings.of(each).slid]
 
 
 def refresh(thing: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
-    """Has an object slid as it is now."""
+    """Starts to slide an object as it is now."""
     session = _sessions.setdefault(thing.name, Session(thing.name))
-    if thing.mode == "EDIT":  # in which nothing is evaluated
+    if thing.mode == "EDIT":  # then nothing is evaluated
         session.stale = True
         return
     session.drop()
@@ -106,13 +106,13 @@ def _show_when_done(session: Session) -> None:
         if not bpy.app.timers.is_registered(_look):
             bpy.app.timers.register(_look, first_interval=INTERVAL)
         return
-    except Exception:  # which showing it says
+    except Exception:  # reported when it is shown
         pass
     _finish(session)
 
 
 def _look() -> float | None:
-    """Shows what has been slid meanwhile, and looks again while there is more to come."""
+    """Shows what has been slid by now, and looks again later while there is more to come."""
     for session in list(_sessions.values()):
         if session.future and session.future.done():
             _finish(session)
@@ -134,7 +134,7 @@ def _finish(session: Session) -> None:
 
 
 def _say(thing: bpy.types.Object, said: str) -> None:
-    """Keeps what is wrong for the panel, and reports it once."""
+    """Keeps a fault for the panel, and reports it once."""
     own = settings.of(thing)
     if own.problem != said:
         own.problem = said
@@ -153,14 +153,14 @@ def shades() -> np.ndarray:
 
 
 def show(thing: bpy.types.Object, slid: Slid) -> None:
-    """Puts slid points, and stretch in false colours, on the object that shows them."""
+    """Writes slid points, and stretch in false colours, to the object that shows them."""
     own = settings.of(thing)
     mesh = own.slid.data
     with unheard():
         if len(mesh.vertices) != len(slid.points):
             _copy_mesh(thing, own.slid)
             mesh = own.slid.data
-        if len(mesh.vertices) != len(slid.points):  # edited meanwhile; it is slid anew
+        if len(mesh.vertices) != len(slid.points):  # edited meanwhile, so it will be slid anew
             return
         mesh.vertices.foreach_set("co", np.ascontiguousarray(slid.points).ravel())
         share = np.clip(slid.stretch / own.most_stretch, 0, 1)
@@ -204,7 +204,7 @@ def _stretch_material() -> bpy.types.Material:
     if found:
         return found
     material = bpy.data.materials.new(MATERIAL)
-    if not material.node_tree:  # which Blender 5 has made
+    if not material.node_tree:  # Blender 5 has made one
         material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     attribute = nodes.new("ShaderNodeAttribute")
@@ -223,7 +223,7 @@ class SKINSLIDE_OT_live(Waiting):
     bl_idname, bl_label = "skinslide.live", "Live"
 
     def fetch(self, context: bpy.types.Context) -> Any:
-        """What is to be slid, unless it is to end."""
+        """Fetches what is to be slid, unless the switch ends it."""
         thing = context.active_object
         if thing and settings.of(thing).slid:
             return None
@@ -232,7 +232,7 @@ class SKINSLIDE_OT_live(Waiting):
         return lambda: (session, session.slide(fetched, fetched.points, own))
 
     def write(self, context: bpy.types.Context, found: Any) -> str:
-        """Makes the object, or takes it away."""
+        """Makes the object, or removes it."""
         thing = context.active_object
         if found is None:
             switch_off(thing)
@@ -249,14 +249,14 @@ class SKINSLIDE_OT_live(Waiting):
 
 
 def _veil(thing: bpy.types.Object, veiled: bool) -> None:
-    """Has an object drawn as its bounds and seen by no ray; hidden, Blender would not evaluate it."""
+    """Draws an object as its bounds, and hides it from rays. If it were hidden, Blender would not evaluate it."""
     thing.display_type = "BOUNDS" if veiled else "TEXTURED"
     for ray in ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
         setattr(thing, f"visible_{ray}", not veiled)
 
 
 def _make_way(thing: bpy.types.Object) -> None:
-    """Has the slid skin drawn as wires while Blender draws the mesh itself to be painted, in the same place."""
+    """Draws the slid skin as wires while the mesh itself is drawn in the same place, to be painted."""
     drawn = "WIRE" if thing.mode in ("WEIGHT_PAINT", "VERTEX_PAINT", "SCULPT") else "TEXTURED"
     shown = settings.of(thing).slid
     if shown.display_type != drawn:
@@ -271,7 +271,7 @@ def _summary(slid: Slid) -> str:
 
 
 def switch_off(thing: bpy.types.Object) -> None:
-    """Takes the slid object of another away."""
+    """Removes the slid object of another."""
     own = settings.of(thing)
     shown, own.slid, own.problem = own.slid, None, ""
     _sessions.pop(thing.name, None)
@@ -290,7 +290,7 @@ class SKINSLIDE_OT_say(bpy.types.Operator):
     text: bpy.props.StringProperty()  # type: ignore[valid-type]
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
-        """Says it."""
+        """Reports the text."""
         self.report({"ERROR"}, self.text)
         return {"FINISHED"}
 
@@ -306,7 +306,7 @@ def _on_frame(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Of a mesh: what is painted may be other; of an object: its points may."""
+    """If a mesh has changed, its paint may have; if an object has, its points may have."""
     if _unheard:
         return
     changed = {each.id.original for each in depsgraph.updates if each.is_updated_geometry}
@@ -319,7 +319,7 @@ def _on_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 def _stale(thing: bpy.types.Object) -> None:
-    """The set-up is other than it was."""
+    """Called when the set-up of an object has changed."""
     if thing.type == "MESH" and settings.of(thing).slid:
         _sessions.setdefault(thing.name, Session(thing.name)).stale = True
         refresh(thing, bpy.context.evaluated_depsgraph_get())
@@ -327,7 +327,7 @@ def _stale(thing: bpy.types.Object) -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_other_data(*_: Any) -> None:
-    """After a file is loaded, or a step is undone, nothing is as it was."""
+    """After a file is loaded or a step undone, anything may have changed."""
     _sessions.clear()
     for thing in live_objects():
         refresh(thing, bpy.context.evaluated_depsgraph_get())
@@ -343,7 +343,7 @@ _HANDLERS = {
 
 
 def register() -> None:
-    """Has Blender tell of frames and changes."""
+    """Registers the operators, and handlers for frames and changes."""
     for each in (SKINSLIDE_OT_live, SKINSLIDE_OT_say):
         bpy.utils.register_class(each)
     settings.on_change.append(_stale)
@@ -352,7 +352,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """And no more."""
+    """Unregisters them."""
     for name, call in _HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(call)
     settings.on_change.remove(_stale)

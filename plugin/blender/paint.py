@@ -32,7 +32,7 @@ _PAINTED = [(name, settings.title(name), _SAYS.get(name, "")) for name in PAINTE
 
 
 def active_name(context: bpy.types.Context) -> str:
-    """The name of the patch that is painted. Raises Fault where there is none."""
+    """The name of the patch that is painted. Raises Fault if there is none."""
     patch = settings.active_patch(context.active_object)
     if patch is None:
         raise Fault("there is no patch to paint; make one of selected faces first")
@@ -51,7 +51,7 @@ def _sources(_operator: Any, context: bpy.types.Context, _text: str) -> list[str
 class _Paint(Waiting):
     @classmethod
     def need(cls, context: bpy.types.Context) -> None:
-        """Raises Fault where there is no patch."""
+        """Raises Fault if there is no patch."""
         super().need(context)
         active_name(context)
 
@@ -89,7 +89,7 @@ class SKINSLIDE_OT_paint(_Paint):
         return f"{_SAYS.get(properties.what, '')}.\n{cls.bl_description}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Asks for the value. What may be above 1 is painted on an attribute."""
+        """Asks for the value. Paint that may exceed 1 goes on an attribute."""
         if not self.properties.is_property_set("store"):
             self.store = "GROUP" if self.what == "weight" else "POINT"
         return super().invoke(context, event)
@@ -100,7 +100,7 @@ class SKINSLIDE_OT_paint(_Paint):
         return super().execute(context)
 
     def fetch(self, context: bpy.types.Context) -> Callable[[], np.ndarray]:
-        """What there will be."""
+        """What the mesh would have, once painted."""
         thing, patch = context.active_object, active_name(context)
         fetched, source = fetch(thing, None), PAINTED[self.what]
         self._name = f"skinSlide:{patch}:{self.what}"
@@ -139,7 +139,7 @@ _ELEMENTS = {"POINT": "vertices", "FACE": "polygons"}
 
 
 def _values_of(thing: bpy.types.Object, name: str, domain: str) -> np.ndarray:
-    """What a vertex group, or an attribute of floats of a domain, has. Raises Fault."""
+    """The values of a vertex group, or of a float attribute of a domain. Raises Fault."""
     group, attribute = thing.vertex_groups.get(name), thing.data.attributes.get(name)
     if group and domain == "POINT":
         return group_weights(thing, [group])[0]
@@ -153,7 +153,7 @@ def _values_of(thing: bpy.types.Object, name: str, domain: str) -> np.ndarray:
 
 
 def _merged(thing: bpy.types.Object, name: str, store: str, given: np.ndarray, editing: bool) -> np.ndarray:
-    """What was given, in edit mode where elements are selected, and elsewhere what is painted, or 1."""
+    """The new values; in edit mode only for selected elements, and for others what is painted already, or 1."""
     domain = _DOMAINS[store]
     if not editing:
         return given
@@ -161,7 +161,7 @@ def _merged(thing: bpy.types.Object, name: str, store: str, given: np.ndarray, e
     getattr(thing.data, _ELEMENTS[domain]).foreach_get("select", selected)
     try:
         before = _values_of(thing, name, domain)
-    except Fault:  # it is new, or was of another kind
+    except Fault:  # nothing was painted, or of another type
         before = np.ones(len(given), np.float32)
     return np.where(selected, given, before)
 
@@ -184,7 +184,7 @@ class _PaintEdges(_Paint):
         raise NotImplementedError
 
     def fetch(self, context: bpy.types.Context) -> Callable[[], np.ndarray]:
-        """The edges that are chosen and the patch's own."""
+        """The chosen edges that belong to the patch."""
         thing = context.active_object
         fetched, name = fetch(thing, context.evaluated_depsgraph_get()), active_name(context)
         edges, choose = edges_of(thing.data), self.choose(context)
@@ -282,7 +282,7 @@ def fetch_curves(context: bpy.types.Context, drawn: bpy.types.Object | None) -> 
 
 
 def _chains(edges: np.ndarray) -> list[np.ndarray]:
-    """The points of each spline in order; of a closed one the first again at the end."""
+    """The points of each spline in order; if it is closed, with the first again at the end."""
     chains = list[list[int]]()
     for a, b in edges.tolist():
         if chains and chains[-1][-1] == a:
@@ -296,12 +296,12 @@ _CLASSES = (SKINSLIDE_OT_paint, SKINSLIDE_OT_paint_edges, SKINSLIDE_OT_paint_cur
 
 
 def register() -> None:
-    """Tells Blender of the operators."""
+    """Registers the operators."""
     for each in _CLASSES:
         bpy.utils.register_class(each)
 
 
 def unregister() -> None:
-    """Takes them back."""
+    """Unregisters them."""
     for each in reversed(_CLASSES):
         bpy.utils.unregister_class(each)

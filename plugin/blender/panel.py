@@ -12,7 +12,7 @@ from .paint import PAINTED
 from .rest import REST
 
 _CHARACTER = 8  # pixels, about
-# Settings that the panel shows, with names that fit, and those that are folded away.
+# Settings that the panel shows, with names that fit; then those that are folded away.
 _SHOWN = {
     "forceDensityRule": "Rule", "interpolation": "Interp.", "holes": "Holes", "grow": "Grow",
     "envelope": "Envelope",
@@ -44,7 +44,7 @@ class SKINSLIDE_PT_panel(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Of meshes alone."""
+        """Only for meshes."""
         return bool(context.active_object and context.active_object.type == "MESH")
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -107,7 +107,7 @@ def _draw_rest(layout: Any, thing: bpy.types.Object, scene: bpy.types.Scene) -> 
 
 
 def _draw_problem(layout: Any, problem: str, context: bpy.types.Context) -> None:
-    """As many lines as the width of the sidebar asks for."""
+    """Breaks text into lines that fit the width of the sidebar."""
     column = layout.column(align=True)
     column.alert = True
     width = max(20, context.region.width // _CHARACTER) if context.region else 40
@@ -119,12 +119,12 @@ _CLASSES = (SKINSLIDE_UL_patches, SKINSLIDE_PT_panel)
 
 
 def register() -> None:
-    """Shows the panel."""
+    """Registers the panel."""
     for each in _CLASSES:
         bpy.utils.register_class(each)
 
 
 def unregister() -> None:
-    """Takes it away."""
+    """Unregisters it."""
     for each in reversed(_CLASSES):
         bpy.utils.unregister_class(each)

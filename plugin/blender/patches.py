@@ -1,4 +1,4 @@
-"""Patches of a mesh: made of selected faces or of a group of vertices, and taken away."""
+"""Patches of a mesh: made of selected faces or of a group of vertices, and removed."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from .fetch import EDGES, fetch, group_weights
 from .reading import Fetched, FetchedPatch, check_one_piece
 from .work import Waiting, asked
 
-RULE = "even"  # of patches that are new
+RULE = "even"  # of new patches
 _LONGEST = 63  # bytes of the name of a vertex group
 FACES = input_of("patch", "patch")  # what chooses them
 
 
 def check_fits(patch: str) -> None:
-    """Raises Fault for the name of a patch of which Blender would cut those of its paint short."""
+    """Raises Fault for a name of a patch so long that Blender would cut the names of its paint short."""
     if len(f"skinSlide:{patch}:{EDGES}".encode()) > _LONGEST:
         raise Fault(f"the name {patch} is too long for what Blender calls attributes and vertex groups")
 
 
 def check_name(thing: bpy.types.Object, name: str) -> None:
-    """Raises Fault for a name that no patch can have, or another has."""
+    """Raises Fault for a name that a patch cannot have, or that another has."""
     check_fits(name)
     if not all(part.isidentifier() for part in name.split(":")) or not can_name_patch(name):
         raise Fault(f"{name!r} {NO_PATCH_NAME}")
@@ -41,7 +41,7 @@ def check_name(thing: bpy.types.Object, name: str) -> None:
 
 
 def free_name(thing: bpy.types.Object, wanted: str) -> str:
-    """A name that a patch can have and no other has, like one that is wanted."""
+    """A name like the wanted one, that a patch can have and no other has."""
     word = re.sub(r"\W", "_", wanted, flags=re.ASCII)
     word = word if word.isidentifier() else f"patch_{word}"
     names = (f"{word}_{number}" if number > 1 else word for number in count(1))
@@ -54,7 +54,7 @@ class _NewPatch(Waiting):
     name: bpy.props.StringProperty(name="Name", default="patch", options={"SKIP_SAVE"})  # type: ignore[valid-type]
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Asks for the name, having found one."""
+        """Proposes a name, and asks for it."""
         self.name = free_name(context.active_object, self.name)
         return asked(self, context)
 
@@ -147,7 +147,7 @@ class SKINSLIDE_OT_remove_patch(Waiting):
 
     @classmethod
     def need(cls, context: bpy.types.Context) -> None:
-        """Raises Fault where there is none."""
+        """Raises Fault if there is no patch."""
         super().need(context)
         if not settings.active_patch(context.active_object):
             raise Fault("there is no patch")
@@ -156,7 +156,7 @@ class SKINSLIDE_OT_remove_patch(Waiting):
         """Nothing is worked out."""
 
     def write(self, context: bpy.types.Context, _found: None) -> str:
-        """Takes it away."""
+        """Removes it."""
         thing = context.active_object
         own = settings.of(thing)
         remove_paint(thing, settings.active_patch(thing).name)
@@ -167,7 +167,7 @@ class SKINSLIDE_OT_remove_patch(Waiting):
 
 
 def remove_paint(thing: bpy.types.Object, patch: str) -> None:
-    """Takes away all that is painted for a patch under the schema's names."""
+    """Removes all that is painted for a patch under the schema's names."""
     mine = f"skinSlide:{patch}:"
     for name in [each.name for each in thing.data.attributes if each.name.startswith(mine)]:
         if ":" not in name.removeprefix(mine):
@@ -178,7 +178,7 @@ def remove_paint(thing: bpy.types.Object, patch: str) -> None:
 
 # ---- Writing paint ----
 
-# Of how a primvar lies on a mesh: Blender's domain; of its elements: Blender's type, and the property that holds one.
+# Blender's domain, by interpolation; Blender's type and the property that holds an element, by type of element.
 DOMAINS = {"vertex": "POINT", "varying": "POINT", "uniform": "FACE", "faceVarying": "CORNER"}
 _TYPES = {
     ("b", 1): ("BOOLEAN", "value"),
@@ -191,7 +191,7 @@ _TYPES = {
 
 
 def write_primvar(mesh: bpy.types.Mesh, value: Value) -> None:
-    """Makes an attribute of a primvar, in place of one of its name. Raises Fault for what no attribute can hold."""
+    """Makes an attribute of a primvar, replacing one of its name. Raises Fault for what no attribute can hold."""
     array = np.asarray(value.value)
     kind = _TYPES.get((array.dtype.kind, array.shape[1] if array.ndim == 2 else 1))
     domain = DOMAINS.get(value.interpolation or "")
@@ -203,7 +203,7 @@ def write_primvar(mesh: bpy.types.Mesh, value: Value) -> None:
 
 
 def write_weights(thing: bpy.types.Object, name: str, weights: np.ndarray) -> bpy.types.VertexGroup:
-    """Makes a group of vertices of weights (V,), or gives one its weights."""
+    """Makes a group of vertices with weights (V,), or sets those of one that exists."""
     group = thing.vertex_groups.get(name) or thing.vertex_groups.new(name=name)
     order, each = np.argsort(weights, kind="stable"), np.unique(weights)
     for weight, vertices in zip(each.tolist(), np.split(order, np.searchsorted(weights[order], each[1:])), strict=True):
@@ -233,12 +233,12 @@ _CLASSES = (SKINSLIDE_OT_patch_from_faces, SKINSLIDE_OT_patch_from_group, SKINSL
 
 
 def register() -> None:
-    """Tells Blender of the operators."""
+    """Registers the operators."""
     for each in _CLASSES:
         bpy.utils.register_class(each)
 
 
 def unregister() -> None:
-    """Takes them back."""
+    """Unregisters them."""
     for each in reversed(_CLASSES):
         bpy.utils.unregister_class(each)

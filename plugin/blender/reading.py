@@ -1,4 +1,4 @@
-"""A mesh that was fetched, meant by the core: what is wrong with it, or a slider. No Blender here; for any thread."""
+"""A fetched mesh as the core interprets it: what is wrong with it, or a slider. No Blender here; for any thread."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ class FetchedPatch:
     values: dict[str, Value]
 
     def value(self, source: Input) -> Value:
-        """A setting, or its name alone where it is not set."""
+        """A setting; without a value if it is not set."""
         name = source.property(self.name)
         return self.values.get(source.name) or Value(name, NOTHING, source.type_name)
 
 
 @dataclass(frozen=True)
 class Fetched:
-    """A mesh, as arrays of its own: threads may read it."""
+    """A mesh as arrays that nobody else has, so that threads may read them."""
 
     name: str
-    folder: str  # that its relative paths start from
+    folder: str  # where its relative paths start
     counts: np.ndarray  # (F,) int32
     indices: np.ndarray  # (sum of counts,) int32
     basis: np.ndarray  # (V, 3) float32
@@ -71,7 +71,7 @@ class Slid(NamedTuple):
 
 
 class Surface:
-    """A mesh as it is meant, without its patches. Raises Fault."""
+    """A mesh as the core interprets it, without its patches. Raises Fault."""
 
     def __init__(self, fetched: Fetched):
         self.fetched, self.meaning, self._painted = fetched, MeshMeaning(), Names(fetched.primvars)
@@ -95,7 +95,7 @@ class Surface:
         return found.get(name) or Value(name, NOTHING, source.type_name)
 
     def patch(self, fetched: FetchedPatch, *, only: Iterable[str] | None = None) -> PatchMeaning:
-        """A patch, or as much of it as some of its settings say. Raises Fault."""
+        """A patch, from all or only some of its settings. Raises Fault."""
         meaning = PatchMeaning(self.meaning, fetched.name)
         wanted = [each for each in inputs("patch") if only is None or each.name in only]
         with joined(fetched.name) as faults:
@@ -134,7 +134,7 @@ def check_paint(fetched: Fetched, name: str, source: Input, value: Value) -> Non
         controls.get()
 
 
-_AT_REST = next(each for each in inputs("mesh") if each.when == DEFAULT_TIME)  # the points that are rest without others
+_AT_REST = next(each for each in inputs("mesh") if each.when == DEFAULT_TIME)  # rest if there is no other
 
 
 class Sliding:
@@ -166,7 +166,7 @@ class Sliding:
         return self.fetched.values.get(source.name) or Value(source.name, "none" if is_scheme else NOTHING, "token")
 
     def slide(self, points: np.ndarray, numbers: Numbers) -> Slid:
-        """Slides points (V, 3), with what is animated as it is then. Raises Fault."""
+        """Slides points (V, 3), with the animated settings of their frame. Raises Fault."""
         each = []
         for meaning, base, own in zip(self._meanings, self._base, numbers, strict=True):
             controls = ControlsMeaning(meaning, base)
@@ -193,7 +193,7 @@ def _slider(surface: Surface, setups: Sequence[PatchSetup]) -> Slider:
 
 
 def check_one_piece(fetched: Fetched) -> None:
-    """Raises Fault where the last patch cannot be slid, or lies in several pieces."""
+    """Raises Fault if the last patch cannot be slid, or lies in several pieces."""
     alone = replace(fetched, patches=fetched.patches[-1:])
     pieces = len(Sliding(alone).slider.patches)
     if pieces > 1:
@@ -203,7 +203,7 @@ def check_one_piece(fetched: Fetched) -> None:
 
 
 def give_files(controls: ControlsMeaning, folder: str) -> None:
-    """Gives every file of a texture that is asked for; relative paths start from a folder. Raises Fault."""
+    """Gives the controls all files of textures that they need; relative paths start from a folder. Raises Fault."""
     while need := controls.need():
         path = os.path.join(folder, need.path)
         if not os.path.isfile(path) or controls.holds(path):
@@ -233,7 +233,7 @@ def _noting(faults: list[str]) -> Iterator[None]:
 
 @contextmanager
 def joined(patch: str = "") -> Iterator[list[str]]:
-    """Faults that are raised as one, a line each, with the name of a patch."""
+    """Collects faults, and raises them as one, a line each, with the name of a patch."""
     faults: list[str] = []
     yield faults
     if faults:

@@ -31,7 +31,7 @@ class SKINSLIDE_OT_rest_from_basis(_Rest):
 
     @classmethod
     def need(cls, context: bpy.types.Context) -> None:
-        """Raises Fault where there is none."""
+        """Raises Fault if there is none."""
         super().need(context)
         if not context.active_object.data.shape_keys:
             said = "has no shape keys; without a rest of its own the mesh itself is at rest"
@@ -68,12 +68,12 @@ _CLASSES = (SKINSLIDE_OT_rest_from_basis, SKINSLIDE_OT_rest_from_frame)
 
 
 def register() -> None:
-    """Tells Blender of the operators."""
+    """Registers the operators."""
     for each in _CLASSES:
         bpy.utils.register_class(each)
 
 
 def unregister() -> None:
-    """Takes them back."""
+    """Unregisters them."""
     for each in reversed(_CLASSES):
         bpy.utils.unregister_class(each)

@@ -1,4 +1,4 @@
-"""What is set on an object and its patches: properties as the schema declares them, made of the core's table."""
+"""Settings of an object and its patches: Blender properties as the schema declares them, made from the core's table."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ def _changed(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> 
 
 
 def tell(thing: bpy.types.Object) -> None:
-    """Says that the set-up of an object has changed."""
+    """Tells all of on_change that the set-up of an object has changed."""
     for call in on_change:
         call(thing)
 
 
 def title(name: str) -> str:
-    """A name of the core's as Blender shows names."""
+    """One of the core's names as Blender shows names."""
     return re.sub(r"(?<!^)([A-Z])", r" \1", name).title()
 
 
 def _declarations() -> dict[str, dict[str, str]]:
-    """What the schema calls each property, and says of it."""
+    """The schema's title and documentation of each property."""
     text = (Path(skinslide.__file__).parent / "schema" / "generatedSchema.usda").read_text(encoding="utf-8")
     declared = (
         r'skinSlide:(?:__INSTANCE_NAME__:)?(\w+)(?: = [^\n]*)? \(\n.*?userDocBrief = "(.*?)"\n.*?displayName = "(.*?)"'
@@ -48,7 +48,7 @@ _DECLARATIONS = _declarations()
 
 
 def _property(source: Input) -> Any:
-    """The property of Blender's that holds an input; None where it is painted, or no setting."""
+    """The Blender property that holds an input; None if it is painted, or not a setting."""
     words: dict[str, Any] = {"update": _changed, **_DECLARATIONS.get(source.name, {})}
     if source.is_primvar or source.name in ("points", "restPoints", "edges", "edgeForceDensities"):
         return None
@@ -115,7 +115,7 @@ def of(thing: bpy.types.Object) -> Any:
 
 
 def active_patch(thing: bpy.types.Object) -> Any:
-    """The patch that is looked at; None where there is none."""
+    """The active patch, or None."""
     own = of(thing)
     return own.patches[own.active] if 0 <= own.active < len(own.patches) else None
 
@@ -149,7 +149,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Takes them away."""
+    """Removes them."""
     del bpy.types.Object.skinslide
     bpy.utils.unregister_class(SkinslideObject)
     bpy.utils.unregister_class(SkinslidePatch)

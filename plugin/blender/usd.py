@@ -1,4 +1,4 @@
-"""Set-ups in `.skinslide` files, by the USD that Blender has in it. Knows nothing of bpy's data; for any thread.
+"""Set-ups in `.skinslide` files, by the USD that comes with Blender. Does not use bpy's data; for any thread.
 
 A set-up is read as the stage means it, of whatever layers that is made; it is written into the one layer of its file,
 in which all stays that Blender does not hold.
@@ -31,11 +31,11 @@ from skinslide.problems import Fault, StageError, StageProblems, UsageError
 
 from .reading import Fetched, FetchedPatch
 
-Keys = dict[tuple[str, str], list[tuple[float, float]]]  # of a patch and a setting: times and numbers
+Keys = dict[tuple[str, str], list[tuple[float, float]]]  # by patch and setting: times and numbers
 
 
 def import_usd() -> None:
-    """Has pxr imported, with the schema; the file format is for another USD, and such files are read as text."""
+    """Imports pxr, with the schema. The file format was built for another USD, so such files are read as text."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         from pxr import Usd  # noqa: F401
@@ -52,7 +52,7 @@ def as_fault() -> Iterator[None]:
 
 @dataclass
 class Read:
-    """A set-up as a file has it."""
+    """A set-up as it is in a file."""
 
     prim: str
     rest: np.ndarray  # (V, 3)
@@ -64,7 +64,7 @@ class Read:
 
 
 def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarray) -> Read:
-    """The set-up of a mesh with these faces, of a file. Raises Fault.
+    """The set-up in a file of a mesh with these faces. Raises Fault.
 
     prim_path: where the mesh is; empty: wherever its faces are.
     """
@@ -117,7 +117,7 @@ def _authored(value: Value) -> Value | None:
 
 
 def _written(text: Any, path: Any, asset: Asset) -> Asset:
-    """A path as it is written in the file itself; as USD finds it from weaker layers."""
+    """A path as it is written, if it is in the file itself; as USD resolves it, if in weaker layers."""
     attribute = text.GetAttributeAtPath(path)
     return Asset(attribute.default.path) if attribute and attribute.HasInfo("default") else asset
 
@@ -155,7 +155,7 @@ def _read_patch(prim: Any, mesh: MeshMeaning, name: str, read: Read, text: Any) 
 
 
 def _expanded(value: Value, mesh: MeshMeaning) -> Value:
-    """Without indices, and by point where it is one for all."""
+    """Without indices, and by point if it is constant."""
     array = np.asarray(value.value)
     if value.indices is not None:
         array = array[np.asarray(value.indices.value)]
@@ -250,7 +250,7 @@ def _author_patch(prim: Any, fetched: Fetched, patch: FetchedPatch, keys: Keys) 
 
 
 def _unapply(prim: Any, schema: str) -> None:
-    """Takes a schema out of the layer, and away from the prim where the cache has it too."""
+    """Removes a schema from the layer, and from the prim too if the cache has it."""
     from pxr import Sdf
 
     spec = prim.GetStage().GetEditTarget().GetLayer().GetPrimAtPath(prim.GetPath())
@@ -273,7 +273,7 @@ def _author_primvar(prim: Any, value: Value | None) -> None:
 
 
 def _forget(prim: Any, patch: str, sources: Sequence[Input]) -> None:
-    """Takes away what the layer has of inputs, but paint that varies, of which Blender holds the first value."""
+    """Removes the layer's inputs, except paint that varies over time, of which Blender holds only the first value."""
     layer = prim.GetStage().GetEditTarget().GetLayer()
     for source in sources:
         name = source.property(patch)

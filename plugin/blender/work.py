@@ -11,9 +11,9 @@ import bpy
 
 from skinslide.problems import Fault, SliderError
 
-Work = Callable[[], Any]  # which touches nothing of Blender's
+Work = Callable[[], Any]  # must not touch Blender
 Steps = Generator[Work, Any, str]
-# One thread: what is asked for later has what was asked for earlier behind it.
+# One thread, so that work is done in the order in which it was started.
 _pool: list[ThreadPoolExecutor] = []
 RUNNING = {"RUNNING_MODAL"}
 INTERVAL = 1 / 60  # seconds from one look to the next
@@ -21,7 +21,7 @@ PATIENCE = 0.02  # seconds that a frame may take before Blender goes on without 
 
 
 def interactive() -> bool:
-    """Whether there is an interface to keep in use."""
+    """Whether there is an interface that must stay in use."""
     return not bpy.app.background
 
 
@@ -31,14 +31,14 @@ def patience() -> float | None:
 
 
 def start(work: Callable[..., Any], *arguments: Any) -> Future[Any]:
-    """Begins some work."""
+    """Starts some work."""
     if not _pool:
         _pool.append(ThreadPoolExecutor(1, "skinslide-blender"))
     return _pool[0].submit(work, *arguments)
 
 
 def stop() -> None:
-    """Lets go of the thread."""
+    """Ends the thread."""
     while _pool:
         _pool.pop().shutdown(wait=True, cancel_futures=True)
 
@@ -57,14 +57,14 @@ def in_object_mode(context: bpy.types.Context) -> Any:
 
 
 def _active(context: bpy.types.Context) -> tuple[str, tuple[int, ...]]:
-    """The name of the active object, which outlives it, and how many vertices, edges and faces it has."""
+    """The name of the active object, which stays valid when that is gone, and its vertex, edge and face counts."""
     thing = context.active_object
     mesh = thing.data if thing and thing.type == "MESH" else None
     return thing.name if thing else "", (len(mesh.vertices), len(mesh.edges), len(mesh.polygons)) if mesh else ()
 
 
 def _is_edited(context: bpy.types.Context) -> bool:
-    """Whether one of Blender's own operators is at work in a mode, which then cannot be left: a stroke, a move."""
+    """Whether an operator of Blender is running, such as a stroke or a move: then the mode cannot be left."""
     if context.mode == "OBJECT":
         return False
     names = [each.bl_idname for each in context.window.modal_operators]
@@ -72,7 +72,7 @@ def _is_edited(context: bpy.types.Context) -> bool:
 
 
 def asked(operator: bpy.types.Operator, context: bpy.types.Context) -> set[str]:
-    """Has Blender ask for the properties of an operator, and then do it."""
+    """Has Blender ask for the properties of an operator, and then run it."""
     return set(context.window_manager.invoke_props_dialog(operator))
 
 
@@ -102,26 +102,26 @@ class Waiting(bpy.types.Operator):
 
     @classmethod
     def need(cls, context: bpy.types.Context) -> None:
-        """Raises Fault where there is nothing to do it with."""
+        """Raises Fault if there is nothing to work on."""
         if context.active_object is None or context.active_object.type != "MESH":
             raise Fault("the active object is not a mesh")
 
     def steps(self, context: bpy.types.Context) -> Steps:
-        """Yields work, for what it gives, and gives what was done in the end. Whatever it began ends with it."""
+        """Yields work, is sent its result, and returns what to report. Whatever it has begun ends with it."""
         work = self.fetch(context)
         found = (yield work) if work else None
         return self.write(context, found)
 
     def fetch(self, context: bpy.types.Context) -> Work | None:
-        """Says what there is to work out, of what is fetched now; None: nothing."""
+        """Fetches from Blender now, and returns the work to do on that; None: nothing."""
         raise NotImplementedError
 
     def write(self, context: bpy.types.Context, found: Any) -> str:
-        """Writes what was worked out, and says what was done."""
+        """Writes what the work found, and returns what to report."""
         raise NotImplementedError
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Begins, and waits for the work; of a script does all at once."""
+        """Begins, and goes on when the work is done; from a script, does everything at once."""
         self._steps, self._timer = self.steps(context), None
         self._begun_on: tuple[str, tuple[int, ...]] | None = None
         self._unwanted = self.too_late = False  # the latter once files are put in place
@@ -147,22 +147,22 @@ class Waiting(bpy.types.Operator):
         return {"PASS_THROUGH"} if state == RUNNING else state
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender ends it: it quits, loads a file, or the file was not chosen for which it would begin."""
+        """Called when Blender ends the operator: it quits, loads a file, or the choice of a file was cancelled."""
         if self._steps:
             wait([self._future])
             self._end(context, "CANCELLED")
 
     def _may_wait(self) -> bool:
-        """Not of a script, nor where Blender repeats it, which it takes to be done then."""
+        """Not for scripts, nor when Blender repeats an operator, since it expects that to be done when it returns."""
         return self.options.is_invoke and not (self.options.is_repeat or self.options.is_repeat_last)
 
     def tell(self, context: bpy.types.Context, text: str | None) -> None:
-        """Shows how far it is in the status bar."""
+        """Shows progress in the status bar."""
         if interactive() and context.workspace:
             context.workspace.status_text_set(text)
 
     def _go_on(self, context: bpy.types.Context, found: Work) -> set[str]:
-        """Takes the next step, with what was found, and begins the work after it."""
+        """Takes the next step with what was found, and starts the work that follows."""
         try:
             with in_object_mode(context):  # in edit mode nothing is evaluated
                 given = found()
@@ -179,7 +179,7 @@ class Waiting(bpy.types.Operator):
             raise
 
     def _check(self, active: tuple[str, tuple[int, ...]]) -> None:
-        """Raises Fault where another object is active than at first, or that has been edited."""
+        """Raises Fault if another object has become active, or the object was edited."""
         self._begun_on = self._begun_on or active
         name, counts = self._begun_on
         if active[0] != name:
