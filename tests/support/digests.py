@@ -17,13 +17,13 @@ class Values(NamedTuple):
     at: dict[float | str, bytes]
 
 
-BLOCKED = b"blocked"  # in place of a value
+BLOCKED = b"blocked"  # instead of a value
 Contents = dict[str, Values]  # "/World/mesh.points" -> its values
 Digests = dict[str, str]  # "/World/mesh.points" -> "24 values 5e8f..."
 
 
 def contents(layer: Sdf.Layer) -> Contents:
-    """Every attribute of a layer that has a value, if it is that it has none."""
+    """Every attribute of a layer that has a value, or is blocked."""
     found: Contents = {}
 
     def visit(path: Sdf.Path) -> None:
@@ -53,7 +53,7 @@ def _in_order(times: Iterable[float | str]) -> list[float | str]:
 
 
 def differences(a: Contents, b: Contents) -> list[str]:
-    """The attributes, and of each the first time, at which two layers differ."""
+    """The attributes in which two layers differ, with the first time at which each does."""
     said = []
     for path in sorted(a.keys() | b.keys()):
         if path not in a or path not in b:
@@ -68,7 +68,7 @@ def differences(a: Contents, b: Contents) -> list[str]:
 
 
 def digest(found: Contents) -> Digests:
-    """SHA-256, summed up over all values of an attribute."""
+    """For each attribute, one SHA-256 over all its values."""
     return {path: f"{len(values.at)} values {_sha256(values)}" for path, values in found.items()}
 
 
@@ -94,7 +94,7 @@ class Record:
         return set(self._cases)
 
     def differences(self, case: str, found: Digests) -> list[str]:
-        """What is otherwise than recorded, attribute by attribute."""
+        """What differs from the record, attribute by attribute."""
         recorded = self._cases.get(case, {})
         said = []
         for attribute in sorted(recorded.keys() | found.keys()):

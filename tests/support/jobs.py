@@ -19,7 +19,7 @@ def content(layer: Path) -> str:
 
 
 def tool(*words: str | Path, code: int = 0) -> str:
-    """Runs the tool; gives what it says."""
+    """Runs the tool, and returns its output."""
     done = subprocess.run([SCRIPTS / "skinslide", *words], capture_output=True, text=True)
     assert done.returncode == code, done.stderr
     return done.stdout + done.stderr
@@ -33,7 +33,7 @@ def wait_until(found: Callable[[], object], what: str, pause: float = 0.002) -> 
 
 
 def kill_baking(folder: Path, chunk: str) -> None:
-    """Kills, as a machine that goes down would, the bake of a chunk while it writes."""
+    """Kills the bake of a chunk while it writes, like a machine that goes down."""
     stem = chunk.removesuffix(".usdc")
     wait_until(lambda: list(folder.glob(f".{stem}.*.usdc")), f"bake of {chunk}")
     for process in baking(folder / chunk):

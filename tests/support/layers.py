@@ -18,7 +18,7 @@ CLOCK = "startTimeCode = 1001; endTimeCode = 1003"
 
 def counter(name: str) -> Callable[[], int]:
     def count() -> int:
-        function = getattr(ctypes.CDLL(str(LIBRARY)), name)  # which the USD that runs may not be able to load
+        function = getattr(ctypes.CDLL(str(LIBRARY)), name)  # the USD in use may not be able to load it
         function.restype = ctypes.c_uint64
         return function()
 

@@ -22,7 +22,7 @@ def skeleton(stage: Usd.Stage, frames=FRAMES) -> UsdSkel.Skeleton:
     steps = np.diff(PLACES, prepend=0)
     made.CreateRestTransformsAttr([Gf.Matrix4d().SetTranslate(Gf.Vec3d(float(x), 0, 0)) for x in steps])
     animation = UsdSkel.Animation.Define(stage, ANIMATION)
-    animation.CreateJointsAttr(JOINTS[:0:-1])  # sparse, and in another order
+    animation.CreateJointsAttr(JOINTS[:0:-1])  # only some joints, and in another order
     animation.CreateTranslationsAttr([Gf.Vec3f(float(x), 0, 0) for x in steps[:0:-1]])
     animation.CreateScalesAttr([Gf.Vec3h(1)] * 2)
     rotations = animation.CreateRotationsAttr()
@@ -76,7 +76,7 @@ def blend_shape(mesh: UsdGeom.Mesh, name: str = "bulge") -> UsdSkel.BlendShape:
 
 
 def skinned_stage(shape: stages.Shape | None = None, faces: np.ndarray | None = None) -> tuple[Usd.Stage, UsdGeom.Mesh]:
-    """As `stages.patched_stage`, its mesh skinned in place of being sampled. Keep both."""
+    """Like `stages.patched_stage`, but with a skinned mesh in place of samples. Keep both."""
     stage, mesh = stages.patched_stage(shape, faces)
     skeleton(stage)
     bind(mesh)
@@ -84,7 +84,7 @@ def skinned_stage(shape: stages.Shape | None = None, faces: np.ndarray | None = 
 
 
 def skinned_by_usd(stage: Usd.Stage) -> Usd.Stage:
-    """A copy of a stage on which USD's own bake of skinning was run."""
+    """A copy of a stage, with skinning baked by USD itself."""
     layer = Sdf.Layer.CreateAnonymous(".usda")
     layer.TransferContent(stage.Flatten())
     copy = Usd.Stage.Open(layer)

@@ -1,4 +1,4 @@
-"""A flat sheet of which every square can be seen, previews of it, and what is on them."""
+"""A flat sheet whose squares can all be seen, previews of it, and what they show."""
 
 import numpy as np
 from PIL import Image
@@ -13,7 +13,7 @@ NAME = f"skin_GEO.{PATCH}"
 
 
 def sheet(columns=24, faces=None, st=True):
-    """A flat sheet that is stretched in its plane, so that every square of it can be seen; its middle is the patch."""
+    """A flat sheet that is stretched in its plane, so that all its squares can be seen. Its middle is the patch."""
     shape = stages.grid(columns, columns)
     shape.points[:, 2] = 0
     margin = range(3, columns - 3)
@@ -51,7 +51,7 @@ def picture(folder, view="chequer", frame="1003", name=NAME):
 
 
 def halves(pixels):
-    """Before and after, without the titles that stand in their corners."""
+    """The halves before and after, without the titles in their corners."""
     width = pixels.shape[1] // 2
     clear = slice(pixels.shape[0] // 5, -pixels.shape[0] // 5)
     return pixels[clear, :width].astype(int), pixels[clear, width:].astype(int)
@@ -62,7 +62,7 @@ def contrast(pixels):
 
 
 def projected(stage, vertices, points, size):
-    """Where points are on one half of a picture by the camera that the tool finds: by hand, with USD's own matrices."""
+    """Where points are on one half of a picture, with the tool's camera but by USD's own matrices."""
     from skinslide.picture.cameras import ShotCamera
     from skinslide.stage.mesh import read_meshes
 

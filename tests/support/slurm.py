@@ -1,4 +1,4 @@
-"""A Slurm of one machine, on loopback, without systemd: three daemons that are stopped by their ids."""
+"""Slurm on one machine, on loopback, without systemd: three daemons, which are stopped by their process ids."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
-MOST_TASKS = 4  # of an array
+MOST_TASKS = 4  # in an array
 _LATE = 30  # seconds
 
 _CONFIGURATION = """\

@@ -57,7 +57,7 @@ def grid(columns: int = 6, rows: int = 6, size: float = 1.0, centre: Sequence[fl
 
 
 def split(shape: Shape) -> Shape:
-    """With a point for each corner of each face, as in meshes of games; copies of a point follow each other."""
+    """A mesh with a point for each corner of each face, as games have them; copies of a point follow each other."""
     order = np.argsort(shape.indices, kind="stable")
     indices = np.empty_like(shape.indices)
     indices[order] = np.arange(len(order), dtype=np.int32)
@@ -115,7 +115,7 @@ def two_pieces(columns: int = 6, rows: int = 6) -> np.ndarray:
 
 
 def pinched() -> np.ndarray:
-    """Faces of a 3 x 3 grid, connected through edges, whose boundary touches itself at vertex 5."""
+    """Faces of a 3 x 3 grid, connected by edges, whose boundary touches itself at vertex 5."""
     return np.setdiff1d(np.arange(9), [0, 4])
 
 
@@ -143,7 +143,7 @@ def add_mesh(
 
 
 def add_patch(mesh: UsdGeom.Mesh, faces: np.ndarray | None, name: str = PATCH) -> None:
-    """Applies the schema, and chooses faces by a bool primvar; None: chooses none."""
+    """Applies the schema, and chooses faces by a bool primvar; None: without one."""
     mesh.GetPrim().ApplyAPI("SkinSlideAPI", name)
     if faces is not None:
         chosen = np.isin(np.arange(len(mesh.GetFaceVertexCountsAttr().Get())), faces)
@@ -154,7 +154,7 @@ def add_patch(mesh: UsdGeom.Mesh, faces: np.ndarray | None, name: str = PATCH) -
 def set_primvar(
     mesh: UsdGeom.Mesh, name: str, type_name: Sdf.ValueTypeName, interpolation: str, value, time: float | None = None
 ) -> None:
-    """Sets a primvar, of another type than before where there was one."""
+    """Sets a primvar, replacing one of another type."""
     attr = mesh.GetPrim().GetAttribute(f"primvars:{name}")
     if attr and attr.GetTypeName() != type_name:
         mesh.GetPrim().RemoveProperty(attr.GetName())
@@ -169,7 +169,7 @@ def set_property(mesh: UsdGeom.Mesh, name: str, value, time: float | None = None
 
 
 def new_stage() -> Usd.Stage:
-    """An empty stage that says what a published one does."""
+    """An empty stage with the metadata of a published one."""
     stage = Usd.Stage.CreateInMemory()
     stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
@@ -198,7 +198,7 @@ def save(stage: Usd.Stage, path: Path) -> Path:
 
 @contextmanager
 def as_nobody() -> Iterator[None]:
-    """Root may write everywhere: for a while, its process is that of a user who may not."""
+    """Meanwhile runs as a user who may not write everywhere, if this process is root's."""
     if os.geteuid() != 0:
         yield
         return

@@ -1,10 +1,10 @@
-/* Subdivisions with creases at random. */
+/* Subdivisions with random creases. */
 #ifndef SKINSLIDE_TEST_CREASES_H
 #define SKINSLIDE_TEST_CREASES_H
 
 #include "meshes.h"
 
-/* Every third edge of faces sharp: semi-sharp, or infinitely. Some corners, too. Owns its arrays. */
+/* Every third edge of the faces is sharp, infinitely or less; so are some corners. Owns its arrays. */
 typedef struct creased {
     skinslide_subdivision own;
     int32_t *lengths, *indices, *corners;

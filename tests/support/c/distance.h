@@ -1,14 +1,14 @@
-/* How far points are from a surface, and poses from even motion, in double. */
+/* How far points are from a surface, and how far motion is from even, in double. */
 #ifndef SKINSLIDE_TEST_DISTANCE_H
 #define SKINSLIDE_TEST_DISTANCE_H
 
 #include "support.h"
 
 double distance_to_triangle(const double p[3], const float *a, const float *b, const float *c);
-/* To the nearest triangle of all fans of the mesh, its vertices at points. */
+/* The distance to the nearest triangle of all fans of the mesh, with its vertices at points. */
 double distance_to_mesh(const test_mesh *mesh, const float *points, const float *p);
 
-/* Of three poses [vertex_count][3] that follow each other: the largest |p0 - 2 p1 + p2|, how roughly they move. */
+/* How roughly points move: the largest |p0 - 2 p1 + p2| of three successive poses [vertex_count][3]. */
 double largest_second_difference(float *const poses[3], int32_t vertex_count);
 
 #endif

@@ -11,7 +11,7 @@ double exr_value(int32_t x, int32_t y, int32_t channel) {
     return 0.25 + (channel + 1) * ((x & 15) + 16 * (y & 7)) / 4.0;
 }
 
-/* Of numbers that are exact in one, from 2^-14 on. */
+/* For numbers from 2^-14 on that a half holds exactly. */
 static uint16_t to_half(double value) {
     int exponent = 15;
     if (value == 0)
@@ -96,7 +96,7 @@ static void put(const exr_part *part, int32_t x, int32_t y, int32_t channel, uin
         memcpy(to, &number, 4);
 }
 
-/* Texels from (x, y) on. Those of smaller levels come from elsewhere, so that they are others. */
+/* Texels from (x, y) on. Smaller levels take theirs from elsewhere, so that they differ. */
 static void write_chunk(exr_context_t file, const exr_part *part, int index, const exr_chunk_info_t *chunk, int32_t x,
                         int32_t y) {
     exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;

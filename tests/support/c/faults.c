@@ -67,14 +67,14 @@ static EGLSurface create_surface(EGLDisplay display, EGLConfig config, const EGL
     return egl_strikes("eglCreatePbufferSurface") ? EGL_NO_SURFACE : real.eglCreatePbufferSurface(display, config, attributes);
 }
 
-/* Only making a context current fails, never putting it away. */
+/* Only making a context current fails, never releasing it. */
 static EGLBoolean make_current(EGLDisplay display, EGLSurface draw, EGLSurface read, EGLContext context) {
     if (context != EGL_NO_CONTEXT && egl_strikes("eglMakeCurrent"))
         return EGL_FALSE;
     return real.eglMakeCurrent(display, draw, read, context);
 }
 
-/* Without the hidden extension. */
+/* The extensions without the hidden ones. */
 static const char *query_string(EGLDisplay display, EGLint name) {
     const char *text = real.eglQueryString(display, name);
     const char *found = plan.hidden && text ? strstr(text, plan.hidden) : NULL;

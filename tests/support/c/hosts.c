@@ -66,7 +66,7 @@ static painter painter_of(const host *h) {
     return p;
 }
 
-/* Of a pixel: none or all of a channel, which surfaces of any depth hold exactly. */
+/* A pixel has none or all of each channel, which surfaces of any depth hold exactly. */
 static bool lit(int surface, int x, int y, int channel) {
     return (surface + 2) * (x + 3) * (y + 5) * (channel + 7) >> 2 & 1;
 }

@@ -29,7 +29,7 @@ void assert_faces_hold(const ss_faces *faces) {
         }
 }
 
-/* Ends of edge e, lower first, come after those of edge e - 1, and each side is between the ends of its edge. */
+/* The ends of each edge, lower first, sort after those of the edge before, and each side is between the ends of its edge. */
 static void check_edges(const ss_patch *patch) {
     const ss_faces *faces = &patch->faces;
     for (int32_t e = 0; e < faces->edge_count; e++) {
@@ -50,7 +50,7 @@ static int32_t boundary_sides(const ss_faces *faces) {
     return sides;
 }
 
-/* Each vertex of a loop leads to the next by its boundary side; every boundary side is in a loop once. */
+/* Each vertex of a loop leads to the next by its boundary side; every boundary side is in one loop, once. */
 static void check_loops(const ss_patch *patch) {
     int32_t sides = 0;
     for (int32_t loop = 0; loop < patch->loop_count; loop++) {
@@ -89,7 +89,7 @@ static void check_free(const ss_patch *patch) {
     free(seen);
 }
 
-/* Those of one mesh vertex are beside each other, and split. */
+/* Patch vertices of one mesh vertex are numbered one after the other, and marked as split. */
 static void check_vertices(const ss_patch *patch) {
     for (int32_t v = 0; v < patch->vertex_count; v++) {
         int32_t own = patch->mesh_vertex[v], first = ss_patch_vertex(patch, own);

@@ -81,7 +81,7 @@ static void add_face(test_mesh *mesh, int32_t count, const int32_t *vertices) {
     mesh->index_count += count;
 }
 
-/* A mesh whose faces are added one by one: room for so many, none yet. */
+/* A mesh to which faces are added one by one: with room for them, but none yet. */
 static test_mesh empty_mesh(int32_t vertex_count, int32_t face_room, int32_t index_room) {
     test_mesh mesh = new_mesh(vertex_count, face_room, index_room);
     mesh.face_count = mesh.index_count = 0;
@@ -134,7 +134,7 @@ test_mesh grid_with_holes(bool triangles) {
     return left;
 }
 
-/* Quads from ring to ring of a sheet of rings that close. */
+/* Quads between the closed rings of a sheet. */
 static void add_rings(test_mesh *mesh, int32_t around, int32_t rings) {
     for (int32_t r = 0; r < rings; r++)
         for (int32_t i = 0; i < around; i++) {
@@ -218,7 +218,7 @@ typedef struct growth {
     dice d;
 } growth;
 
-/* The face with the side b to a, and where in it: -1 where there is none. */
+/* The face with the side from b to a, and where it is in the face; -1 if there is none. */
 static int32_t face_across(const growth *g, int32_t a, int32_t b, int32_t *place) {
     for (int32_t f = 0; f < g->faces; f++)
         for (*place = 0; *place < g->count[f]; ++*place)
@@ -371,7 +371,7 @@ double extent_of(const float *points, int32_t vertex_count) {
 /* Edges of no length, faces of no area, and slivers. */
 static test_mesh flawed_grid(void) {
     test_mesh mesh = triangle_grid(6, 6);
-    put_point(&mesh, 24, 2, 3, 0); /* was (3,3): now its neighbour's place */
+    put_point(&mesh, 24, 2, 3, 0); /* from (3,3) to its neighbour's place */
     put_point(&mesh, 16, 2.000001, 1, 0);
     put_point(&mesh, 32, 3, 4, 0); /* was (4,4) */
     return mesh;

@@ -1,4 +1,4 @@
-/* Meshes and poses that the C tests share. Meshes own their arrays; every random thing comes from a seed. */
+/* Meshes and poses that the C tests share. Meshes own their arrays; all that is random comes from a seed. */
 #ifndef SKINSLIDE_TEST_MESHES_H
 #define SKINSLIDE_TEST_MESHES_H
 
@@ -26,14 +26,14 @@ typedef struct test_mesh {
 test_mesh copy_mesh(int32_t vertex_count, int32_t face_count, const int32_t *face_counts, const int32_t *face_indices,
                     const float *points);
 void free_mesh(test_mesh *mesh);
-/* As the library takes it, with the mesh's own points as rest. */
+/* The mesh as the library takes it, with its own points as rest. */
 skinslide_mesh view_of(const test_mesh *mesh);
 
 /* columns x rows quads of side 1 in z = 0; vertex (i, j) is j (columns + 1) + i. */
 test_mesh quad_grid(int32_t columns, int32_t rows);
 /* The same, each quad cut in two; diagonals alternate. */
 test_mesh triangle_grid(int32_t columns, int32_t rows);
-/* Without the faces of which drop says so. Their vertices stay: isolated where nothing else uses them. */
+/* The mesh without faces for which drop is true. Their vertices stay, isolated if nothing else uses them. */
 test_mesh without_faces(const test_mesh *mesh, bool (*drop)(const test_mesh *mesh, int32_t face));
 /* A 10 x 10 grid with two holes, of 2 x 2 and 1 x 3 quads. */
 test_mesh grid_with_holes(bool triangles);
@@ -43,11 +43,12 @@ test_mesh annulus(int32_t around, int32_t rings);
 test_mesh brick_wall(int32_t columns, int32_t rows);
 /* One polygon. */
 test_mesh polygon(int32_t sides);
-/* A disk grown at random: splits of edges, diagonals, vertices inside faces and ears. Its points are of no particular shape. */
+/* A disk grown at random, by splitting edges and by adding diagonals, vertices inside faces, and ears. Its points have no
+ * shape. */
 test_mesh random_disk(uint64_t seed, int32_t steps);
 /* A tube of rings of quads, closed at the far end by a fan of triangles: the skin of a finger. */
 test_mesh finger(int32_t around, int32_t rings);
-/* Closed meshes: of six quads, eight triangles, and a quad grid rolled up both ways, of 256 quads at most. */
+/* Closed meshes: six quads, eight triangles, and a quad grid rolled up both ways, of at most 256 quads. */
 test_mesh cube(void);
 test_mesh octahedron(void);
 test_mesh torus(int32_t around, int32_t across);
@@ -63,10 +64,10 @@ float *bumped(const test_mesh *mesh, double x, double y, double radius, double h
 float *shaken(const test_mesh *mesh, uint64_t seed, double amount);
 /* A shear, a bump and a shake, chosen by the seed. */
 float *random_pose(const test_mesh *mesh, uint64_t seed);
-/* The diagonal of the box of the points. */
+/* The length of the diagonal of the points' bounding box. */
 double extent_of(const float *points, int32_t vertex_count);
 
-/* ---- The corpus: small meshes with what is awkward about each ---- */
+/* ---- The corpus: small meshes, each awkward in its own way ---- */
 
 typedef struct fixture {
     const char *name;

@@ -1,4 +1,4 @@
-/* Points to look up in an embedding, awkward ones most. */
+/* Points to look up in an embedding, mostly awkward ones. */
 #ifndef SKINSLIDE_TEST_QUERIES_H
 #define SKINSLIDE_TEST_QUERIES_H
 
@@ -8,13 +8,13 @@
  * the last place from one of these. */
 void random_query(const ss_faces *faces, const double (*uv)[2], dice *d, double out[2]);
 
-/* A uv for every vertex at random: faces overlap, turn over and cross themselves. */
+/* Random uv for every vertex, so that faces overlap, turn over and cross themselves. */
 double (*tangled(const ss_patch *patch, uint64_t seed))[2];
 
-/* Of a triangle in the plane. */
+/* The length of a triangle's longest side, in the plane. */
 double longest_side(const double *a, const double *b, const double *c);
 
-/* Weights of vertices [count] sum to 1 and give p back. */
+/* Asserts that the weights of vertices [count] sum to 1 and give p. */
 void expect_point(const double (*uv)[2], const int32_t *vertices, int32_t count, const double *weights, const double p[2],
                   double tolerance);
 

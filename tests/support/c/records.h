@@ -1,4 +1,4 @@
-/* Records as a reader hands them over, made in one line; and a mesh, a patch and its controls of a scene. */
+/* One-line makers of records as readers hand them over, and of a scene's mesh, patch and controls. */
 #ifndef SKINSLIDE_TEST_RECORDS_H
 #define SKINSLIDE_TEST_RECORDS_H
 
@@ -18,14 +18,14 @@ skinslide_value nothing_of(const char *name);
 skinslide_value blocked_of(const char *name);
 /* A value of a type that nothing here takes. */
 skinslide_value other_of(const char *name, const char *type_name);
-/* With an interpolation, and with indices. */
+/* The value with an interpolation, or with indices. */
 skinslide_value painted_as(skinslide_value value, const char *interpolation);
 skinslide_value indexed_by(skinslide_value value, const skinslide_value *indices);
 
-/* The input of a group by its name; of two of one name the one with that prefix, or any for NULL. */
+/* The input of a group by its name and, unless that is NULL, its prefix. */
 const skinslide_stage_input *input_of(skinslide_stage_group group, const char *prefix, const char *name);
 
-/* What takes a value in one line: the status, with the message in error. */
+/* Take a value by the name of its input. */
 skinslide_status mesh_takes(skinslide_stage_mesh *mesh, const char *name, skinslide_value value, skinslide_error *error);
 skinslide_status patch_takes(skinslide_stage_patch *patch, const char *name, skinslide_value value, skinslide_error *error);
 skinslide_status controls_take(skinslide_stage_controls *controls, const char *name, skinslide_value value,
@@ -33,7 +33,7 @@ skinslide_status controls_take(skinslide_stage_controls *controls, const char *n
 
 /* A mesh of a scene, with its points as rest points. */
 skinslide_stage_mesh *scene_mesh(const test_mesh *mesh);
-/* A patch "elbow" of it, of the faces chosen [face_count], or of all for NULL; and its controls with nothing authored. */
+/* A patch "elbow" of it, of the faces chosen [face_count], or all for NULL; and controls with nothing authored. */
 skinslide_stage_patch *scene_patch(const skinslide_stage_mesh *mesh, const test_mesh *of, const uint8_t *chosen);
 skinslide_stage_controls *scene_controls(const skinslide_stage_patch *patch);
 

@@ -52,7 +52,7 @@ std::unique_ptr<Far::TopologyRefiner> refiner_of(const skinslide_mesh &mesh, int
     return refiner;
 }
 
-/* The last level's points at the limit. */
+/* The limit points of the last level's vertices. */
 std::vector<Point> limit_of(const Far::TopologyRefiner &refiner, const float *points) {
     Far::PrimvarRefinerReal<double> primvars(refiner);
     std::vector<Point> level(size_t(refiner.GetLevel(0).GetNumVertices()));
@@ -78,7 +78,7 @@ int descend(const Far::TopologyRefiner &refiner, int vertex) {
     return vertex;
 }
 
-/* The middle of a triangle of the loop scheme is no vertex of any level: there the corner stands in for it. */
+/* The middle of a triangle of the loop scheme is not a vertex of any level: the corner stands in for it. */
 int middle_of(const Far::TopologyRefiner &refiner, int face, int corner_child) {
     if (refiner.GetSchemeType() == Sdc::SCHEME_LOOP)
         return corner_child;

@@ -108,7 +108,7 @@ double (*embedding_of(const ss_patch *patch, const float *rest_points, const flo
     return uv;
 }
 
-/* Unknowns of the net, numbered as its vertices come: [n][n + 2], the right sides last. */
+/* The matrix, with unknowns in the order of the net's vertices, and two right sides last: [n][n + 2]. */
 static double *fill_dense(const ss_net *net, const double *density, const double (*uv)[2], const int32_t *unknown, int32_t n) {
     double *rows = calloc((size_t)n * (size_t)(n + 2) + 1, sizeof *rows);
     for (int32_t e = 0; e < net->edge_count; e++)
@@ -134,7 +134,7 @@ static void exchange_rows(double *rows, int32_t n, int32_t i, int32_t j) {
     }
 }
 
-/* Gauss and Jordan, with row exchanges. */
+/* Gauss-Jordan elimination, with row exchanges. */
 static void eliminate(double *rows, int32_t n) {
     for (int32_t i = 0; i < n; i++) {
         int32_t best = i;
