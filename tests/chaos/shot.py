@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from pxr import Gf, Sdf, UsdGeom, Vt
+from pxr import Gf, Sdf, Tf, UsdGeom, Vt
 
 import skinslide
 from stages import MESH, PATCH, add_mesh, add_patch, new_stage, quads, save, vectors
@@ -89,10 +89,16 @@ def _add_tendon_and_st(mesh: UsdGeom.Mesh) -> None:
 
 
 def content(file: Path) -> str | bytes:
-    """What a file promises to hold: values of a crate file, whose bytes tell when it was saved; of a page, its end."""
-    if file.suffix == ".usdc":
-        return Sdf.Layer.OpenAsAnonymous(str(file)).ExportToString()
+    """What a file promises to hold: values of a crate file, whose bytes tell when it was saved; of a page, its end.
+
+    Of a crate file that is not whole, its bytes.
+    """
     data = file.read_bytes()
+    if file.suffix == ".usdc":
+        try:
+            return Sdf.Layer.OpenAsAnonymous(str(file)).ExportToString()
+        except Tf.ErrorException:
+            return data
     if file.suffix == ".html" and data.rstrip().endswith(b"</html>"):
         return "a whole page"
     return data

@@ -64,6 +64,8 @@ def say(code: int | None, err: str = "error: so\n") -> Ended:
         ({"out.usda": "old"}, say(1), []),
         ({"out.usda": "new"}, say(0, ""), []),
         ({"out.usda": "old", ".out.0123abcd.usda": ""}, say(-9, ""), []),
+        ({"out.usda": "old", ".out.0123abcd.usdc": ""}, say(-9, ""), []),
+        ({"out.usda": "old", ".out.0123abcd.0freSl": ""}, say(-9, ""), []),
         ({"out.usda": "old"}, say(-15, ""), []),
         ({"out.usda": "old"}, say(0, ""), ["exit code 0 and no new out.usda"]),
         ({"out.usda": "ne"}, say(-9, ""), ["out.usda is neither what it was nor whole"]),

@@ -11,7 +11,7 @@ from chaos.tool import Ended
 
 Files = dict[str, str | bytes]
 _LINE = re.compile("(error|warning|note): .+")
-_PARTIAL = re.compile(r"\.[^/]+\.[0-9a-f]{8}\.[a-z.]+\w*")
+_PARTIAL = re.compile(r"\.[^/]+\.[0-9a-f]{8}\.[\w.]+")  # ours, and USD's beside it, of any letters and digits
 _CODES = {0, 1, 2, 3, 129, 130, 143}
 _AT_ONCE = {-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT}  # a signal that is not answered any more, or not yet
 
