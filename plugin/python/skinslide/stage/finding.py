@@ -249,8 +249,7 @@ def _strongest_points(prim: Usd.Prim) -> Sdf.PropertySpec | None:
 
 
 def _nothing(prim_paths: Sequence[str] | None) -> str:
-    said = nothing_to_slide(_where(prim_paths))
-    return f"{said}; start with: skinslide setup STAGE -o X.skinslide --prim MESH --patch NAME --faces 0-120"
+    return f"{nothing_to_slide(_where(prim_paths))}; start with: skinslide setup STAGE -o X.skinslide --whole"
 
 
 def _where(prim_paths: Sequence[str] | None) -> str:
