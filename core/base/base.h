@@ -124,6 +124,17 @@ static inline bool ss_is_finite(const float point[3]) {
     return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
 }
 
+/* ---- Code for processors that do several things at once ---- */
+
+/* For functions whose arguments are constants, or whose target is another, once they are in their caller. */
+#define SS_INLINE static inline __attribute__((always_inline))
+
+/* Two or four doubles at once; those that are loose need no more alignment than a double. */
+typedef double ss_two __attribute__((vector_size(16)));
+typedef double ss_loose_two __attribute__((vector_size(16), aligned(8), may_alias));
+typedef double ss_four __attribute__((vector_size(32)));
+typedef double ss_loose_four __attribute__((vector_size(32), aligned(8), may_alias));
+
 /* ---- Vectors of three doubles ---- */
 
 #define SS_PI 3.14159265358979323846

@@ -6,15 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-#define INLINE static inline __attribute__((always_inline))
-
 static const double root_of_half = 0x1.6a09e667f3bcdp-1;
 /* ln 2 in two parts: a multiple of the first by a binary exponent is exact. */
 static const double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
 
 /* Of x = m 2^exponent with m from root_of_half up to twice that:
  * log m = 2 (s + s^3/3 + s^5/5 + ...),  s = (m - 1) / (m + 1)  at most 0.172. */
-INLINE double log_of(double m, double exponent) {
+SS_INLINE double log_of(double m, double exponent) {
     double s = (m - 1) / (m + 1), square = s * s, sum = square * (1.0 / 21);
     sum = square * (sum + 1.0 / 19), sum = square * (sum + 1.0 / 17), sum = square * (sum + 1.0 / 15);
     sum = square * (sum + 1.0 / 13), sum = square * (sum + 1.0 / 11), sum = square * (sum + 1.0 / 9);
@@ -33,21 +31,19 @@ double ss_log(double x) {
 /* ---- Several at once: each step of all of them before the next, since a step of one has to wait for the one before ---- */
 
 enum { VECTORS = 4, AT_ONCE = 4 * VECTORS };
-typedef double vector __attribute__((vector_size(32)));
-typedef double loose __attribute__((vector_size(32), aligned(8), may_alias)); /* wherever it is */
 typedef uint64_t bits __attribute__((vector_size(32)));
 
-INLINE void take(const double *from, vector x[VECTORS]) {
+SS_INLINE void take(const double *from, ss_four x[VECTORS]) {
     for (int k = 0; k < VECTORS; k++)
-        x[k] = *(const loose *)(from + 4 * k);
+        x[k] = *(const ss_loose_four *)(from + 4 * k);
 }
 
-INLINE void put(const vector x[VECTORS], double *to) {
+SS_INLINE void put(const ss_four x[VECTORS], double *to) {
     for (int k = 0; k < VECTORS; k++)
-        *(loose *)(to + 4 * k) = x[k];
+        *(ss_loose_four *)(to + 4 * k) = x[k];
 }
 
-INLINE bool are_normal(const vector x[VECTORS]) {
+SS_INLINE bool are_normal(const ss_four x[VECTORS]) {
     bits normal = ~(bits){0};
     for (int k = 0; k < VECTORS; k++)
         normal &= (bits)(x[k] >= DBL_MIN);
@@ -56,13 +52,13 @@ INLINE bool are_normal(const vector x[VECTORS]) {
 
 /* Of normal numbers, by their bits and without a branch. The exponent counts from the bits of root_of_half; it becomes a double as the
  * last bits of one of 2^52 and more. */
-INLINE void take_logs_of_normal(vector x[VECTORS]) {
+SS_INLINE void take_logs_of_normal(ss_four x[VECTORS]) {
     const uint64_t root = UINT64_C(0x3fe6a09e667f3bcd), above = UINT64_C(0x400) << 52, large = UINT64_C(0x433) << 52;
-    vector exponent[VECTORS], s[VECTORS], square[VECTORS], sum[VECTORS];
+    ss_four exponent[VECTORS], s[VECTORS], square[VECTORS], sum[VECTORS];
     for (int k = 0; k < VECTORS; k++) {
         bits raised = ((bits)x[k] - root + above) >> 52;
-        vector m = (vector)((bits)x[k] - (raised << 52) + above);
-        exponent[k] = (vector)(raised | large) - (0x1p52 + 0x400);
+        ss_four m = (ss_four)((bits)x[k] - (raised << 52) + above);
+        exponent[k] = (ss_four)(raised | large) - (0x1p52 + 0x400);
         s[k] = (m - 1) / (m + 1), square[k] = s[k] * s[k], sum[k] = square[k] * (1.0 / 21);
     }
     for (int divisor = 19; divisor >= 3; divisor -= 2)
@@ -72,7 +68,7 @@ INLINE void take_logs_of_normal(vector x[VECTORS]) {
         x[k] = exponent[k] * ln2_high + (2 * s[k] + (2 * s[k] * sum[k] + exponent[k] * ln2_low));
 }
 
-INLINE void take_logs(vector x[VECTORS]) {
+SS_INLINE void take_logs(ss_four x[VECTORS]) {
     double each[AT_ONCE];
     if (are_normal(x)) {
         take_logs_of_normal(x);
@@ -85,13 +81,13 @@ INLINE void take_logs(vector x[VECTORS]) {
 }
 
 /* Fewer than AT_ONCE, then ones. */
-INLINE void fill_up(int32_t count, const double *x, double out[AT_ONCE]) {
+SS_INLINE void fill_up(int32_t count, const double *x, double out[AT_ONCE]) {
     for (int32_t i = 0; i < AT_ONCE; i++)
         out[i] = i < count ? x[i] : 1;
 }
 
-INLINE void logs(int32_t count, double *x) {
-    vector some[VECTORS];
+SS_INLINE void logs(int32_t count, double *x) {
+    ss_four some[VECTORS];
     double last[AT_ONCE];
     for (; count >= AT_ONCE; count -= AT_ONCE, x += AT_ONCE) {
         take(x, some);
@@ -106,21 +102,21 @@ INLINE void logs(int32_t count, double *x) {
 }
 
 /* Adds to sum the squares of logs of as many quotients, one after the other. */
-INLINE double add_squares(const double *x, const double *y, double sum) {
-    vector quotient[VECTORS], divisor[VECTORS];
+SS_INLINE double add_squares(const double *x, const double *y, double sum) {
+    ss_four quotient[VECTORS], divisor[VECTORS];
     take(x, quotient), take(y, divisor);
     for (int k = 0; k < VECTORS; k++)
         quotient[k] /= divisor[k];
     take_logs(quotient);
     for (int k = 0; k < VECTORS; k++) {
-        vector square = quotient[k] * quotient[k];
+        ss_four square = quotient[k] * quotient[k];
         for (int j = 0; j < 4; j++)
             sum += square[j];
     }
     return sum;
 }
 
-INLINE double sum_squares(int32_t count, const double *x, const double *y) {
+SS_INLINE double sum_squares(int32_t count, const double *x, const double *y) {
     double sum = 0, last[2][AT_ONCE];
     for (; count >= AT_ONCE; count -= AT_ONCE, x += AT_ONCE, y += AT_ONCE)
         sum = add_squares(x, y, sum);

@@ -150,8 +150,6 @@ void ss_frontal_destroy(ss_frontal *frontal) {
 
 /* ---- Assembly ---- */
 
-#define INLINE static inline __attribute__((always_inline)) /* so that block is a constant */
-
 static void assemble_numbers(const ss_frontal *frontal, const ss_front *front, const double *entries, double *panel) {
     for (int32_t i = front->entry_start; i < front->entry_start + front->entry_count; i++)
         panel[frontal->entry_place[i]] = entries[frontal->system->entries[i].edge];
@@ -166,17 +164,15 @@ static void assemble_extras(const ss_front *front, const ss_shape *s, const doub
     }
 }
 
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
-
 /* Adds one column of a child's update, or the two of a block, from the diagonal on. The two are from_next and to_next apart,
  * and a row is added at step times its place. What lies above the diagonal of a block is added too, but never read. */
-INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const int32_t *place,
-                        int step, double *to, ptrdiff_t to_next) {
+SS_INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const int32_t *place,
+                           int step, double *to, ptrdiff_t to_next) {
     for (int32_t i = begin; i < end; i++) {
         ptrdiff_t at = step * (ptrdiff_t)place[i];
         if (block == 2) {
-            *(pair *)(to + at) += *(const pair *)(from + 2 * i);
-            *(pair *)(to + to_next + at) += *(const pair *)(from + from_next + 2 * i);
+            *(ss_loose_two *)(to + at) += *(const ss_loose_two *)(from + 2 * i);
+            *(ss_loose_two *)(to + to_next + at) += *(const ss_loose_two *)(from + from_next + 2 * i);
         } else {
             to[at] += from[i];
         }
@@ -185,8 +181,8 @@ INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int3
 
 /* Adds a child's update to its parent, column by column: to the panel if the parent has that column, else to the parent's
  * update. */
-INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
-                   double *update) {
+SS_INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
+                      double *update) {
     const ss_front *own = &frontal->system->fronts[child];
     const int32_t *place = frontal->system->place + own->row_start, *in_panel = frontal->row_place + own->row_start;
     ss_shape from = ss_shape_of(frontal, own);

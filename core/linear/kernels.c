@@ -13,19 +13,16 @@
 #include <float.h>
 
 typedef ss_shape shape;
-typedef double narrow __attribute__((vector_size(16)));
-typedef double narrow_loose __attribute__((vector_size(16), aligned(8), may_alias)); /* aligned as a double is */
-#define INLINE static inline __attribute__((always_inline))
 
 /* The sum of four numbers. */
-INLINE double sum_of(const double *x) {
+SS_INLINE double sum_of(const double *x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
 /* ---- Within a tile of four columns: their own rows ---- */
 
 /* Adds the slacks of four columns. */
-INLINE void add_slack(const shape *s, const double *panel, int32_t tile, double sums[4]) {
+SS_INLINE void add_slack(const shape *s, const double *panel, int32_t tile, double sums[4]) {
     const double *extras = panel + ss_tile_start(s, s->own_tiles + s->below_tiles) + 16 * (size_t)tile;
     for (int j = 0; j < 4; j++)
         sums[j] += extras[4 * j];
@@ -33,7 +30,7 @@ INLINE void add_slack(const shape *s, const double *panel, int32_t tile, double 
 
 /* Factors a tile on the diagonal. out own: [k][j] is what column k had in the row of column j before it was divided, [k][k] is
  * 1 / pivot. sums are those of the columns over all rows below the tile. Columns from count on are padding. */
-INLINE bool factor_tile(double *tile, int32_t count, bool dominant, double sums[4], double own[4][4]) {
+SS_INLINE bool factor_tile(double *tile, int32_t count, bool dominant, double sums[4], double own[4][4]) {
     bool good = true;
 #pragma GCC unroll 4
     for (int k = 0; k < 4; k++) {
@@ -60,21 +57,21 @@ INLINE bool factor_tile(double *tile, int32_t count, bool dominant, double sums[
     return good;
 }
 
-INLINE void eliminate_tile(const double *tile, double x[4]) {
+SS_INLINE void eliminate_tile(const double *tile, double x[4]) {
     for (int k = 0; k < 3; k++)
         for (int i = k + 1; i < 4; i++)
             x[i] += tile[4 * k + i] * x[k];
 }
 
-INLINE void solve_tile(const double *tile, double x[4]) {
+SS_INLINE void solve_tile(const double *tile, double x[4]) {
     for (int k = 2; k >= 0; k--)
         for (int i = k + 1; i < 4; i++)
             x[k] += tile[4 * k + i] * x[i];
 }
 
 #define TARGET
-#define VECTOR     narrow
-#define LOOSE      narrow_loose
+#define VECTOR     ss_two
+#define LOOSE      ss_loose_two
 #define TILES      1
 #define NAME(name) name##_plain
 #include "kernels.inc"
@@ -85,11 +82,9 @@ INLINE void solve_tile(const double *tile, double x[4]) {
 #undef NAME
 
 #ifdef __x86_64__
-typedef double wide __attribute__((vector_size(32)));
-typedef double wide_loose __attribute__((vector_size(32), aligned(8), may_alias));
 #define TARGET     __attribute__((target("avx2")))
-#define VECTOR     wide
-#define LOOSE      wide_loose
+#define VECTOR     ss_four
+#define LOOSE      ss_loose_four
 #define TILES      2
 #define NAME(name) name##_avx2
 #include "kernels.inc"

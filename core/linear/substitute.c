@@ -3,16 +3,13 @@
  * [unknown][side], or one if they are blocks, [unknown][row]. */
 #include "linear.h"
 
-#define INLINE                                                                                                                 \
-    static inline __attribute__((always_inline)) /* so that block is a constant, and with it the count of right sides */
-
 enum { MOST_AHEAD = 2048 }; /* numbers read ahead */
 
 /* ---- Right sides of one front ---- */
 
 /* Copies the right sides of a front's columns to x [count][columns], with 0 for padding. */
-INLINE void take_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
-                         const double (*right)[2]) {
+SS_INLINE void take_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
+                            const double (*right)[2]) {
     const double *from = right[front->first];
     int count = 2 / block;
     for (int c = 0; c < count; c++) {
@@ -24,7 +21,7 @@ INLINE void take_columns(const ss_frontal *frontal, const ss_front *front, const
     }
 }
 
-INLINE void put_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
+SS_INLINE void put_columns(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
     double *to = right[front->first];
     int count = 2 / block;
     for (int c = 0; c < count; c++)
@@ -32,24 +29,23 @@ INLINE void put_columns(const ss_frontal *frontal, const ss_front *front, const 
             to[count * k + c] = frontal->x[c * s->columns + k];
 }
 
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias)); /* the two numbers of an unknown */
-
 /* Adds below [count][rows] to the right sides of the rows. */
-INLINE void add_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
+SS_INLINE void add_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block, double (*right)[2]) {
     const int32_t *rows = frontal->system->rows + front->row_start;
     const double *below = frontal->below, *other = below + 4 * s->below_tiles;
     for (int32_t i = 0; i < front->row_count; i++)
-        *(pair *)right[rows[i]] += block == 2 ? *(const pair *)(below + 2 * i) : (pair){below[i], other[i]};
+        *(ss_loose_two *)right[rows[i]] +=
+            block == 2 ? *(const ss_loose_two *)(below + 2 * i) : (ss_loose_two){below[i], other[i]};
 }
 
-INLINE void take_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
-                       const double (*right)[2]) {
+SS_INLINE void take_below(const ss_frontal *frontal, const ss_front *front, const ss_shape *s, int block,
+                          const double (*right)[2]) {
     const int32_t *rows = frontal->system->rows + front->row_start;
     double *below = frontal->below, *other = below + 4 * s->below_tiles;
     for (int32_t i = 0; i < front->row_count; i++) {
-        pair own = *(const pair *)right[rows[i]];
+        ss_loose_two own = *(const ss_loose_two *)right[rows[i]];
         if (block == 2)
-            *(pair *)(below + 2 * i) = own;
+            *(ss_loose_two *)(below + 2 * i) = own;
         else
             below[i] = own[0], other[i] = own[1];
     }
@@ -60,7 +56,7 @@ INLINE void take_below(const ss_frontal *frontal, const ss_front *front, const s
 
 /* ---- All of them ---- */
 
-INLINE void eliminate(ss_frontal *frontal, int32_t f, int block, double (*right)[2]) {
+SS_INLINE void eliminate(ss_frontal *frontal, int32_t f, int block, double (*right)[2]) {
     const ss_front *front = &frontal->system->fronts[f];
     ss_shape s = ss_shape_of(frontal, front);
     take_columns(frontal, front, &s, block, (const double(*)[2])right);
@@ -81,7 +77,7 @@ void ss_eliminate_right(ss_frontal *frontal, double (*right)[2]) {
         ss_eliminate_front(frontal, f, right);
 }
 
-INLINE void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int block) {
+SS_INLINE void divide_columns(const ss_frontal *frontal, const ss_shape *s, const double *panel, int block) {
     for (int32_t t = 0; t < s->own_tiles; t++) {
         const double *diagonal = panel + ss_tile_start(s, t) + 16 * (size_t)t;
         for (int c = 0; c < 2 / block; c++)
@@ -104,7 +100,7 @@ static void prefetch(const double *panel, const double *end) {
         __builtin_prefetch(line);
 }
 
-INLINE void substitute(ss_frontal *frontal, int block, bool carried, double (*right)[2]) {
+SS_INLINE void substitute(ss_frontal *frontal, int block, bool carried, double (*right)[2]) {
     for (int32_t f = frontal->system->front_count - 1; f >= 0; f--) {
         const ss_front *front = &frontal->system->fronts[f];
         ss_shape s = ss_shape_of(frontal, front);

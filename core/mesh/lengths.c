@@ -18,8 +18,6 @@ int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *leng
 }
 
 #ifdef __x86_64__
-typedef double vector __attribute__((vector_size(32)));
-typedef double loose __attribute__((vector_size(32), aligned(8), may_alias)); /* wherever it is */
 typedef int64_t bits __attribute__((vector_size(32)));
 
 static void lay_out(const ss_patch *patch, const float *points, double (*out)[4]) {
@@ -30,17 +28,16 @@ static void lay_out(const ss_patch *patch, const float *points, double (*out)[4]
 }
 
 /* The squares of four lengths, of edges that follow each other. */
-__attribute__((target("avx2"), always_inline)) static inline vector squares(const int32_t (*edge)[2],
-                                                                            const double (*points)[4]) {
-    vector way[4], low[2], high[2];
+__attribute__((target("avx2"))) SS_INLINE ss_four squares(const int32_t (*edge)[2], const double (*points)[4]) {
+    ss_four way[4], low[2], high[2];
     for (int k = 0; k < 4; k++)
-        way[k] = *(const loose *)points[edge[k][1]] - *(const loose *)points[edge[k][0]];
+        way[k] = *(const ss_loose_four *)points[edge[k][1]] - *(const ss_loose_four *)points[edge[k][0]];
     for (int k = 0; k < 2; k++) {
-        vector a = way[2 * k], b = way[2 * k + 1];
-        low[k] = (vector){a[0], b[0], a[2], b[2]}, high[k] = (vector){a[1], b[1], a[3], b[3]};
+        ss_four a = way[2 * k], b = way[2 * k + 1];
+        low[k] = (ss_four){a[0], b[0], a[2], b[2]}, high[k] = (ss_four){a[1], b[1], a[3], b[3]};
     }
-    vector x = {low[0][0], low[0][1], low[1][0], low[1][1]}, y = {high[0][0], high[0][1], high[1][0], high[1][1]},
-           z = {low[0][2], low[0][3], low[1][2], low[1][3]};
+    ss_four x = {low[0][0], low[0][1], low[1][0], low[1][1]}, y = {high[0][0], high[0][1], high[1][0], high[1][1]},
+            z = {low[0][2], low[0][3], low[1][2], low[1][3]};
     return x * x + y * y + z * z;
 }
 
@@ -48,13 +45,13 @@ __attribute__((target("avx2"), always_inline)) static inline vector squares(cons
  * one here, and SSE code that runs next is slow then. */
 __attribute__((target("avx2"))) static int32_t measure_avx2(const ss_patch *patch, const double (*points)[4], int32_t count,
                                                             double *lengths) {
-    const vector shortest = {patch->shortest, patch->shortest, patch->shortest, patch->shortest};
+    const ss_four shortest = {patch->shortest, patch->shortest, patch->shortest, patch->shortest};
     bits clamped = {0};
     for (int32_t e = 0; e < count; e += 4) {
-        vector square = squares((const int32_t(*)[2])patch->edge_vertex + e, points);
-        vector length = {sqrt(square[0]), sqrt(square[1]), sqrt(square[2]), sqrt(square[3])};
+        ss_four square = squares((const int32_t(*)[2])patch->edge_vertex + e, points);
+        ss_four length = {sqrt(square[0]), sqrt(square[1]), sqrt(square[2]), sqrt(square[3])};
         bits is_short = length < shortest;
-        *(loose *)(lengths + e) = (vector)(((bits)shortest & is_short) | ((bits)length & ~is_short));
+        *(ss_loose_four *)(lengths + e) = (ss_four)(((bits)shortest & is_short) | ((bits)length & ~is_short));
         clamped -= is_short;
     }
     return (int32_t)(clamped[0] + clamped[1] + clamped[2] + clamped[3]);

@@ -4,14 +4,12 @@
  * overlap. */
 #include "plane.h"
 
-#define INLINE static inline __attribute__((always_inline))
-
 enum { LANES = 2, HOPS = 3 }; /* enough for most points from where a neighbour landed */
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t lane_bits __attribute__((vector_size(8 * LANES)));
 
 /* For two points, each with its own slab: the side that it is farthest outside of, or 3 if it is outside of none. */
-INLINE lane_bits sides_to_leave_by(const ss_paving *paving, const int32_t slab[LANES], const double (*p)[2]) {
+SS_INLINE lane_bits sides_to_leave_by(const ss_paving *paving, const int32_t slab[LANES], const double (*p)[2]) {
     lanes x[3], y[3], turn[3], px = {p[0][0], p[1][0]}, py = {p[0][1], p[1][1]};
     for (int k = 0; k < 3; k++) {
         const double *a = paving->uv[paving->slab[slab[0]].vertex[k]], *b = paving->uv[paving->slab[slab[1]].vertex[k]];
@@ -24,7 +22,7 @@ INLINE lane_bits sides_to_leave_by(const ss_paving *paving, const int32_t slab[L
     return (~outside & 3) | (third & 2) | (second & ~third & 1);
 }
 
-INLINE int64_t approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE]) {
+SS_INLINE int64_t approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE]) {
     int64_t steps = 0;
     for (int hop = 0; hop < HOPS; hop++)
         for (int i = 0; i < SS_AT_ONCE; i += LANES) {

@@ -36,22 +36,20 @@ static void count_face(const ss_faces *faces, int32_t face, const double (*uv)[2
     layout->collapsed += collapsed;
 }
 
-typedef double pair __attribute__((vector_size(16)));
-typedef double loose_pair __attribute__((vector_size(16), aligned(8), may_alias)); /* aligned as a double is */
 typedef int64_t pair_bits __attribute__((vector_size(16)));
 
-static inline pair size_of(pair x) {
-    return (pair)((pair_bits)x & INT64_MAX);
+static inline ss_two size_of(ss_two x) {
+    return (ss_two)((pair_bits)x & INT64_MAX);
 }
 
 /* Whether each of two triangles turns left beyond doubt, by the same areas and roundings as doubled_area's, to the bit. */
 static inline pair_bits two_turn_left(const int32_t (*v)[3], const double (*uv)[2]) {
-    pair way[2][2];
+    ss_two way[2][2];
     for (int t = 0; t < 2; t++)
         for (int k = 0; k < 2; k++)
-            way[t][k] = *(const loose_pair *)uv[v[t][k + 1]] - *(const loose_pair *)uv[v[t][0]];
-    pair x1 = {way[0][0][0], way[1][0][0]}, y1 = {way[0][0][1], way[1][0][1]};
-    pair x2 = {way[0][1][0], way[1][1][0]}, y2 = {way[0][1][1], way[1][1][1]};
+            way[t][k] = *(const ss_loose_two *)uv[v[t][k + 1]] - *(const ss_loose_two *)uv[v[t][0]];
+    ss_two x1 = {way[0][0][0], way[1][0][0]}, y1 = {way[0][0][1], way[1][0][1]};
+    ss_two x2 = {way[0][1][0], way[1][1][0]}, y2 = {way[0][1][1], way[1][1][1]};
     return x1 * y2 - y1 * x2 > 8 * DBL_EPSILON * (size_of(x1) + size_of(y1) + size_of(x2) + size_of(y2));
 }
 
