@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from share import Skin as Edges
 
 from skinslide.arrays.canvas import Canvas
-from skinslide.arrays.native import PatchSetup
+from skinslide.arrays.setups import PatchSetup
 from skinslide.picture.series import Column, Series, Skin
 from skinslide.shot.options import PictureOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cells import lines
 
-from skinslide.arrays.slider import limit_points
+from skinslide.arrays.limit import limit_points
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 WAYS = ("linear", "meanValue", "limit")

@@ -13,7 +13,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from skinslide.arrays.meaning import Input, Other, Value, inputs
+from skinslide.arrays.fetched import Other, Value
+from skinslide.arrays.schema import Input, inputs
 from skinslide.problems import Fault
 
 from . import settings

@@ -11,7 +11,8 @@ import bpy
 import numpy as np
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from skinslide.arrays.meaning import Value, inputs
+from skinslide.arrays.fetched import Value
+from skinslide.arrays.schema import inputs
 from skinslide.problems import Fault
 
 from . import settings

@@ -9,8 +9,9 @@ from typing import Any
 import bpy
 import numpy as np
 
+from skinslide.arrays.fetched import Value
 from skinslide.arrays.geometry import Curves, edges_near
-from skinslide.arrays.meaning import Value, inputs
+from skinslide.arrays.schema import inputs
 from skinslide.problems import NO_EDGE, Fault
 
 from . import settings

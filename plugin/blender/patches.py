@@ -12,7 +12,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from skinslide.arrays.meaning import Value, can_name_patch, input_of
+from skinslide.arrays.fetched import Value
+from skinslide.arrays.schema import can_name_patch, input_of
 from skinslide.problems import NO_PATCH_NAME, Fault
 
 from . import settings

@@ -11,20 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from skinslide.arrays.records import PatchResult
 
-from skinslide.arrays.meaning import (
-    DEFAULT_TIME,
-    NOTHING,
-    ControlsMeaning,
-    File,
-    Input,
-    MeshMeaning,
-    Names,
-    PatchMeaning,
-    Taker,
-    Value,
-    inputs,
-)
-from skinslide.arrays.native import PatchSetup
+from skinslide.arrays.fetched import NOTHING, File, Value
+from skinslide.arrays.meaning import ControlsMeaning, MeshMeaning, Names, PatchMeaning, Taker
+from skinslide.arrays.schema import DEFAULT_TIME, Input, inputs
+from skinslide.arrays.setups import PatchSetup
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
 from skinslide.problems import Fault, SliderError

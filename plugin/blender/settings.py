@@ -11,7 +11,8 @@ import bpy
 import numpy as np
 
 import skinslide
-from skinslide.arrays.meaning import Asset, Input, Value, inputs
+from skinslide.arrays.fetched import Asset, Value
+from skinslide.arrays.schema import Input, inputs
 
 # Called with an object whose set-up has changed.
 on_change: list[Callable[[bpy.types.Object], None]] = []

@@ -15,18 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from skinslide.arrays.meaning import (
-    NOTHING,
-    SCHEMA,
-    Asset,
-    Input,
-    MeshMeaning,
-    Other,
-    PatchMeaning,
-    Value,
-    input_of,
-    inputs,
-)
+from skinslide.arrays.fetched import NOTHING, Asset, Other, Value
+from skinslide.arrays.meaning import MeshMeaning, PatchMeaning
+from skinslide.arrays.schema import SCHEMA, Input, input_of, inputs
 from skinslide.problems import Fault, StageError, StageProblems, UsageError
 
 from .reading import Fetched, FetchedPatch

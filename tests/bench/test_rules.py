@@ -5,7 +5,7 @@ from pxr import Usd
 
 import stages
 from repository import load
-from skinslide.arrays.slider import Sample
+from skinslide.arrays.setups import Sample
 from skinslide.stage.mesh import read_meshes
 
 

@@ -11,7 +11,7 @@ from skinslide._core import ffi, lib
 
 import stages
 from repository import ROOT
-from skinslide.arrays.meaning import inputs
+from skinslide.arrays.schema import inputs
 from skinslide.stage import schema
 
 SCHEMA = ROOT / "schema"

@@ -11,7 +11,7 @@ from edits import PLACE
 from good_stages import GOOD
 from repository import ROOT
 from rows import made
-from skinslide.arrays.meaning import inputs
+from skinslide.arrays.schema import inputs
 from stages import MESH
 
 LAYER = Sdf.Layer.FindOrOpen(str(ROOT / "schema" / "generatedSchema.usda"))

@@ -10,7 +10,7 @@ import stages
 from makers import refine
 from repository import load
 from skinslide import PatchSetup, Slider, SliderError, Subdivision, bake_to_file
-from skinslide.arrays import slider
+from skinslide.arrays.limit import limit_points
 from skinslide.stage.mesh import read_meshes
 from stages import FRAMES, MESH, PATCH
 
@@ -31,7 +31,7 @@ def test_limit_points_are_what_subdivision_goes_to(shape):
     corners, rounded = np.arange(4 * len(faces)), Subdivision(boundary_rule="edgeOnly")
     places = {"corner": (0, 0), "side": (1, 0), "middle": (1, 1)}
     limit = {
-        name: slider.limit_points(
+        name: limit_points(
             shape.counts, shape.indices, shape.points, rounded, corners, np.tile(place, (len(corners), 1))
         )
         for name, place in places.items()
@@ -49,13 +49,13 @@ def test_limit_points_name_what_is_wrong():
     shape = stages.grid()
     arrays = (shape.counts, shape.indices, shape.points)
     with pytest.raises(SliderError, match="corner 144"):
-        slider.limit_points(*arrays, CATMULL_CLARK, np.array([144]), np.zeros((1, 2)))
+        limit_points(*arrays, CATMULL_CLARK, np.array([144]), np.zeros((1, 2)))
     with pytest.raises(SliderError, match="hole"):
-        slider.limit_points(*arrays, Subdivision(hole_indices=np.array([0])), np.array([0]), np.zeros((1, 2)))
+        limit_points(*arrays, Subdivision(hole_indices=np.array([0])), np.array([0]), np.zeros((1, 2)))
     with pytest.raises(SliderError, match="corner sharpnesses: 0 values for 1 corners"):
-        slider.limit_points(*arrays, Subdivision(corner_indices=np.array([0])), np.array([0]), np.zeros((1, 2)))
+        limit_points(*arrays, Subdivision(corner_indices=np.array([0])), np.array([0]), np.zeros((1, 2)))
     with pytest.raises(SliderError, match="'butterfly' is not one of none, catmullClark, loop, bilinear"):
-        slider.limit_points(*arrays, Subdivision(scheme="butterfly"), np.array([0]), np.zeros((1, 2)))
+        limit_points(*arrays, Subdivision(scheme="butterfly"), np.array([0]), np.zeros((1, 2)))
 
 
 # ---- from the stage ----
@@ -224,8 +224,8 @@ def limit_step(shape: stages.Shape, points: np.ndarray, vertices: np.ndarray, di
     """From the limit point of each vertex (n,) a short way along a side of the first face it begins."""
     corners = np.array([np.flatnonzero(shape.indices.reshape(-1, 4)[:, 0] == vertex)[0] * 4 for vertex in vertices])
     arrays = (shape.counts, shape.indices, points, CATMULL_CLARK, corners)
-    here = slider.limit_points(*arrays, np.zeros((len(corners), 2)))
-    return slider.limit_points(*arrays, np.tile(direction, (len(corners), 1))) - here.astype(np.float64)
+    here = limit_points(*arrays, np.zeros((len(corners), 2)))
+    return limit_points(*arrays, np.tile(direction, (len(corners), 1))) - here.astype(np.float64)
 
 
 def test_damped_vertices_are_reported(tmp_path):

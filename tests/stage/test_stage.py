@@ -5,7 +5,7 @@ import pytest
 from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 
 import stages
-from skinslide.arrays.meaning import merge_times
+from skinslide.arrays.values import merge_times
 from skinslide.problems import FrameProblem, UsageError, errors
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 from skinslide.stage.opening import open_stage

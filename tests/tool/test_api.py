@@ -14,7 +14,7 @@ import skinslide
 import stages
 from repository import ROOT
 from skinslide import FrameSpecError, SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI, StageProblems, UsageError
-from skinslide.arrays.meaning import inputs
+from skinslide.arrays.schema import inputs
 from skinslide.author import mirror, paint, setup
 from skinslide.shot import options
 from skinslide.shot.frames import checked_frames

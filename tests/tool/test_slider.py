@@ -16,8 +16,8 @@ from pxr import UsdGeom, Vt
 
 import skinslide
 import stages
-from skinslide import Controls, Lookup, PatchSetup, Slider, SliderError
-from skinslide.arrays import slider
+from skinslide import Controls, Lookup, PatchSetup, Sample, Slider, SliderError
+from skinslide.arrays import attributes, native, slider
 from skinslide.arrays.apart import APART, apart, together
 from skinslide.shot.workers import pool_of
 from skinslide.stage.textures import give_files
@@ -103,11 +103,11 @@ def test_fields_are_those_of_the_header(sheet, rest):
 
 
 def test_tokens_are_those_of_the_stage():
-    assert slider.tokens("boundary") == ("auto", "square", "circle")
-    assert slider.tokens("holes") == ("pinned", "free", "freeAll")
-    assert slider.tokens("rule") == ("unit", "fast", "relaxed", "even")
-    assert slider.tokens("interpolation") == ("auto", "linear", "meanValue", "limit")
-    assert slider.tokens("lookup") == ("auto", "egl", "exact")
+    assert native.tokens("boundary") == ("auto", "square", "circle")
+    assert native.tokens("holes") == ("pinned", "free", "freeAll")
+    assert native.tokens("rule") == ("unit", "fast", "relaxed", "even")
+    assert native.tokens("interpolation") == ("auto", "linear", "meanValue", "limit")
+    assert native.tokens("lookup") == ("auto", "egl", "exact")
 
 
 def test_settings_arrive(counts, indices, rest):
@@ -470,7 +470,7 @@ def test_calls_together_where_there_are_no_more_threads(monkeypatch):
 
 QUARTERS = [
     PatchSetup(rule, np.flatnonzero(np.arange(FACES) // SIZE * 4 // SIZE == number), rule=rule)
-    for number, rule in enumerate(slider.tokens("rule"))
+    for number, rule in enumerate(native.tokens("rule"))
 ]
 
 
@@ -527,17 +527,17 @@ def test_carry(counts, indices, rest, sheet):
         ("uniform", FACES),
     ]:
         cached = np.tile(np.float32([0, 0, 1]), (count, 1))
-        same = slider.carry(counts, indices, 0 * turns, cached, interpolation)
+        same = attributes.carry(counts, indices, 0 * turns, cached, interpolation)
         assert same.tobytes() == cached.tobytes()
-        carried = slider.carry(counts, indices, turns, cached, interpolation)
+        carried = attributes.carry(counts, indices, turns, cached, interpolation)
         assert np.allclose(np.linalg.norm(carried, axis=1), 1, atol=1e-6)  # float32
         assert (carried != cached).any() and cached.tobytes() == same.tobytes()
         with pytest.raises(SliderError, match=f"it must be {count} x 3"):
-            slider.carry(counts, indices, turns, cached[1:], interpolation)
-    of_corners = slider.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (4 * FACES, 1)), "faceVarying")
-    of_vertices = slider.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (VERTICES, 1)), "vertex")
+            attributes.carry(counts, indices, turns, cached[1:], interpolation)
+    of_corners = attributes.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (4 * FACES, 1)), "faceVarying")
+    of_vertices = attributes.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (VERTICES, 1)), "vertex")
     assert of_corners.tobytes() == of_vertices[indices].tobytes()
-    along = slider.carry(counts, indices, turns, turns, "vertex")
+    along = attributes.carry(counts, indices, turns, turns, "vertex")
     assert np.allclose(along, turns, atol=1e-7)
 
 
@@ -547,21 +547,21 @@ def test_the_extent_is_that_of_usd():
     special = np.array([[0.0, -0.0, np.nan], [-0.0, 0.0, np.inf], [np.nan, np.nan, -np.inf]], np.float32)
     for given in (points, special, -special, np.abs(points) * special[0], points[:0], np.vstack([points, special])):
         expected = UsdGeom.PointBased.ComputeExtent(Vt.Vec3fArray.FromNumpy(given))
-        assert slider.extent(given).tobytes() == np.asarray(expected).tobytes()
+        assert attributes.extent(given).tobytes() == np.asarray(expected).tobytes()
 
 
 def test_velocities_and_accelerations():
     # Displacements 0, 1, 4 at 0, 1, 2 seconds, along x: t squared.
     still = np.zeros((1, 3), np.float32)
-    samples = [slider.Sample(t, still, still + np.float32([t * t, 0, 0])) for t in (0, 1, 2)]
+    samples = [Sample(t, still, still + np.float32([t * t, 0, 0])) for t in (0, 1, 2)]
     cached = np.float32([[5, 6, 7]])
-    assert slider.velocities([samples[0], samples[2]], cached).tolist() == [[7, 6, 7]]
-    assert slider.accelerations(samples, cached).tolist() == [[7, 6, 7]]
+    assert attributes.velocities([samples[0], samples[2]], cached).tolist() == [[7, 6, 7]]
+    assert attributes.accelerations(samples, cached).tolist() == [[7, 6, 7]]
     assert cached.tolist() == [[5, 6, 7]]
     with pytest.raises(SliderError, match="need 2 samples, not 3"):
-        slider.velocities(samples, cached)
+        attributes.velocities(samples, cached)
     with pytest.raises(SliderError):
-        slider.velocities([samples[1], samples[0]], cached)
+        attributes.velocities([samples[1], samples[0]], cached)
 
 
 def test_what_it_takes_and_gives_is_public():

@@ -21,9 +21,10 @@ from typing import TYPE_CHECKING, Any
 from skinslide import registration
 
 if TYPE_CHECKING:
-    from skinslide.arrays.native import Controls, Lookup, PatchSetup, Sample, Subdivision
+    from skinslide.arrays.lookup import Lookup, choose_lookup
     from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
-    from skinslide.arrays.slider import Diagnostics, Frame, Slider, choose_lookup
+    from skinslide.arrays.setups import Controls, PatchSetup, Sample, Subdivision
+    from skinslide.arrays.slider import Diagnostics, Frame, Slider
     from skinslide.arrays.weld import find_weld
     from skinslide.author.api import SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI
     from skinslide.author.applied import CanApplyResult
@@ -136,9 +137,10 @@ __all__ = [
 
 # The modules that have these names; a test compares them with what type checkers are told above.
 _HOMES = {
-    "arrays.native": ("Controls", "Lookup", "PatchSetup", "Sample", "Subdivision"),
+    "arrays.lookup": ("Lookup", "choose_lookup"),
     "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult", "Roughness"),
-    "arrays.slider": ("Diagnostics", "Frame", "Slider", "choose_lookup"),
+    "arrays.setups": ("Controls", "PatchSetup", "Sample", "Subdivision"),
+    "arrays.slider": ("Diagnostics", "Frame", "Slider"),
     "arrays.weld": ("find_weld",),
     "author.applied": ("CanApplyResult",),
     "author.api": ("SkinSlideAPI", "SkinSlideLiveAPI", "SkinSlideMeshAPI"),
@@ -181,7 +183,7 @@ _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        value = import_module("skinslide.arrays.slider").version()
+        value = import_module("skinslide.arrays.native").version()
     elif name in _HOME_OF:
         value = getattr(import_module(f"skinslide.{_HOME_OF[name]}"), name)
     else:

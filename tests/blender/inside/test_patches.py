@@ -386,7 +386,7 @@ def test_paint_without_a_patch_and_beyond_a_group():
 
 def test_settings_are_those_of_the_schema():
     """Every token and fallback is the core's."""
-    from skinslide.arrays.meaning import inputs
+    from skinslide.arrays.schema import inputs
 
     thing = sheet()
     patch = make_patch(thing)

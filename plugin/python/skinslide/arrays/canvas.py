@@ -8,20 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import (
-    Arguments,
-    Handle,
-    Subdivision,
-    as_array,
-    call,
-    device_number,
-    enum_value,
-    new,
-    new_array,
-    read,
-    writable,
-)
+from skinslide.arrays.checks import as_array, device_number
+from skinslide.arrays.native import Handle, call, enum_value, new, new_array, read, writable
 from skinslide.arrays.records import DeviceInfo
+from skinslide.arrays.setups import Subdivision
+from skinslide.arrays.structs import Arguments
 from skinslide.problems import SliderError
 
 

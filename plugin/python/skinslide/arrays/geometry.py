@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, call, enum_value, new, writable
+from skinslide.arrays.native import call, enum_value, new, writable
+from skinslide.arrays.structs import Arguments
 
 AXES = ("x", "y", "z")
 

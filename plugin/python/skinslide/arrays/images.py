@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, call, enum_value, new, new_array, text, token_of, writable
+from skinslide.arrays.native import call, enum_value, new, new_array, text, token_of, writable
+from skinslide.arrays.structs import Arguments
 
 FIRST_TILE = 1001
 LARGEST_MAP: int = lib.SKINSLIDE_LARGEST_MAP  # texels along each side of a map drawn

@@ -1,11 +1,10 @@
-"""The C core on numpy arrays: a slider for a mesh and its patches, and what else a cache holds. No USD here.
+"""A slider for a mesh and its patches, on numpy arrays. No USD here.
 
 The manual is `skinslide.h`. Arrays of other types are converted if that loses no more than digits.
 """
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
@@ -15,55 +14,14 @@ import numpy.typing as npt
 
 from skinslide._core import ffi, lib
 from skinslide.arrays.apart import apart, together
-from skinslide.arrays.native import (
-    Arguments,
-    Controls,
-    Handle,
-    Lookup,
-    PatchSetup,
-    Sample,
-    Sizes,
-    Subdivision,
-    all_of,
-    as_array,
-    call,
-    check_count,
-    enum_value,
-    new,
-    new_array,
-    read,
-    real,
-    text,
-    tokens,
-    whole,
-    writable,
-)
-from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
+from skinslide.arrays.checks import all_of, as_array, check_count, real, whole
+from skinslide.arrays.lookup import Lookup
+from skinslide.arrays.native import Handle, call, new, new_array, read, text, writable
+from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
+from skinslide.arrays.setups import Controls, PatchSetup, Sample, Subdivision
+from skinslide.arrays.structs import Arguments, Sizes
+from skinslide.arrays.workspaces import Workspaces
 from skinslide.problems import SliderError
-
-__all__ = [
-    "Controls",
-    "Diagnostics",
-    "Frame",
-    "Lookup",
-    "LookupInfo",
-    "PatchInfo",
-    "PatchResult",
-    "PatchSetup",
-    "Roughness",
-    "Sample",
-    "Slider",
-    "SliderError",
-    "Subdivision",
-    "accelerations",
-    "carry",
-    "choose_lookup",
-    "extent",
-    "limit_points",
-    "tokens",
-    "velocities",
-    "version",
-]
 
 
 class Frame(NamedTuple):
@@ -96,11 +54,6 @@ class Diagnostics(NamedTuple):
     stretch_after: np.ndarray
     slide: np.ndarray
     force_density: np.ndarray
-
-
-def version() -> str:
-    """The library's version, "major.minor.patch"."""
-    return text(lib.skinslide_version())
 
 
 class Slider:
@@ -143,7 +96,7 @@ class Slider:
         native = Arguments()
         mesh = native.mesh(face_counts, face_indices, rest_points, subdivision, weld, space)
         self._sizes = Sizes(mesh.vertex_count, mesh.face_count)
-        self._lookup = Lookup.of(lookup).options()
+        options = Lookup.of(lookup).options()
         given = all_of("patches", patches, PatchSetup)
         self._names = tuple(patch.name for patch in given)
         setups = new_array("patch_setup", len(given))
@@ -151,9 +104,7 @@ class Slider:
             native.fill_setup(setup, patch, self._sizes)
         self._slider = apart(_create, native, mesh, setups, len(given), whole(jobs, "jobs"))
         self.patches = tuple(self._info(i) for i in range(lib.skinslide_slider_patch_count(self._slider.pointer)))
-        self._idle, self._busy = [apart(self._new_workspace)], list[Handle]()
-        self._stopped = False
-        self._lock = threading.Lock()
+        self._workspaces = Workspaces(self._slider, options)
 
     def slide(
         self,
@@ -184,13 +135,10 @@ class Slider:
         given = native.frame_controls(controls, self._names, self._sizes)
         slid = np.empty((self._sizes.vertices, 3), np.float32)
         results = new_array("patch_result", len(self.patches)) if measures else ffi.NULL
-        workspace = self._take_workspace()
-        try:
+        with self._workspaces.taken() as workspace:
             call(lib.skinslide_slide, workspace.pointer, cached, given, writable("float[]", slid), results)
             planes = self._frame_embeddings(workspace) if embeddings else None
             turned = self._frame_turns(workspace, cached) if turns else None
-        finally:
-            self._give_back(workspace)
         measured = tuple(read(PatchResult, result) for result in results) if measures else ()
         return Frame(slid, measured, planes, turned)
 
@@ -199,10 +147,7 @@ class Slider:
 
         They raise a SliderError with the status INTERRUPTED.
         """
-        with self._lock:
-            self._stopped = True
-            for workspace in self._busy:
-                lib.skinslide_workspace_interrupt(workspace.pointer)
+        self._workspaces.stop()
 
     def diagnose(
         self,
@@ -385,12 +330,9 @@ class Slider:
         native = Arguments()
         cached = native.points(points, self._sizes.vertices, "points")
         slid = ffi.new("float[]", 3 * self._sizes.vertices)
-        workspace = self._take_workspace()
-        try:
+        with self._workspaces.taken() as workspace:
             call(lib.skinslide_slide, workspace.pointer, cached, ffi.NULL, slid, ffi.NULL)
             yield workspace, cached
-        finally:
-            self._give_back(workspace)
 
     def _info(self, patch: int) -> PatchInfo:
         info = new("patch_info")
@@ -419,27 +361,6 @@ class Slider:
         call(lib.skinslide_workspace_turns, workspace.pointer, cached, writable("float[]", turns))
         return turns
 
-    def _new_workspace(self) -> Handle:
-        out = ffi.new("skinslide_workspace **")
-        call(lib.skinslide_workspace_create, self._slider.pointer, self._lookup, out)
-        return Handle(out[0], lib.skinslide_workspace_destroy, self._slider)
-
-    def _take_workspace(self) -> Handle:
-        with self._lock:
-            workspace = self._idle.pop() if self._idle else None
-        if workspace is None:
-            workspace = self._new_workspace()
-        with self._lock:
-            self._busy.append(workspace)
-            if self._stopped:
-                lib.skinslide_workspace_interrupt(workspace.pointer)
-        return workspace
-
-    def _give_back(self, workspace: Handle) -> None:
-        with self._lock:
-            self._busy.remove(workspace)
-            self._idle.append(workspace)
-
 
 def _create(_native: Arguments, mesh: Any, setups: Any, count: int, jobs: int) -> Handle:
     """Makes a slider, its set-ups on several threads. `_native` keeps alive the memory that the structs point into."""
@@ -450,111 +371,3 @@ def _create(_native: Arguments, mesh: Any, setups: Any, count: int, jobs: int) -
         together(lambda setup: lib.skinslide_build_setup(build.pointer, setup), count, jobs)
     call(lib.skinslide_build_finish, build.pointer, out)
     return Handle(out[0], lib.skinslide_slider_destroy)
-
-
-def choose_lookup(lookup: str | Lookup = "auto") -> LookupInfo:
-    """Says which lookup, on which device, a choice leads to on this machine.
-
-    Args:
-        lookup: auto, egl, exact, or a Lookup.
-
-    Returns:
-        The lookup that a slider would have, and why.
-
-    Raises:
-        SliderError: That lookup cannot be had here.
-    """
-    info, device = new("lookup_info"), new("device_info")
-    call(lib.skinslide_choose_lookup, Lookup.of(lookup).options(), info, device)
-    return read(LookupInfo, info[0], device[0])
-
-
-def limit_points(
-    face_counts: np.ndarray,
-    face_indices: np.ndarray,
-    points: np.ndarray,
-    subdivision: Subdivision,
-    corners: np.ndarray,
-    places: np.ndarray,
-) -> np.ndarray:
-    """Points of the limit surface of a subdivided mesh.
-
-    A face of n vertices is n quads, one for each corner, that meet at its middle.
-
-    Args:
-        face_counts: Vertices of each face (F,).
-        face_indices: Vertices (sum of counts,), face by face.
-        points: Of the mesh (V, 3).
-        subdivision: How it is subdivided.
-        corners: Indices of face_indices (n,): which quad.
-        places: In 0..1 (n, 2): along the side to the next corner, and to the one before; (1, 1) is the middle of the
-            face.
-
-    Returns:
-        float32 (n, 3).
-    """
-    native = Arguments()
-    mesh = native.mesh(face_counts, face_indices, points, subdivision)
-    given = np.empty(len(corners), [("corner", np.int32), ("st", np.float32, 2)])
-    given["corner"] = as_array(corners, np.int32, (-1,), "corners")
-    given["st"] = as_array(places, np.float32, (len(corners), 2), "places")
-    result = np.empty((len(corners), 3), np.float32)
-    pointer = ffi.cast("skinslide_limit_place *", ffi.from_buffer(given))
-    out = writable("float[]", result)
-    call(lib.skinslide_limit_points, ffi.addressof(mesh), mesh.rest_points, pointer, len(corners), out)
-    return result
-
-
-def carry(
-    face_counts: np.ndarray, face_indices: np.ndarray, turns: np.ndarray, vectors: np.ndarray, interpolation: str
-) -> np.ndarray:
-    """The cache's normals, tangents or other vectors on the skin, turned as a frame's skin turned.
-
-    Args:
-        face_counts: Vertices of each face (F,).
-        face_indices: Vertices (sum of counts,), face by face.
-        turns: Of the frame (V, 3): axis times the sine of half the angle.
-        vectors: The cache's (n, 3).
-        interpolation: Which elements have one: vertex, varying, faceVarying or uniform.
-
-    Returns:
-        float32 (n, 3); those that do not turn keep their bits.
-    """
-    native = Arguments()
-    mesh = native.mesh(face_counts, face_indices, turns)
-    # On a mesh, varying values sit on the vertices.
-    layout = enum_value("normals_layout", "vertex" if interpolation == "varying" else interpolation, "")
-    sizes = {
-        lib.SKINSLIDE_NORMALS_VERTEX: mesh.vertex_count,
-        lib.SKINSLIDE_NORMALS_FACE_VARYING: mesh.index_count,
-        lib.SKINSLIDE_NORMALS_UNIFORM: mesh.face_count,
-    }
-    result = as_array(vectors, np.float32, (sizes[layout], 3), "vectors").copy()
-    call(lib.skinslide_carry, ffi.addressof(mesh), mesh.rest_points, layout, writable("float[]", result))
-    return result
-
-
-def extent(points: np.ndarray) -> np.ndarray:
-    """The box around points (V, 3): float32 (2, 3), the least of each coordinate, then the largest."""
-    box = np.empty((2, 3), np.float32)
-    call(lib.skinslide_extent, Arguments().points(points, -1, "points"), len(points), writable("float[]", box))
-    return box
-
-
-def velocities(samples: Sequence[Sample], velocities: np.ndarray) -> np.ndarray:
-    """The cache's velocities (V, 3), units per second, corrected by the rate of change over two samples."""
-    return _rates(lib.skinslide_velocities, 2, samples, velocities, "velocities")
-
-
-def accelerations(samples: Sequence[Sample], accelerations: np.ndarray) -> np.ndarray:
-    """The cache's accelerations (V, 3), units per second squared, corrected by the second difference over three."""
-    return _rates(lib.skinslide_accelerations, 3, samples, accelerations, "accelerations")
-
-
-def _rates(function: Any, sample_count: int, samples: Sequence[Sample], rates: np.ndarray, what: str) -> np.ndarray:
-    native = Arguments()
-    vertex_count = len(samples[0].cached) if samples else 0
-    given = native.samples(samples, sample_count, vertex_count, what)
-    result = as_array(rates, np.float32, (vertex_count, 3), what).copy()
-    call(function, vertex_count, given, writable("float[]", result))
-    return result

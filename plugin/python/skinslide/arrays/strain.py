@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, call, new, writable
+from skinslide.arrays.native import call, new, writable
+from skinslide.arrays.structs import Arguments
 
 
 class Strain(NamedTuple):

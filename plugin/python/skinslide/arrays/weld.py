@@ -8,7 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import Arguments, Handle, PatchSetup, Sizes, all_of, call, new_array, real, writable
+from skinslide.arrays.checks import all_of, real
+from skinslide.arrays.native import Handle, call, new_array, writable
+from skinslide.arrays.setups import PatchSetup
+from skinslide.arrays.structs import Arguments, Sizes
 
 
 def find_weld(

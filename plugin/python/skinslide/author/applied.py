@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.meaning import Input, Other, Value, can_name_patch, check_value, inputs
+from skinslide.arrays.fetched import Other, Value
+from skinslide.arrays.schema import Input, can_name_patch, inputs
+from skinslide.arrays.values import check_value
 from skinslide.problems import NO_PATCH_NAME, Fault, Problem, StageProblems, UsageError
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_faces, given_value

@@ -9,7 +9,8 @@ from functools import cached_property
 
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import MeshMeaning, say
+from skinslide.arrays.meaning import MeshMeaning
+from skinslide.arrays.schema import say
 from skinslide.arrays.topology import Topology
 from skinslide.problems import NO_SUCH_PRIM, Fault, Problem, StageProblems, errors
 from skinslide.shot.check import CheckReport, check

@@ -12,8 +12,9 @@ import numpy.typing as npt
 from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.geometry import Curves, edges_near, nearest_edge
-from skinslide.arrays.meaning import MeshMeaning, PatchMeaning, integers, positions
+from skinslide.arrays.meaning import MeshMeaning, PatchMeaning
 from skinslide.arrays.topology import Topology
+from skinslide.arrays.values import integers, positions
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import author_layer

@@ -242,7 +242,7 @@ def _told(function: Callable[..., Any], quiet: bool, *arguments: Any, **options:
 
 def _with_lookup(options: dict[str, Any]) -> dict[str, Any]:
     """Options with one Lookup in place of its parts; the environment may name the device."""
-    from skinslide.arrays.native import Lookup
+    from skinslide.arrays.lookup import Lookup
 
     method, resolution = options.pop("lookup", "auto"), options.pop("egl_resolution", 0)
     device = options.pop("egl_device", None)

@@ -11,7 +11,7 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.canvas import Camera, Shape, frame_faces
-from skinslide.arrays.meaning import say
+from skinslide.arrays.schema import say
 from skinslide.problems import NO_SUCH_PRIM, Fault, FrameProblem, SliderError
 from skinslide.stage.mesh import PatchedMesh
 

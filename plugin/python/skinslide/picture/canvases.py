@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from skinslide.arrays.canvas import Canvas
+from skinslide.arrays.idle import Idle
 from skinslide.problems import SliderError, StageError, UsageError
 
 
@@ -15,9 +16,9 @@ class Canvases:
 
     def __init__(self, make: Callable[[], Canvas], at_once: int):
         """at_once: how many may be. Raises UsageError where there is no EGL, or where it has no such size."""
-        self._make, self._lock, self._room = make, threading.Lock(), threading.Semaphore(at_once)
+        self._room = threading.Semaphore(at_once)
         try:
-            self._idle = [make()]
+            self._idle = Idle(make, make())
         except SliderError as error:
             if error.status == "OUT_OF_MEMORY":
                 raise MemoryError(str(error)) from error
@@ -26,12 +27,5 @@ class Canvases:
 
     @contextmanager
     def taken(self) -> Iterator[Canvas]:
-        with self._room:
-            with self._lock:
-                canvas = self._idle.pop() if self._idle else None
-            canvas = canvas or self._make()
-            try:
-                yield canvas
-            finally:
-                with self._lock:
-                    self._idle.append(canvas)
+        with self._room, self._idle.taken() as canvas:
+            yield canvas

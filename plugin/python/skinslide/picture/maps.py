@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from threading import Semaphore
 from typing import Any, Unpack
 
-from skinslide.arrays.native import Lookup
+from skinslide.arrays.lookup import Lookup
 from skinslide.picture.meshmaps import KINDS, STRAIN, Atlas, MeshMaps, WrittenMap
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide

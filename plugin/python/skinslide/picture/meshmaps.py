@@ -11,7 +11,7 @@ import numpy as np
 from pxr import Usd
 
 from skinslide.arrays.images import FIRST_TILE, Corners, draw_corner_map, draw_map, encode_exr, map_tiles
-from skinslide.arrays.native import PatchSetup
+from skinslide.arrays.setups import PatchSetup
 from skinslide.arrays.strain import Strain
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, counted
 from skinslide.shot.diagnostics import MeshStrain

@@ -21,8 +21,8 @@ from typing import Unpack
 from pxr import Sdf, Usd
 
 from skinslide.arrays.canvas import Canvas
-from skinslide.arrays.native import Lookup
-from skinslide.arrays.slider import choose_lookup, version
+from skinslide.arrays.lookup import Lookup, choose_lookup
+from skinslide.arrays.native import version
 from skinslide.picture.canvases import Canvases
 from skinslide.picture.drawing import Budget, DrawnPictures, Easel, MeshPictures
 from skinslide.picture.encoders import Encoders

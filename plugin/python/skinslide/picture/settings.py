@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from skinslide.arrays.native import Controls, PatchSetup
+from skinslide.arrays.setups import Controls, PatchSetup
 from skinslide.stage.mesh import PatchedMesh
 
 

@@ -8,8 +8,8 @@ from itertools import combinations
 import numpy as np
 from pxr import Usd
 
-from skinslide.arrays.native import PatchSetup
 from skinslide.arrays.records import PatchInfo
+from skinslide.arrays.setups import PatchSetup
 from skinslide.arrays.slider import Slider
 from skinslide.problems import FrameProblem, Problem, SliderError, counted
 from skinslide.stage.mesh import PatchedMesh

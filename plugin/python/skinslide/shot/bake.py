@@ -14,9 +14,9 @@ from typing import Any
 
 from pxr import Sdf, Usd, UsdGeom
 
-from skinslide.arrays.native import Lookup
+from skinslide.arrays.lookup import Lookup
+from skinslide.arrays.native import version
 from skinslide.arrays.records import PatchResult
-from skinslide.arrays.slider import version
 from skinslide.problems import FrameProblem, Problem, UsageError
 from skinslide.shot.advice import advice
 from skinslide.shot.derived import Cached, Derived

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
-from skinslide.arrays.slider import version
+from skinslide.arrays.native import version
 from skinslide.problems import FrameProblem, Problem, StageProblems, errors, first_of, lines_text, told
 from skinslide.shot.frames import AskedFrames
 from skinslide.shot.options import Frames, Prims, SlideOptions

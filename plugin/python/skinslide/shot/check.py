@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from pxr import Usd
 
+from skinslide.arrays.lookup import Lookup, choose_lookup
 from skinslide.arrays.meaning import Texture
-from skinslide.arrays.native import Lookup
 from skinslide.arrays.records import PatchInfo
-from skinslide.arrays.slider import Slider, choose_lookup
+from skinslide.arrays.slider import Slider
 from skinslide.problems import (
     Problem,
     SliderError,

@@ -14,7 +14,7 @@ from skinslide.problems import SliderError, UsageError, not_one_of
 from skinslide.shot.frames import AUTHORED, Chunk, checked_frames
 
 if TYPE_CHECKING:
-    from skinslide.arrays.native import Lookup
+    from skinslide.arrays.lookup import Lookup
     from skinslide.shot.frames import AskedFrames, FramesLike
     from skinslide.stage.given import PrimLike, PrimsLike
 
@@ -153,8 +153,7 @@ def frames(_name: str, given: FramesLike) -> AskedFrames:
 
 
 def lookup(_name: str, asked: str | Lookup) -> Lookup:
-    from skinslide.arrays.native import Lookup
-    from skinslide.arrays.slider import choose_lookup
+    from skinslide.arrays.lookup import Lookup, choose_lookup
 
     try:
         choose_lookup(asked)

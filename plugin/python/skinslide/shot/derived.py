@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 
 from pxr import Usd, Vt
 
-from skinslide.arrays.meaning import DerivedMeaning, Output, Pose
-from skinslide.arrays.meaning import Value as CachedValue
+from skinslide.arrays.derived import DerivedMeaning, Output
+from skinslide.arrays.fetched import Pose
+from skinslide.arrays.fetched import Value as CachedValue
 from skinslide.problems import Fault, Problem, first_of
 from skinslide.shot.products import SlidFrames
 from skinslide.stage.mesh import PatchedMesh

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.meaning import Value
+from skinslide.arrays.fetched import Value
 from skinslide.arrays.strain import Rest, Strain, measure_strain
 from skinslide.problems import Fault, Problem, StageProblems
 from skinslide.shot.products import SlidFrame

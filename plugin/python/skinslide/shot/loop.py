@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from pxr import Usd
 
-from skinslide.arrays.native import Sample
+from skinslide.arrays.setups import Sample
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems, first_of
 from skinslide.shot.frames import Chunk

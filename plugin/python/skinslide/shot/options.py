@@ -14,7 +14,7 @@ from skinslide.shot import checks
 from skinslide.shot.checks import Options, option, or_none
 
 if TYPE_CHECKING:
-    from skinslide.arrays.native import Lookup
+    from skinslide.arrays.lookup import Lookup
     from skinslide.shot.frames import AskedFrames, Chunk, FramesLike
     from skinslide.stage.given import PrimLike, PrimsLike
 

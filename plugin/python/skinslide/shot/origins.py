@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from pxr import Sdf, Tf, Usd
 
-from skinslide.arrays.meaning import Value
-from skinslide.arrays.native import Controls
+from skinslide.arrays.fetched import Value
+from skinslide.arrays.setups import Controls
 from skinslide.problems import Fault, FrameProblem
 from skinslide.shot.derived import Cached, Derived
 from skinslide.shot.diagnostics import texture_coordinates

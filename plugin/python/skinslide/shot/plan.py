@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from pxr import Usd
 
-from skinslide.arrays.native import Lookup
+from skinslide.arrays.lookup import Lookup
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems, UsageError, counted, errors, frame_text
 from skinslide.shot.frames import AUTHORED, AskedFrames, Chunk

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from pxr import Usd
 
-from skinslide.arrays.native import Controls
+from skinslide.arrays.setups import Controls
 from skinslide.arrays.slider import Diagnostics, Slider
 from skinslide.problems import Problem, UsageError
 from skinslide.shot.options import SlideOptions

@@ -9,8 +9,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from skinslide.arrays.native import version
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
-from skinslide.arrays.slider import version
 from skinslide.problems import Problem, counted, frame_text, lines_text, told
 from skinslide.shot.rows import Moments, Rows
 

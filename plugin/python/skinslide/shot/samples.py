@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from pxr import Usd
 
-from skinslide.arrays.native import Controls
+from skinslide.arrays.setups import Controls
 from skinslide.arrays.slider import Slider
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, counted, first_of
 from skinslide.stage.mesh import PatchedMesh

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from pxr import Usd
 
-from skinslide.arrays.native import Controls
+from skinslide.arrays.setups import Controls
 from skinslide.arrays.slider import Slider
 from skinslide.shot.options import SlideOptions
 from skinslide.shot.plan import PlannedMesh, frame_of

@@ -8,7 +8,9 @@ from typing import NamedTuple, TypeAlias
 
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdSkel
 
-from skinslide.arrays.meaning import SCHEMA, Finding, PrimFacts, find, nothing_to_slide
+from skinslide.arrays.fetched import PrimFacts
+from skinslide.arrays.finding import Finding, find, nothing_to_slide
+from skinslide.arrays.schema import SCHEMA
 from skinslide.problems import NO_SUCH_PRIM, Problem, StageProblems
 from skinslide.stage import schema
 from skinslide.stage.binding import skel_root, skeleton_target

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import DerivedMeaning, Input, MeshMeaning
+from skinslide.arrays.derived import DerivedMeaning
+from skinslide.arrays.meaning import MeshMeaning
+from skinslide.arrays.schema import Input
 from skinslide.stage.values import Source
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.native import as_array
+from skinslide.arrays.checks import as_array
 from skinslide.problems import Fault, SliderError, UsageError
 from skinslide.stage import schema
 from skinslide.stage.opening import check_clocks, open_stage

@@ -10,20 +10,14 @@ from functools import cached_property
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import (
-    DEFAULT_TIME,
-    DerivedMeaning,
-    Input,
-    MeshMeaning,
-    Weld,
-    inputs,
-    merge_times,
-    positions,
-    times_between,
-)
-from skinslide.arrays.native import Controls, Lookup, PatchSetup, Subdivision
+from skinslide.arrays.derived import DerivedMeaning
+from skinslide.arrays.lookup import Lookup
+from skinslide.arrays.meaning import MeshMeaning, Weld
+from skinslide.arrays.schema import DEFAULT_TIME, Input, inputs
+from skinslide.arrays.setups import Controls, PatchSetup, Subdivision
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
+from skinslide.arrays.values import merge_times, positions, times_between
 from skinslide.problems import (
     Fault,
     FrameProblem,

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd
 
-from skinslide.arrays.meaning import check_text, say
+from skinslide.arrays.schema import say
+from skinslide.arrays.values import check_text
 from skinslide.problems import PATH_TOO_LONG, Fault, StageError, usd_message
 from skinslide.registration import registered
 from skinslide.stage.seldom import usd_utils

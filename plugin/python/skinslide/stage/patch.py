@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.meaning import (
-    ControlsMeaning,
-    Input,
-    MeshMeaning,
-    Names,
-    PatchMeaning,
-    Subset,
-    input_of,
-    inputs,
-    integers,
-)
-from skinslide.arrays.native import Controls, PatchSetup
+from skinslide.arrays.fetched import Subset
+from skinslide.arrays.idle import Idle
+from skinslide.arrays.meaning import ControlsMeaning, MeshMeaning, Names, PatchMeaning
+from skinslide.arrays.schema import Input, input_of, inputs
+from skinslide.arrays.setups import Controls, PatchSetup
+from skinslide.arrays.values import integers
 from skinslide.problems import Fault
 from skinslide.stage import schema
 from skinslide.stage.neighbours import Neighbours
@@ -45,8 +38,8 @@ class Animation:
         wanted: Sequence[Input] = inputs("controls"),
         painted: Painted | None = None,
     ):
-        self._meaning, self._lock = meaning, threading.Lock()
-        self._base, self._idle = ControlsMeaning(meaning), list[ControlsMeaning]()
+        self._meaning, self._base = meaning, ControlsMeaning(meaning)
+        self._idle = Idle(partial(ControlsMeaning, meaning, self._base))
         self._faces, *self._controls = paint_sources(prim, [input_of("patch", "patch"), *wanted], meaning, painted)
         self.faults = take(self._base, self._controls)
         self._coordinates = [Source(prim, each) for each in self._base.coordinates()]
@@ -104,14 +97,8 @@ class Animation:
         """The controls at a time. Raises Fault where a value is not valid."""
         if not self.varies:
             return self.setup.controls
-        with self._lock:
-            own = self._idle.pop() if self._idle else None
-        own = own or ControlsMeaning(self._meaning, self._base)
-        try:
+        with self._idle.taken() as own:
             return self._read(own, time)
-        finally:
-            with self._lock:
-                self._idle.append(own)
 
     def _read(self, own: ControlsMeaning, time: Usd.TimeCode) -> Controls:
         for source in self._varying:

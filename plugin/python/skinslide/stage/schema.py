@@ -6,7 +6,9 @@ from functools import cache
 
 from pxr import Plug, Sdf, Usd, UsdGeom
 
-from skinslide.arrays.meaning import SCHEMA, PrimFacts, find
+from skinslide.arrays.fetched import PrimFacts
+from skinslide.arrays.finding import find
+from skinslide.arrays.schema import SCHEMA
 
 NAMESPACE = "skinSlide"
 SPACES = (NAMESPACE, "primvars")

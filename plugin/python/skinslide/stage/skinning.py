@@ -16,7 +16,9 @@ from collections.abc import Iterator
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdSkel, Vt
 
-from skinslide.arrays.meaning import DEFAULT_TIME, Input, Value, positions
+from skinslide.arrays.fetched import Value
+from skinslide.arrays.schema import DEFAULT_TIME, Input
+from skinslide.arrays.values import positions
 from skinslide.problems import Fault
 from skinslide.stage.binding import bound_skeleton, check_animation, check_joints, check_transforms, skeleton_query
 from skinslide.stage.blendshapes import BlendShapes

@@ -12,7 +12,7 @@ from typing import Any
 
 from pxr import Ar, Sdf, Tf
 
-from skinslide.arrays.meaning import say
+from skinslide.arrays.schema import say
 from skinslide.problems import StageError
 
 EXTENSION = ".skinslide"

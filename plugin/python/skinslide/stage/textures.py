@@ -9,7 +9,9 @@ from contextlib import ExitStack
 from pxr import Ar, Sdf, Tf, Usd
 
 from skinslide.arrays.apart import apart
-from skinslide.arrays.meaning import ControlsMeaning, File, inputs, is_texture
+from skinslide.arrays.fetched import File
+from skinslide.arrays.meaning import ControlsMeaning
+from skinslide.arrays.schema import inputs, is_texture
 from skinslide.stage.seldom import usd_shade
 from skinslide.stage.values import FIRST, Source, layer_of
 

@@ -9,7 +9,9 @@ from contextlib import contextmanager
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom
 
-from skinslide.arrays.meaning import DEFAULT_TIME, NOTHING, STILL, Asset, Input, Other, Taker, Value, say
+from skinslide.arrays.fetched import NOTHING, Asset, Other, Value
+from skinslide.arrays.meaning import Taker
+from skinslide.arrays.schema import DEFAULT_TIME, STILL, Input, say
 from skinslide.problems import MOST_FRAMES, Fault, UsageError, usd_message
 
 Span = tuple[float, float]  # first and last moment

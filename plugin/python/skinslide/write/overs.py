@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
 
-from skinslide.arrays.slider import extent
+from skinslide.arrays.attributes import extent
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
 from skinslide.write.place import check_not_read, replacing, saved, writing

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pxr import Tf, Usd
 
-from skinslide.arrays.meaning import say
+from skinslide.arrays.schema import say
 from skinslide.problems import PATH_TOO_LONG, StageError, UsageError, usd_message
 from skinslide.stage.given import StrPath
 from skinslide.stage.seldom import usd_utils

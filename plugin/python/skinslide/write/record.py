@@ -12,7 +12,7 @@ from typing import Any
 
 from pxr import Sdf, UsdGeom, Vt
 
-from skinslide.arrays.slider import version
+from skinslide.arrays.native import version
 from skinslide.problems import Fault
 
 _KEY = "skinslide"  # in customLayerData
