@@ -15,8 +15,9 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 import skinslide
 import stages
+from library import decode_exr
 from skinslide import FrameProblem, StageError, StageProblems, UsageError, maps
-from skinslide.arrays.images import Corners, decode_exr, draw_map
+from skinslide.arrays.images import Corners, draw_map
 from skinslide.command.cli import main
 from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage

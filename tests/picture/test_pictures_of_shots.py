@@ -11,9 +11,9 @@ from scipy import ndimage
 
 import skinslide
 import stages
+from library import decode_exr
 from repository import EXAMPLES, load
 from sheets import NAME, SIZE, add_st, contrast, draw, halves, picture, projected, sheet
-from skinslide.arrays.images import decode_exr
 from skinslide.command.cli import main
 from skinslide.picture.material import base_colour
 from stages import FRAMES, PATCH

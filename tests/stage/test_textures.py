@@ -12,8 +12,9 @@ from pxr import Ar, Gf, Sdf, Usd, UsdGeom, UsdUtils
 
 import layers
 import stages
+from library import Image, decode_exr, sample_map
 from skinslide import check
-from skinslide.arrays.images import Corners, Image, decode_exr, encode_exr, sample_map
+from skinslide.arrays.images import Corners, encode_exr
 from skinslide.command.cli import main
 from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage

@@ -16,6 +16,7 @@ from pxr import UsdGeom, Vt
 
 import skinslide
 import stages
+from library import accelerations, velocities
 from skinslide import Controls, Lookup, PatchSetup, Sample, Slider, SliderError
 from skinslide.arrays import attributes, native, slider
 from skinslide.arrays.apart import APART, apart, together
@@ -555,13 +556,13 @@ def test_velocities_and_accelerations():
     still = np.zeros((1, 3), np.float32)
     samples = [Sample(t, still, still + np.float32([t * t, 0, 0])) for t in (0, 1, 2)]
     cached = np.float32([[5, 6, 7]])
-    assert attributes.velocities([samples[0], samples[2]], cached).tolist() == [[7, 6, 7]]
-    assert attributes.accelerations(samples, cached).tolist() == [[7, 6, 7]]
+    assert velocities([samples[0], samples[2]], cached).tolist() == [[7, 6, 7]]
+    assert accelerations(samples, cached).tolist() == [[7, 6, 7]]
     assert cached.tolist() == [[5, 6, 7]]
     with pytest.raises(SliderError, match="need 2 samples, not 3"):
-        attributes.velocities(samples, cached)
+        velocities(samples, cached)
     with pytest.raises(SliderError):
-        attributes.velocities([samples[1], samples[0]], cached)
+        velocities([samples[1], samples[0]], cached)
 
 
 def test_what_it_takes_and_gives_is_public():

@@ -1,16 +1,12 @@
-"""What a cache holds beside points and follows from them: vectors that the skin carries, boxes, rates of change."""
+"""What follows from points and is stored beside them: boxes around them, and vectors that the skin carries."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from skinslide._core import ffi, lib
 from skinslide.arrays.checks import as_array
 from skinslide.arrays.native import call, enum_value, writable
-from skinslide.arrays.setups import Sample
 from skinslide.arrays.structs import Arguments
 
 
@@ -48,22 +44,3 @@ def extent(points: np.ndarray) -> np.ndarray:
     box = np.empty((2, 3), np.float32)
     call(lib.skinslide_extent, Arguments().points(points, -1, "points"), len(points), writable("float[]", box))
     return box
-
-
-def velocities(samples: Sequence[Sample], velocities: np.ndarray) -> np.ndarray:
-    """The cache's velocities (V, 3), units per second, corrected by the rate of change over two samples."""
-    return _rates(lib.skinslide_velocities, 2, samples, velocities, "velocities")
-
-
-def accelerations(samples: Sequence[Sample], accelerations: np.ndarray) -> np.ndarray:
-    """The cache's accelerations (V, 3), units per second squared, corrected by the second difference over three."""
-    return _rates(lib.skinslide_accelerations, 3, samples, accelerations, "accelerations")
-
-
-def _rates(function: Any, sample_count: int, samples: Sequence[Sample], rates: np.ndarray, what: str) -> np.ndarray:
-    native = Arguments()
-    vertex_count = len(samples[0].cached) if samples else 0
-    given = native.samples(samples, sample_count, vertex_count, what)
-    result = as_array(rates, np.float32, (vertex_count, 3), what).copy()
-    call(function, vertex_count, given, writable("float[]", result))
-    return result

@@ -1,4 +1,4 @@
-"""OpenEXR images, the textures painted on a mesh, and the maps drawn of it, on numpy arrays: no USD, no files.
+"""OpenEXR images, and maps drawn of a mesh in its texture coordinates, on numpy arrays: no USD, no files.
 
 The manuals are `paint.h` and `picture.h`.
 """
@@ -11,20 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinslide._core import ffi, lib
-from skinslide.arrays.native import call, enum_value, new, new_array, text, token_of, writable
+from skinslide.arrays.native import call, enum_value, new, new_array, writable
 from skinslide.arrays.structs import Arguments
 
 FIRST_TILE = 1001
 LARGEST_MAP: int = lib.SKINSLIDE_LARGEST_MAP  # texels along each side of a map drawn
-
-
-class Image(NamedTuple):
-    """One channel of an image. The wraps say what is beyond the border along width and height."""
-
-    pixels: np.ndarray  # (height, width) float32, from the top row on
-    channel: str
-    wrap_s: str = "clamp"
-    wrap_t: str = "clamp"
 
 
 class Corners(NamedTuple):
@@ -35,17 +26,6 @@ class Corners(NamedTuple):
     vertex_count: int
     faces: np.ndarray  # (n,)
     st: np.ndarray  # (sum of counts, 2)
-
-
-def decode_exr(data: Any, channel: str = "") -> Image:
-    """One channel of the OpenEXR file in `data`, by its name, PART.NAME, or "": as a map's is chosen."""
-    out = ffi.new("skinslide_image **")
-    buffer = ffi.from_buffer("uint8_t[]", data)
-    call(lib.skinslide_exr_decode, buffer, len(buffer), channel.encode(), out)
-    image = ffi.gc(out[0], lib.skinslide_image_destroy)
-    shape = (image.height, image.width)
-    pixels = np.frombuffer(ffi.buffer(image.pixels, 4 * shape[0] * shape[1]), np.float32).reshape(shape).copy()
-    return Image(pixels, text(image.channel), token_of("wrap", image.wrap_s), token_of("wrap", image.wrap_t))
 
 
 def encode_exr(channels: Mapping[str, np.ndarray], wrap: str = "clamp") -> bytes:
@@ -66,25 +46,8 @@ def encode_exr(channels: Mapping[str, np.ndarray], wrap: str = "clamp") -> bytes
 def map_tiles(corners: Corners) -> np.ndarray:
     """The UDIM tile of each corner of the mesh, int32, 0 at those of other faces."""
     native, tiles = Arguments(), np.zeros(len(corners.face_indices), np.int32)
-    call(lib.skinslide_texture_tiles, _layout(native, corners), writable("int32_t[]", tiles))
+    call(lib.skinslide_texture_tiles, layout_of(native, corners), writable("int32_t[]", tiles))
     return tiles
-
-
-def sample_map(corners: Corners, images: Mapping[int, Image]) -> np.ndarray:
-    """Values by vertex, float32 (V,): means over corners in the faces; 1 at vertices of none of them.
-
-    Images are by the number of their tile; {0: image} covers every texture coordinate by its wraps.
-    """
-    native, values = Arguments(), np.empty(corners.vertex_count, np.float32)
-    tiles = new_array("texture_tile", len(images))
-    structs = new_array("image", len(images))
-    for i, (number, image) in enumerate(images.items()):
-        structs[i].pixels = native.pointer(image.pixels, np.float32, (-1, -1), f"tile {number}")
-        structs[i].height, structs[i].width = image.pixels.shape
-        structs[i].wrap_s, structs[i].wrap_t = (enum_value("wrap", wrap, "") for wrap in (image.wrap_s, image.wrap_t))
-        tiles[i].image, tiles[i].number = ffi.addressof(structs, i), number
-    call(lib.skinslide_texture_sample, _layout(native, corners), tiles, len(images), writable("float[]", values))
-    return values
 
 
 def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_TILE) -> tuple[np.ndarray, int]:
@@ -92,7 +55,7 @@ def draw_map(corners: Corners, values: np.ndarray, side: int, tile: int = FIRST_
     native = Arguments()
     given = native.pointer(values, np.float32, (corners.vertex_count,), "values")
     texels, missed = np.empty((side, side), np.float32), ffi.new("int32_t *")
-    call(lib.skinslide_map_draw, _layout(native, corners), tile, given, side, writable("float[]", texels), missed)
+    call(lib.skinslide_map_draw, layout_of(native, corners), tile, given, side, writable("float[]", texels), missed)
     return texels, missed[0]
 
 
@@ -100,13 +63,13 @@ def draw_corner_map(corners: Corners, values: np.ndarray, side: int, tile: int =
     """The same of values at the corners of faces (sum of counts,)."""
     native, texels = Arguments(), np.empty((side, side), np.float32)
     given = native.pointer(values, np.float32, (len(corners.face_indices),), "values")
-    layout = _layout(native, corners)
+    layout = layout_of(native, corners)
     call(lib.skinslide_map_draw_corners, layout, tile, given, side, writable("float[]", texels), ffi.NULL)
     return texels
 
 
-def _layout(native: Arguments, corners: Corners) -> Any:
-    """Points are not read."""
+def layout_of(native: Arguments, corners: Corners) -> Any:
+    """The core's struct of faces and their texture coordinates; points are not read."""
     layout = new("texture_layout")
     mesh = native.mesh(corners.face_counts, corners.face_indices, np.zeros((corners.vertex_count, 3), np.float32))
     layout.mesh = ffi.addressof(mesh)
