@@ -27,7 +27,9 @@ def test_the_packages_are_drawn_as_they_are_held():
     assert drawn("plugin/", 8) == layers
 
 
-@pytest.mark.parametrize("page", [".github/CONTRIBUTING.md", ".github/CHANGELOG.md", "examples/README.md"])
+@pytest.mark.parametrize(
+    "page", [".github/CONTRIBUTING.md", ".github/CHANGELOG.md", ".github/SECURITY.md", "examples/README.md"]
+)
 def test_links_lead_somewhere(page):
     links = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / page).read_text())
     missing = [link for link in links if "://" not in link and not (ROOT / page).parent.joinpath(link).exists()]
@@ -39,3 +41,11 @@ def test_commits_are_formatted_as_the_tests_want():
     hooks = {match[0] for match in pinned.finditer((ROOT / ".pre-commit-config.yaml").read_text())}
     tests = {match[0] for match in pinned.finditer((ROOT / "pyproject.toml").read_text())}
     assert hooks == tests and len(tests) == 2
+
+
+def test_what_is_cited_is_the_project():
+    cited = dict(re.findall(r"^(\w+): (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE))
+    named = {"title": "name", "abstract": "description", "license": "license"}
+    assert {key: cited[key] for key in named} == {key: PROJECT["project"][name] for key, name in named.items()}
+    paper = re.search(r"TR-\S+?(?=\.)", (ROOT / "README.md").read_text())[0]
+    assert f"number: {paper}" in (ROOT / "CITATION.cff").read_text()
