@@ -83,18 +83,60 @@ def test_what_is_no_record_is_passed_over(document, baked):
     assert len(report.shots) == 2 and _left_out(report) == ["d.json", "half.json", "later.json"]
 
 
-@pytest.mark.parametrize(
-    "make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero"), lambda path: path.write_bytes(b"\xff")]
-)
-def test_what_cannot_be_read_is_told_of(make, baked, capsys):
+NO_FILE = "it cannot be read: it is not a file"
+HALF = "half.json is left out: it is not complete JSON, by line 1: Unterminated string starting at"
+UNREADABLE = {
+    "a pipe": (os.mkfifo, NO_FILE),
+    "a device": (lambda path: path.symlink_to("/dev/zero"), NO_FILE),
+    "bytes": (lambda path: path.write_bytes(b"\xff"), "it holds text that is not UTF-8"),
+    "half": (lambda path: path.write_text("{\n"), "it is not complete JSON, by line 2: "),
+    "later": (
+        lambda path: path.write_text(json.dumps({"record": RECORD + 1})),
+        f"it is of version {RECORD + 1}, and version {RECORD} is read here",
+    ),
+    "members": (
+        lambda path: path.write_text(json.dumps({"record": RECORD})),
+        "it is not a record, as it lacks 'problems'",
+    ),
+    "types": (
+        lambda path: path.write_text(json.dumps({"record": RECORD, "meshes": 3, "problems": []})),
+        "it is not a record, as something in it is of another type",
+    ),
+}
+
+
+@pytest.mark.parametrize(("make", "why"), UNREADABLE.values(), ids=UNREADABLE)
+def test_what_cannot_be_read_is_told_of(make, why, baked, capsys):
     """A pipe is not waited for, and of a device nothing is read."""
     make(baked / "a.json")
     assert main(["report", str(baked), "--quiet"]) == 0
-    said = "is left out: it is not a complete record of this version"
-    assert [line for line in capsys.readouterr().err.splitlines() if said in line] == [
-        f"warning: {name} {said}" for name in ("a.json", "half.json", "later.json")
+    said = capsys.readouterr().err.splitlines()[:3]
+    assert [line.partition(" is left out: ")[0] for line in said] == [
+        f"warning: {name}" for name in ("a.json", "half.json", "later.json")
     ]
-    assert f"half.json {said}" in (baked / "shots.html").read_text()
+    assert said[0].startswith(f"warning: a.json is left out: {why}") and HALF in said[1]
+    assert HALF in (baked / "shots.html").read_text()
+
+
+@pytest.mark.parametrize(("make", "why"), UNREADABLE.values(), ids=UNREADABLE)
+def test_where_nothing_can_be_read_it_is_said_why(make, why, tmp_path, capsys):
+    make(tmp_path / "a.json")
+    assert main(["report", str(tmp_path)]) == 2
+    assert f"such as bake --json prints; a.json is left out: {why}" in capsys.readouterr().err
+    make(tmp_path / "b.json")
+    assert main(["report", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.endswith(", and 1 more file too\n") and not (tmp_path / "shots.html").exists()
+
+
+def test_how_rough_skin_is_is_not_said_of_sparse_frames(tmp_path, capsys):
+    shot = stages.save(stages.patched_stage()[0], tmp_path / "shot.usda")
+    for frames in ("1001:1003", "1001,1002,1004"):
+        assert (
+            main(["bake", str(shot), "-o", str(tmp_path / "slid.usda"), "--frames", frames, "--json", "--quiet"]) == 0
+        )
+        (tmp_path / f"{frames[-4:]}.json").write_text(capsys.readouterr().out)
+    rough = {shot.file: shot.patches[0].roughness for shot in skinslide.report(tmp_path).shots}
+    assert rough["1004.json"] is None and rough["1003.json"] > 0
 
 
 def _left_out(report) -> list[str]:

@@ -162,7 +162,7 @@ def first_of(problems: Iterable[Problem]) -> Iterator[Problem]:
     """Of problems of one kind, each at a frame, the first, which says at how many more there is one."""
     there = list(problems)
     more = len(there) - 1
-    frames = f" (and something like it at {more} more frame{'s' * (more > 1)})" if more > 0 else ""
+    frames = f" (and something like it at {counted(more, 'more frame')})" if more > 0 else ""
     yield from (replace(first, message=first.message + frames) for first in there[:1])
 
 

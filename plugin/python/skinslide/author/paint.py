@@ -18,7 +18,7 @@ from skinslide.arrays.values import integers, positions
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import NO_EDGE, Fault, SliderError, UsageError, not_one_of, one_line
+from skinslide.problems import NO_EDGE, Fault, SliderError, UsageError, counted, not_one_of, one_line
 from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import (
@@ -65,7 +65,7 @@ class PaintReport:
     def text(self) -> str:
         """What `check` says, and a line of what was painted."""
         out = f", {self.left_out} left out that are not of the patch" if self.left_out else ""
-        done = f"{self.patch}: {self.painted} edges painted {self.value:g}{out}; {self.total} painted in all"
+        done = f"{self.patch}: {counted(self.painted, 'edge')} painted {self.value:g}{out}; {self.total} painted in all"
         return f"{self.check.text()}\n{one_line(done)}"
 
 

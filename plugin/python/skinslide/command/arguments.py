@@ -14,6 +14,14 @@ from skinslide.shot.checks import Options, count_text, described, number_or_name
 from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
 
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
+_TABLE = (
+    "shape is that of the patch's faces, a disk, one with holes, or closed; stretch and slid are the RMS of log(edge "
+    "length / rest length) over its edges, in the cache and slid, at the frame where the cache has most, and change is "
+    "from one to the other; rough is how many times as roughly as its cache the skin moves, by the largest second "
+    "difference in time (-: of frames more than one apart, or fewer than three); folded and clamped are the most faces "
+    "turned over, and vertices looked up outside every face, at a frame; ms/frame is the mean time in the core, which "
+    "--json has by stage"
+)
 
 
 def parse(words: list[str]) -> dict[str, Any]:
@@ -141,6 +149,11 @@ def _add_printing(command: argparse.ArgumentParser) -> None:
     _add_json(command)
 
 
+def _add_table(command: argparse.ArgumentParser) -> None:
+    """Adds nothing but what the table means that is printed in the end."""
+    command.add_argument_group("the table, with a row for each patch", _TABLE)
+
+
 def _add_json(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--json",
@@ -186,6 +199,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     size = MapOptions.__dataclass_fields__["size"]
     _add_option(maps, size, "map_size", size.metadata["flag"])
     _add_options(maps, MapOptions, "strain")
+    _add_table(command)
 
 
 def _add_check(command: argparse.ArgumentParser) -> None:
@@ -210,6 +224,7 @@ def _add_preview(command: argparse.ArgumentParser) -> None:
     _add_options(command, SlideOptions)
     _add_options(command, PictureOptions)
     _add_printing(command)
+    _add_table(command)
 
 
 def _add_maps(command: argparse.ArgumentParser) -> None:
@@ -228,6 +243,7 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
     size = MapOptions.__dataclass_fields__["size"]
     _add_option(command, size, "size", size.metadata["flag"], "--size")  # of bake that is the size of pictures
     _add_printing(command)
+    _add_table(command)
 
 
 def _add_layer(command: argparse.ArgumentParser) -> None:

@@ -185,7 +185,8 @@ def _cache(
 
 
 def _author(function: Callable[..., Any], stage: str, output: str, **options: Any) -> Result:
-    return "\n".join([function(stage, output, **options).text(), *_written(output)]), DONE
+    lines = [function(stage, output, **options).text(), *_written(output, options.get("payload"))]
+    return "\n".join(lines), DONE
 
 
 def _stitch(
@@ -198,7 +199,7 @@ def _stitch(
     **options: Any,
 ) -> Result:
     report = stitch(chunks, output, **options)
-    lines = [report.text(), _layer_written(output)]
+    lines = [report.text(), *_written(report.manifest), _layer_written(output)]
     return _reported(report, {"chunks": chunks, "output": output}, lines, json, quiet), DONE
 
 

@@ -63,7 +63,7 @@ class DrawnPictures:
         Returns:
             A line.
         """
-        rate = f"{self.pictures} pictures, {self.pictures / max(self.seconds, 1e-9):.1f} a second"
+        rate = f"{counted(self.pictures, 'picture')}, {self.pictures / max(self.seconds, 1e-9):.1f} a second"
         return [f"{rate}, drawn with {self.device}"]
 
 

@@ -15,6 +15,7 @@ from typing import Any, Unpack
 
 from skinslide.arrays.lookup import Lookup
 from skinslide.picture.meshmaps import KINDS, STRAIN, Atlas, MeshMaps, WrittenMap
+from skinslide.problems import counted
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
 from skinslide.shot.options import Frames, MapKeywords, MapOptions, Prims, SlideOptions
@@ -156,7 +157,7 @@ class MapsReport(BakeReport):
 
 
 def _maps(count: int) -> str:
-    return f"{count} map{'s' * (count != 1)}"
+    return counted(count, "map")
 
 
 class _Mapping(Making):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from skinslide.arrays.setups import Controls, PatchSetup
+from skinslide.problems import counted
 from skinslide.stage.mesh import PatchedMesh
 
 
@@ -18,9 +19,8 @@ def settings_of(mesh: PatchedMesh, setup: int) -> dict[str, str]:
 
 
 def _interpolation(mesh: PatchedMesh, patch: PatchSetup) -> str:
-    if patch.interpolation != "auto":
-        return patch.interpolation
-    return f"auto: {'limit' if mesh.subdivision else 'linear'}"
+    found = mesh.interpolation_of(patch)
+    return f"auto: {found}" if patch.interpolation == "auto" else found
 
 
 def _painted(controls: Controls) -> dict[str, str]:
@@ -28,7 +28,7 @@ def _painted(controls: Controls) -> dict[str, str]:
     density = [
         *(["by point"] if controls.vertex_density is not None else []),
         *(["by face"] if controls.face_density is not None else []),
-        *([f"on {edges} edges"] if edges else []),
+        *([f"on {counted(edges, 'edge')}"] if edges else []),
     ]
     return {
         "force density": ", ".join(density) or "not painted",

@@ -7,6 +7,7 @@ the page: every row, every problem, and the frames to look at
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from collections.abc import Iterator, Sequence
@@ -16,8 +17,8 @@ from typing import Any
 from urllib.parse import quote
 
 from skinslide.picture.page import render
-from skinslide.problems import Problem, UsageError, lines_text, told
-from skinslide.shot.report import RECORD, roughness_text, stretch_text, time_text
+from skinslide.problems import Problem, UsageError, counted, lines_text, told
+from skinslide.shot.report import RECORD, far_apart, roughness_text, stretch_text, time_text
 from skinslide.stage.given import StrPath
 from skinslide.write.place import check_output, given_output, replacing, writing
 
@@ -35,7 +36,8 @@ class ShotPatch:
         worst: The frame at which the cache has most stretch; None is the default time.
         before: Stretch there.
         after: And slid.
-        roughness: How many times as roughly as its cache it moves; None of fewer than three frames.
+        roughness: How many times as roughly as its cache it moves; None of fewer than three frames, or some that are
+            more than one apart.
         folded: The most faces turned over at a frame.
     """
 
@@ -139,7 +141,7 @@ def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
     left_out: list[Problem] = []
     shots = sorted(_records(top, page, left_out), key=lambda shot: (-shot.left, shot.file))
     if not shots:
-        raise UsageError(f"{top}: there is no record in it or below, such as bake --json prints")
+        raise UsageError(f"{top}: there is no record in it or below, such as bake --json prints{_instead(left_out)}")
     total = sum(len(shot.patches) for shot in shots)
     text = render(
         "shots.html",
@@ -154,9 +156,15 @@ def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
     return ShotsReport(str(page), shots, left_out)
 
 
+def _instead(left_out: Sequence[Problem]) -> str:
+    """What there is in place of records."""
+    more = f", and {counted(len(left_out) - 1, 'more file')} too" if left_out[1:] else ""
+    return f"; {left_out[0].message}{more}" if left_out else ""
+
+
 def _line(shot: ShotRecord) -> str:
     worst = max(shot.patches, key=lambda patch: patch.after, default=None)
-    told = f"{len(shot.problems)} problem{'s' * (len(shot.problems) != 1)}"
+    told = counted(len(shot.problems), "problem")
     if worst is None:
         return f"{shot.file}: {shot.stage}: no patches, {told}"
     stretch = f"stretch {stretch_text(worst.before)}, slid {stretch_text(worst.after)}"
@@ -177,20 +185,40 @@ def _records(top: Path, page: Path, left_out: list[Problem]) -> Iterator[ShotRec
             found = json.loads(_text(file))
             if isinstance(found, dict) and ("record" in found or found.keys() == {"problems"}):
                 yield _record({"record": RECORD, "meshes": [], **found}, file, top, page)
-        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
-            message = f"{file.relative_to(top)} is left out: it is not a complete record of this version"
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+            message = f"{file.relative_to(top)} is left out: {_why(error)}"
             left_out.append(Problem("warning", "", None, None, message))
+
+
+class _OtherVersion(ValueError):
+    """A record of which this version does not know what it means."""
+
+
+def _why(error: Exception) -> str:
+    match error:
+        case OSError():
+            return f"it cannot be read: {error.strerror}"
+        case UnicodeDecodeError():
+            return "it holds text that is not UTF-8"
+        case json.JSONDecodeError():
+            return f"it is not complete JSON, by line {error.lineno}: {error.msg}"
+        case _OtherVersion():
+            return str(error)
+        case LookupError():
+            return f"it is not a record, as it lacks {error}"
+        case _:
+            return "it is not a record, as something in it is of another type"
 
 
 def _text(file: Path) -> str:
     if not file.is_file():  # a pipe would be waited for
-        raise OSError
+        raise OSError(errno.EINVAL, "it is not a file")
     return file.read_text("utf-8")
 
 
 def _record(found: dict[str, Any], file: Path, top: Path, page: Path) -> ShotRecord:
     if found["record"] != RECORD:
-        raise ValueError
+        raise _OtherVersion(f"it is of version {found['record']!r}, and version {RECORD} is read here")
     pages = (path for path in (file.with_suffix(".html"), file.with_name("report.html")) if path.is_file())
     beside = next((each for each in pages if each.resolve() != page.resolve()), None)
     address = quote(Path(os.path.relpath(beside, page.absolute().parent)).as_posix()) if beside else ""
@@ -204,7 +232,8 @@ def _patch(prim: str, patch: dict[str, Any]) -> ShotPatch:
     label = patch["name"] if pieces == 1 else f"{patch['name']} ({patch['piece'] + 1} of {pieces})"
     before, after = (patch[f"worst_frame_stretch_{when}"] or 0.0 for when in ("before", "after"))
     folded = patch["max"]["folded_faces"]
-    return ShotPatch(prim, label, len(patch["frames"]), patch["worst_frame"], before, after, patch["roughness"], folded)
+    roughness = None if far_apart(frame["frame"] for frame in patch["frames"]) else patch["roughness"]
+    return ShotPatch(prim, label, len(patch["frames"]), patch["worst_frame"], before, after, roughness, folded)
 
 
 def _worst_first(patches: Sequence[ShotPatch]) -> list[ShotPatch]:

@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from skinslide.problems import Problem, StageProblems, errors, frame_text, lines_text, told
+from skinslide.problems import Problem, StageProblems, counted, errors, frame_text, lines_text, told
 from skinslide.queues.openjd import template
 from skinslide.queues.slurm import script
 from skinslide.queues.steps import Job
@@ -61,9 +61,9 @@ class FarmReport:
 
     def text(self) -> str:
         """What it will do, and every problem, for a terminal."""
-        tasks = f"{len(self.chunks)} task{'s' * (len(self.chunks) != 1)}"
+        frames, tasks = counted(len(self.frames), "frame"), counted(len(self.chunks), "task")
         span = f"{frame_text(self.frames[0])} to {frame_text(self.frames[-1])}"
-        return lines_text([f"{len(self.frames)} frames, {span}, in {tasks}", *told(self.problems)])
+        return lines_text([f"{frames}, {span}, in {tasks}", *told(self.problems)])
 
 
 def farm(

@@ -19,7 +19,7 @@ import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import version
-from skinslide.problems import FrameProblem, Problem, StageProblems, errors, first_of, lines_text, told
+from skinslide.problems import FrameProblem, Problem, StageProblems, counted, errors, first_of, lines_text, told
 from skinslide.shot.frames import AskedFrames
 from skinslide.shot.options import Frames, Prims, SlideOptions
 from skinslide.shot.plan import times_of
@@ -54,7 +54,7 @@ class CachedMesh:
 
     def text(self) -> str:
         """The same for a terminal."""
-        count = f"{len(self.frames)} frame{'s' * (len(self.frames) != 1)}"
+        count = counted(len(self.frames), "frame")
         span = f", {time_text(self.frames[0])} to {time_text(self.frames[-1])}" if len(self.frames) > 1 else ""
         also = f", with {' and '.join(self.normals)}" if self.normals else ""
         return f"{self.path}: {self.points} points, skinned by {self.skeleton}, {count}{span}{also}"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Usd, UsdGeom
 
-from skinslide.problems import Fault
+from skinslide.problems import Fault, counted
 from skinslide.stage.finding import find_slidable
 from skinslide.stage.skinning import Skinning
 
@@ -42,7 +42,7 @@ class Candidate:
     def lines(self) -> Iterator[str]:
         """The same for a terminal."""
         skinned = f", skinned by {self.skeleton}" if self.skeleton else ""
-        yield f"{self.path}: {self.points} points, {self.faces} faces{skinned}, no patch; setup accepts"
+        yield f"{self.path}: {self.points} points, {counted(self.faces, 'face')}{skinned}, no patch; setup accepts"
         yield f"  --faces 0-{self.faces - 1}"
         for option, names in (("joint", self.joints), ("subset", self.subsets), ("primvar", self.primvars)):
             if names:

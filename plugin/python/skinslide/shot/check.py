@@ -232,21 +232,22 @@ class CheckReport:
 
     def _verdict(self) -> str:
         counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}
-        found = [f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items() if count]
-        patches = sum(len(mesh.patches) for mesh in self.meshes)
-        meshes = f"{len(self.meshes)} mesh{'es' * (len(self.meshes) != 1)}"
-        return f"{self.stage}: {meshes}, {patches} patch{'es' * (patches != 1)}: {', '.join(found) or 'no problems'}"
+        found = [counted(count, kind) for kind, count in counts.items() if count]
+        patches = counted(sum(len(mesh.patches) for mesh in self.meshes), "patch", "patches")
+        meshes = counted(len(self.meshes), "mesh", "meshes")
+        return f"{self.stage}: {meshes}, {patches}: {', '.join(found) or 'no problems'}"
 
 
 def _mesh_lines(mesh: CheckedMesh) -> Iterator[str]:
     if mesh.samples:
         first, last = frame_text(mesh.samples[0]), frame_text(mesh.samples[-1])
-        samples = f"{len(mesh.samples)} samples, {first} to {last}"
+        samples = f"{counted(len(mesh.samples), 'sample')}, {first} to {last}"
     else:
         samples = "no samples"
     welded = f", {mesh.welded} of them welded" if mesh.welded else ""
     skinned = f", skinned by {mesh.skeleton}" if mesh.skeleton else ""
-    yield f"{mesh.path}: {mesh.points} points{welded}, {mesh.faces} faces{skinned}, rest from {mesh.rest}, {samples}"
+    faces = counted(mesh.faces, "face")
+    yield f"{mesh.path}: {mesh.points} points{welded}, {faces}{skinned}, rest from {mesh.rest}, {samples}"
     for name in dict.fromkeys(patch.name for patch in mesh.patches):
         yield from _patch_lines(name, [patch for patch in mesh.patches if patch.name == name])
     for used in mesh.maps:

@@ -98,9 +98,7 @@ class _Mesh(NamedTuple):
 
     @classmethod
     def of(cls, planned: PlannedMesh) -> _Mesh:
-        mesh, patches = planned.mesh, planned.slider.patches
-        welded = mesh.weld.info.welded_points
-        return cls(planned, MeshReport.start(mesh.path, mesh.vertex_count, mesh.rest_source, welded, patches), [], [])
+        return cls(planned, MeshReport.start(planned.mesh, planned.slider.patches), [], [])
 
     @property
     def sliders(self) -> list[Slider]:

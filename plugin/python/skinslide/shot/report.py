@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from operator import itemgetter
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from skinslide.arrays.native import version
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
 from skinslide.problems import Problem, counted, frame_text, lines_text, told
 from skinslide.shot.rows import Moments, Rows
+
+if TYPE_CHECKING:
+    from skinslide.stage.mesh import PatchedMesh
 
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
@@ -28,7 +32,7 @@ _AT_FRAMES = {
     "clamped_weights": (("weight or envelope", "weights or envelopes"), "outside 0..1, clamped"),
     "damped_vertices": (
         _VERTICES,
-        "brought back towards their place on the faces, where the limit surface rings",
+        "brought back towards the flat faces, where the limit surface rings",
     ),
     "folded_faces": (_FACES, "turned over in the embedding"),
     "zero_length_edges": (_EDGES, "of no length, taken as 1e-6 of the mean rest edge"),
@@ -66,6 +70,8 @@ class PatchReport:
         results: What happened at each of them.
         motion: How roughly the patch moves at each of them that is between two others.
         least: The least stretch that a search found at each of them, where it was asked for.
+        rule: By which it slides.
+        interpolation: linear, meanValue or limit.
     """
 
     info: PatchInfo
@@ -73,6 +79,8 @@ class PatchReport:
     results: Rows[PatchResult] = field(default_factory=lambda: Rows(PatchResult))
     motion: Moments[Roughness] = field(default_factory=lambda: Moments(Roughness))
     least: dict[float | None, float] = field(default_factory=dict)
+    rule: str = ""
+    interpolation: str = ""
 
     def column(self, name: str) -> np.ndarray:
         """A field of the results, frame by frame.
@@ -108,6 +116,11 @@ class PatchReport:
             return None
         least, before, after = (max(self.motion.rows.column(name).tolist()) for name in ("least", "before", "after"))
         return max(least, after) / max(least, before)
+
+    @property
+    def steady_roughness(self) -> float | None:
+        """The same; None where frames are so far apart that it says little of the shot."""
+        return None if far_apart(self.frames) else self.roughness
 
     @property
     def roughest(self) -> float | None:
@@ -174,6 +187,8 @@ class PatchReport:
         worst = self.results[self.worst]
         return {
             **self.info._asdict(),
+            "rule": self.rule,
+            "interpolation": self.interpolation,
             "max": {name: values.max().item() for name, values in fields.items()},
             "mean": {name: values.mean().item() for name, values in fields.items()},
             "frames": map(self._frame_dict, self.frames, self.results),
@@ -276,22 +291,21 @@ class MeshReport:
     patches: list[PatchReport]
 
     @classmethod
-    def start(
-        cls, path: str, vertex_count: int, rest_source: str, welded: int, patches: Sequence[PatchInfo]
-    ) -> MeshReport:
+    def start(cls, mesh: PatchedMesh, pieces: Sequence[PatchInfo]) -> MeshReport:
         """A report without frames.
 
         Args:
-            path: Of the prim.
-            vertex_count: Of the mesh.
-            rest_source: Where the rest points were found.
-            welded: Points that are one with others.
-            patches: What each patch is.
+            mesh: What is slid.
+            pieces: Those of its patches.
 
         Returns:
             The report.
         """
-        return cls(path, vertex_count, rest_source, welded, [PatchReport(info) for info in patches])
+        patches = []
+        for piece in pieces:
+            patch = mesh.patches[piece.setup]
+            patches.append(PatchReport(piece, rule=patch.rule, interpolation=mesh.interpolation_of(patch)))
+        return cls(mesh.path, mesh.vertex_count, mesh.rest_source, mesh.weld.info.welded_points, patches)
 
     def add(self, frame: float | None, results: Sequence[PatchResult]) -> None:
         """Takes in one frame.
@@ -417,44 +431,70 @@ class BakeReport:
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [_line(_HEADINGS, widths)]
         for mesh in self.meshes:
-            counts = f"{mesh.vertex_count} points, {mesh.frame_count} frames"
+            counts = f"{mesh.vertex_count} points, {counted(mesh.frame_count, 'frame')}"
             lines.append(f"{mesh.path}: {counts}, rest from {mesh.rest_source}")
             lines.extend(_line(_row(patch), widths) for patch in mesh.patches)
             lines.extend(_share_line(patch) for patch in mesh.patches if patch.shares)
         made = [line for made in self.made for line in made.lines(self.meshes)]
-        return lines_text([*lines, *told(self.problems), *made])
+        legend = [_LEGEND] if len(rows) > 1 else []
+        return lines_text([*lines, *legend, *told(self.problems), *made])
 
 
 _HEADINGS = [
     "patch",
+    "rule",
+    "interpolation",
+    "shape",
     "vertices",
-    "edges",
-    *STAGES,
-    "ms/frame",
     "stretch",
     "slid",
+    "change",
     "at frame",
     "rough",
     "folded",
     "clamped",
+    "ms/frame",
 ]
+_LEGEND = (
+    "stretch, slid: RMS of log(edge length / rest length) in the cache and slid, at the frame where the cache has "
+    "most; --help says what the others are"
+)
 
 
 def _row(patch: PatchReport) -> list[str]:
-    """Mean ms a frame by stage; stretch in the cache and slid, at the worst frame; roughness; most folds and clamps."""
     worst = patch.results[patch.worst]
     return [
         f"  {patch.label}",
+        patch.rule,
+        patch.interpolation,
+        shape_text(patch.info),
         str(patch.info.vertex_count),
-        str(patch.info.edge_count),
-        *(milliseconds_text(values.mean()) for values in patch.milliseconds().values()),
         stretch_text(worst.stretch_before),
         stretch_text(worst.stretch_after),
+        "-" if patch.change is None else f"{patch.change:+.0%}",
         time_text(patch.frames[patch.worst]),
-        roughness_text(patch.roughness),
+        roughness_text(patch.steady_roughness),
         str(patch.column("folded_faces").max()),
         str(patch.column("clamped_vertices").max()),
+        milliseconds_text(patch.milliseconds()["total"].mean()),
     ]
+
+
+def far_apart(frames: Iterable[float | None]) -> bool:
+    """Whether some of these frames, ascending, are more than one apart, as no bake of a whole shot has them."""
+    return any(after - before > 1 + 1e-6 for before, after in pairwise(each for each in frames if each is not None))
+
+
+def shape_text(info: PatchInfo) -> str:
+    """What a patch is like, by its number of holes and its Euler characteristic, which is even where it is closed.
+
+    A surface of g handles has 2 - 2 g, less one for each of its borders.
+    """
+    characteristic = info.vertex_count - info.edge_count + info.face_count
+    borders = info.hole_count + (characteristic + info.hole_count) % 2
+    handles = (2 - borders - characteristic) // 2
+    shape = counted(info.hole_count, "hole") if info.hole_count else "disk" if borders else "closed"
+    return f"{shape}, {counted(handles, 'handle')}" if handles > 0 else shape
 
 
 def share_text(least: float, median: float) -> str:

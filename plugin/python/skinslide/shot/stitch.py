@@ -12,13 +12,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from pxr import Sdf, Tf, UsdUtils
 
-from skinslide.problems import Fault, Problem, StageError, StageProblems, UsageError, frame_text, lines_text, told
+from skinslide.problems import (
+    Fault,
+    Problem,
+    StageError,
+    StageProblems,
+    UsageError,
+    counted,
+    frame_text,
+    lines_text,
+    told,
+)
 from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
 from skinslide.stage.marks import is_marked
@@ -48,11 +58,13 @@ class StitchReport:
         prims: The paths of its meshes.
         frames: Of all of them, ascending.
         problems: What is worth knowing of them.
+        manifest: The file beside a layer of clips that says what these hold; empty: there are no clips.
     """
 
     prims: list[str]
     frames: list[float]
     problems: list[Problem]
+    manifest: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """The same for JSON."""
@@ -61,8 +73,8 @@ class StitchReport:
     def text(self) -> str:
         """What it holds, and every problem, for a terminal."""
         first_to_last = f", {frame_text(self.frames[0])} to {frame_text(self.frames[-1])}" if self.frames else ""
-        meshes = f"{len(self.prims)} mesh{'es' * (len(self.prims) != 1)}"
-        return lines_text([f"{meshes}, {len(self.frames)} frames{first_to_last}", *told(self.problems)])
+        meshes, frames = counted(len(self.prims), "mesh", "meshes"), counted(len(self.frames), "frame")
+        return lines_text([f"{meshes}, {frames}{first_to_last}", *told(self.problems)])
 
 
 def stitch(
@@ -103,8 +115,8 @@ def stitch(
         raise StageProblems(problems)
     opened.sort(key=lambda chunk: chunk.record.frames)
     write = _write_clips if clips else _write
-    write(opened, sorted(blocked), stitched)
-    return _report(opened, blocked)
+    manifest = write(opened, sorted(blocked), stitched)
+    return replace(_report(opened, blocked), manifest=manifest)
 
 
 def _given_chunks(chunks: Iterable[StrPath]) -> list[Path]:
@@ -237,7 +249,7 @@ def _gaps(chunks: Sequence[_Chunk]) -> Iterator[Problem]:
 
 
 def _count(frames: Sequence[float]) -> str:
-    return "1 frame is" if len(frames) == 1 else f"{len(frames)} frames are"
+    return counted(len(frames), "frame is", "frames are")
 
 
 def _spec(frames: Sequence[float]) -> str:
@@ -282,7 +294,7 @@ def _overlaps(chunks: Sequence[_Chunk], blocked: set[Sdf.Path]) -> Iterator[Prob
                 yield Problem("error", str(path.GetPrimPath()), None, time, message)
 
 
-def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) -> None:
+def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) -> str:
     with replacing(output) as partial:
         with writing(output):
             layer = Sdf.Layer.CreateNew(str(partial))
@@ -293,13 +305,16 @@ def _write(chunks: Sequence[_Chunk], blocked: Iterable[Sdf.Path], output: Path) 
         joined([chunk.record for chunk in chunks]).write(layer)
         _save(layer, output)
         _refuse_changed(chunks)
+    return ""
 
 
-def _write_clips(chunks: Sequence[_Chunk], blocked: Sequence[Sdf.Path], output: Path) -> None:
+def _write_clips(chunks: Sequence[_Chunk], blocked: Sequence[Sdf.Path], output: Path) -> str:
+    """Gives the manifest's file."""
     made = ClipLayer([Clip(chunk.path, chunk.layer, chunk.record) for chunk in chunks], blocked, output)
     _refuse_chunk(made.manifest_file, [chunk.path for chunk in chunks])
     with made.in_place():
         _refuse_changed(chunks)
+    return str(made.manifest_file)
 
 
 def _refuse_changed(chunks: Sequence[_Chunk]) -> None:

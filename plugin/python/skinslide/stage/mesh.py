@@ -147,11 +147,17 @@ class PatchedMesh:
         except Fault as fault:
             raise StageProblems([self.problem(str(fault), FIRST)]) from fault
 
+    def interpolation_of(self, patch: PatchSetup) -> str:
+        """That of a patch; what auto comes to on this mesh."""
+        if patch.interpolation != "auto":
+            return patch.interpolation
+        return "limit" if self.subdivision else "linear"
+
     def between_problems(self) -> Iterator[Problem]:
         """Says how many frames lie between samples."""
         count = len(self.frame_times()) - len(self.sample_times())
         if count:
-            slid = f"{count} frames between samples are" if count > 1 else "1 frame between samples is"
+            slid = counted(count, "frame between samples is", "frames between samples are")
             why = "slid points do not go straight from sample to sample"
             message = f"{slid} slid too, for {why}; --frames authored leaves them out"
             yield Problem("note", self.path, None, None, message)
