@@ -90,7 +90,7 @@ def test_a_page_that_cannot_be(shot, tmp_path, capfd):
         (["--camera", "/World/none"], f"{stages.MESH}: patch {PATCH}: camera /World/none: there is no such prim"),
         (["--camera", "World"], f"patch {PATCH}: camera World: there is no such prim"),
         (["--camera", "/World/char"], f"patch {PATCH}: camera /World/char: is a Xform, not a Camera"),
-        (["--patch", "knee"], f"patch knee: no mesh has it; there are {PATCH}"),
+        (["--patch", "knee"], f"patch knee: no mesh has it; there is {PATCH}"),
     ],
 )
 def test_what_the_stage_lacks(words, message, shot, tmp_path, capfd):

@@ -86,7 +86,7 @@ def test_both_sides_at_once(character, left, right):
 
 
 BAD = {
-    "a joint that is none": ({"joint": "leg"}, "leg is no joint; there are root, arm, hand"),
+    "a joint that is none": ({"joint": "leg"}, "leg is not a joint; there are root, arm and hand"),
     "no counterpart": (
         {"joint": "arm", "mirror": True},
         "the joint arm has no counterpart, which would be root/arm",

@@ -233,7 +233,7 @@ FAULTS = {
     "no such patch": (
         unchanged,
         dict(patch="knee_L", subset="seam"),
-        "there is no such patch on the mesh; it has elbow_L",
+        "there is no such patch on the mesh; there is elbow_L",
     ),
     "no such subset": (unchanged, dict(subset="gone"), "there is no GeomSubset gone"),
     "subset of faces": (
@@ -268,8 +268,8 @@ FAULTS = {
         "ramp[0] is nan",
     ),
     "above everything": (unchanged, dict(primvar="ramp", threshold=9), "ramp chooses no edge"),
-    "no such curve": (unchanged, dict(curve="/World/gone", distance=1), "there is no BasisCurves prim /World/gone"),
-    "curve is no curve": (unchanged, dict(curve=MESH, distance=1), f"no BasisCurves prim {MESH}, it is a Mesh"),
+    "no such curve": (unchanged, dict(curve="/World/gone", distance=1), "curve /World/gone: there is no such prim"),
+    "curve is no curve": (unchanged, dict(curve=MESH, distance=1), f"curve {MESH}: is a Mesh, not a BasisCurves"),
     "curve too far": (
         unchanged,
         dict(curve=CURVE, distance=0.001),

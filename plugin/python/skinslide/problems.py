@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from difflib import SequenceMatcher
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
 
 MOST_FRAMES = 10_000_000
 _MOST_TOLD = 20  # problems of a severity, with a line each
+_MOST_NAMES = 8  # in a sentence
 # Said of what several parts look for.
 NO_SUCH_PRIM = "there is no such prim"
 PATH_TOO_LONG = "its path from the root is too long"
@@ -130,6 +132,18 @@ def one_line(text: str) -> str:
 
 def not_one_of(what: str, word: object, words: Sequence[str]) -> str:
     return f"{what} {word!r} is not one of {', '.join(words)}"
+
+
+def in_place_of(name: str, others: Iterable[str]) -> str:
+    """What there is where nothing has a name, those that are most like it first."""
+    there = sorted(others, key=lambda other: -SequenceMatcher(None, name.lower(), other.lower()).ratio())
+    more = [f"{len(there) - _MOST_NAMES} more"] if len(there) > _MOST_NAMES else []
+    return f"there {'is' if len(there) == 1 else 'are'} {listed([*there[:_MOST_NAMES], *more]) or 'none'}"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: a, b and c."""
+    return " and ".join([", ".join(names[:-1]), names[-1]] if names[1:] else names)
 
 
 def lines_text(lines: Iterable[str]) -> str:

@@ -10,13 +10,13 @@ from functools import cached_property
 from pxr import Usd, UsdGeom
 
 from skinslide.arrays.meaning import MeshMeaning
-from skinslide.arrays.schema import say
 from skinslide.arrays.topology import Topology
-from skinslide.problems import NO_SUCH_PRIM, Fault, Problem, StageProblems, errors
+from skinslide.problems import Fault, Problem, StageProblems, errors, in_place_of
 from skinslide.shot.check import CheckReport, check
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, given_path
 from skinslide.stage.mesh import read_faces_of_mesh
+from skinslide.stage.names import prim_of_type
 from skinslide.write.earlier import without_earlier_bake
 from skinslide.write.target import check_target, hidden_by, whole_or_not_at_all
 
@@ -37,7 +37,7 @@ class EditedMesh:
         """Raises Fault where the mesh has no patch of that name."""
         there = schema.patch_names(self.prim)
         if patch not in there:
-            others = f"it has {', '.join(there)}" if there else "skinslide setup makes one"
+            others = in_place_of(patch, there) if there else "skinslide setup makes one"
             raise Fault(f"there is no such patch on the mesh; {others}")
 
     def checked(self) -> CheckReport:
@@ -87,14 +87,7 @@ def edited(stage: Usd.Stage, prim: PrimLike, patch: str, source: str | None = No
     path = given_path("prim", prim)
     try:
         with whole_or_not_at_all(stage, path, lambda name: schema.is_of_patch(name, patch)):
-            yield EditedMesh(*_mesh(stage.GetPrimAtPath(path)), patch)
+            mesh = prim_of_type(stage, str(path), UsdGeom.Mesh)
+            yield EditedMesh(mesh, read_faces_of_mesh(mesh), patch)
     except Fault as fault:
         raise StageProblems([Problem("error", str(path), source or patch, None, str(fault))]) from fault
-
-
-def _mesh(prim: Usd.Prim) -> tuple[Usd.Prim, MeshMeaning]:
-    if not prim:
-        raise Fault(NO_SUCH_PRIM)
-    if not prim.IsA(UsdGeom.Mesh):
-        raise Fault(f"is a {prim.GetTypeName() or say('no_type')}, not a Mesh")
-    return prim, read_faces_of_mesh(prim)

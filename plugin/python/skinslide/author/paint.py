@@ -32,6 +32,7 @@ from skinslide.stage.given import (
     given_subset,
     given_text,
 )
+from skinslide.stage.names import prim_of_type
 from skinslide.stage.patch import read_edges, read_faces, read_pairs
 from skinslide.stage.values import FIRST, read_primvar, read_value
 
@@ -304,9 +305,7 @@ def _how_far(nearest: float, near: _Near) -> str:
 
 def _read_curves(mesh: Usd.Prim, path: str) -> Curves:
     """The curves of a prim by their default values, where rest is drawn, or at their first sample without these."""
-    prim = mesh.GetStage().GetPrimAtPath(path)
-    if not prim or not prim.IsA(UsdGeom.BasisCurves):
-        raise Fault(f"there is no BasisCurves prim {path}" + (f", it is a {prim.GetTypeName()}" if prim else ""))
+    prim = prim_of_type(mesh.GetStage(), path, UsdGeom.BasisCurves, f"curve {path}: ")
     curves, transforms = UsdGeom.BasisCurves(prim), UsdGeom.XformCache(FIRST)
     to_mesh = transforms.GetLocalToWorldTransform(prim) * transforms.GetLocalToWorldTransform(mesh).GetInverse()
     counts, points = (

@@ -12,9 +12,10 @@ from pxr import Usd, UsdGeom
 
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh
-from skinslide.problems import Fault
+from skinslide.problems import Fault, in_place_of
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_number, given_primvar
+from skinslide.stage.names import primvar_names, subset_names
 from skinslide.stage.patch import primvar_faces, subset_faces
 from skinslide.stage.values import read_primvar
 
@@ -65,6 +66,11 @@ def has_pin(prim: Usd.Prim, name: str) -> bool:
     return _subset(prim, name) is not None or bool(UsdGeom.PrimvarsAPI(prim).GetPrimvar(name))
 
 
+def pin_names(prim: Usd.Prim) -> list[str]:
+    """What a mesh has that could be pinned by."""
+    return [*subset_names(prim), *primvar_names(prim)]
+
+
 def _subset(prim: Usd.Prim, name: str) -> UsdGeom.Subset | None:
     child = schema.child(prim, name)
     return UsdGeom.Subset(child) if child and child.IsA(UsdGeom.Subset) else None
@@ -88,7 +94,8 @@ def _pinned(name: str, mesh: EditedMesh) -> np.ndarray:
     if subset is not None:
         return mesh.topology.vertices_of(subset_faces(subset.GetPrim(), mesh.meaning))
     if not has_pin(mesh.prim, name):
-        raise Fault(f"there is neither a GeomSubset {name} under the mesh nor a primvar {name} on it")
+        there = in_place_of(name, pin_names(mesh.prim))
+        raise Fault(f"there is neither a GeomSubset {name} under the mesh nor a primvar {name} on it; {there}")
     primvar = given_primvar(mesh.prim, name)
     if primvar.GetInterpolation() == UsdGeom.Tokens.uniform:
         return mesh.topology.vertices_of(primvar_faces(primvar, mesh.meaning))

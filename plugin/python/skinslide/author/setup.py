@@ -19,9 +19,9 @@ from skinslide.author.joints import REACH, faces_at, read_rig
 from skinslide.author.layer import author_layer
 from skinslide.author.mirror import other_side
 from skinslide.author.payload import PayloadLayer
-from skinslide.author.settings import Settings, has_pin
+from skinslide.author.settings import Settings, has_pin, pin_names
 from skinslide.author.whole import left_out, moving_meshes, needed_faces, never
-from skinslide.problems import Fault, Problem, StageProblems, UsageError
+from skinslide.problems import Fault, Problem, StageProblems, UsageError, in_place_of
 from skinslide.shot.check import CheckReport
 from skinslide.shot.checks import positive, texts
 from skinslide.shot.frames import FramesLike, checked_frames
@@ -198,7 +198,8 @@ def _make_each(stage: Usd.Stage, faces: dict[str, np.ndarray], patch: str, setti
 def _check_pins(meshes: Sequence[Usd.Prim], pins: Sequence[str]) -> None:
     for name in pins:
         if not any(has_pin(mesh, name) for mesh in meshes):
-            message = f"no mesh that moves has a GeomSubset or a primvar {name}"
+            there = in_place_of(name, sorted({each for mesh in meshes for each in pin_names(mesh)}))
+            message = f"no mesh that moves has a GeomSubset or a primvar {name}; {there}"
             raise StageProblems([Problem("error", "", None, None, message)])
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinslide.command.arguments import device_of_environment, parse
 from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say, tell
-from skinslide.problems import StageError, UsageError, one_line
+from skinslide.problems import StageError, UsageError, listed, one_line
 from skinslide.shot.options import PictureOptions
 
 if TYPE_CHECKING:
@@ -96,14 +96,10 @@ def _outcome(given: dict[str, Any], before: dict[str, tuple[int, ...]]) -> str:
     written = [file for file, state in _state(given).items() if before.get(file) != state]
     folders = [given[name] for name in ("folder", "pictures", "maps") if given.get(name)]
     if written:
-        return f" after {_listed(written)} {'were' if len(written) > 1 else 'was'} written"
+        return f" after {listed(written)} {'were' if len(written) > 1 else 'was'} written"
     if folders:
-        return f"; every file in {_listed(folders)} is whole"
+        return f"; every file in {listed(folders)} is whole"
     return "; nothing was written" if given.get("output") or given.get("html") else ""
-
-
-def _listed(names: Sequence[str]) -> str:
-    return " and ".join([", ".join(names[:-1]), names[-1]] if names[1:] else names)
 
 
 # ---- The commands: what each gives its function ----

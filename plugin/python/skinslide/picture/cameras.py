@@ -11,9 +11,9 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.canvas import Camera, Shape, frame_faces
-from skinslide.arrays.schema import say
-from skinslide.problems import NO_SUCH_PRIM, Fault, FrameProblem, SliderError
+from skinslide.problems import Fault, FrameProblem, SliderError
 from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.names import prim_of_type
 
 _MOST_POSES = 24  # that a camera of a whole shot is framed by
 # A camera that stands still shows too little of a patch if it is this many times as far off as one that goes along.
@@ -34,10 +34,7 @@ class StageCamera:
     """
 
     def __init__(self, stage: Usd.Stage, path: str, aspect: float):
-        prim = stage.GetPrimAtPath(path) if path.startswith("/") else Usd.Prim()
-        if not prim or not prim.IsA(UsdGeom.Camera):
-            kind = prim.GetTypeName() or say("no_type") if prim else ""
-            raise Fault(f"camera {path}: {f'is a {kind}, not a Camera' if prim else NO_SUCH_PRIM}")
+        prim = prim_of_type(stage, path, UsdGeom.Camera, f"camera {path}: ")
         self._camera, self._aspect = UsdGeom.Camera(prim), aspect
 
     def camera(self, time: Usd.TimeCode) -> Camera:

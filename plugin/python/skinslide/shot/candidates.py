@@ -10,11 +10,10 @@ from pxr import Usd, UsdGeom
 
 from skinslide.problems import Fault, counted
 from skinslide.stage.finding import find_slidable
+from skinslide.stage.names import primvar_names
 from skinslide.stage.skinning import Skinning
 
 _MOST_NAMES = 40  # in a line
-_PAINT = ("bool[]", "int[]", "float[]")
-_BY_ELEMENT = (UsdGeom.Tokens.uniform, UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying)
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,6 @@ def _candidate(prim: Usd.Prim, is_skinned: bool) -> Candidate:
         skeleton = skinning.skeleton if skinning else ""
         joints = skinning.rig().names() if skinning else []
     subsets = [UsdGeom.Subset(child) for child in prim.GetChildren() if child.IsA(UsdGeom.Subset)]
-    primvars = UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues()
     return Candidate(
         str(prim.GetPath()),
         len(mesh.GetPointsAttr().Get(Usd.TimeCode.EarliestTime()) or ()),
@@ -71,10 +69,5 @@ def _candidate(prim: Usd.Prim, is_skinned: bool) -> Candidate:
         skeleton,
         joints,
         [each.GetPrim().GetName() for each in subsets if each.GetElementTypeAttr().Get() == UsdGeom.Tokens.face],
-        [each.GetPrimvarName() for each in primvars if _chooses(each)],
+        primvar_names(prim),
     )
-
-
-def _chooses(primvar: UsdGeom.Primvar) -> bool:
-    own = not primvar.GetPrimvarName().startswith(("skel:", "skinSlide:"))
-    return own and str(primvar.GetTypeName()) in _PAINT and primvar.GetInterpolation() in _BY_ELEMENT

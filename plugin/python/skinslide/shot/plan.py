@@ -11,7 +11,7 @@ from pxr import Usd
 
 from skinslide.arrays.lookup import Lookup
 from skinslide.arrays.slider import Slider
-from skinslide.problems import Problem, StageProblems, UsageError, counted, errors, frame_text
+from skinslide.problems import Problem, StageProblems, UsageError, counted, errors, frame_text, in_place_of
 from skinslide.shot.frames import AUTHORED, AskedFrames, Chunk
 from skinslide.shot.options import SlideOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
@@ -56,13 +56,14 @@ class Plan:
 
     def check_patches(self, wanted: Sequence[str] | None) -> None:
         """Raises UsageError for no names, and StageProblems for those that no mesh has."""
-        there = {patch.name for planned in self.meshes for patch in planned.mesh.patches}
+        there = sorted({patch.name for planned in self.meshes for patch in planned.mesh.patches})
         if wanted is not None and not wanted:
             raise UsageError("patches: there are no names in it")
         missing = [name for name in wanted or () if name not in there]
         if missing:
-            message = f"no mesh has it; there are {', '.join(sorted(there))}"
-            raise StageProblems([Problem("error", "", name, None, message) for name in missing])
+            raise StageProblems(
+                [Problem("error", "", name, None, f"no mesh has it; {in_place_of(name, there)}") for name in missing]
+            )
 
 
 def _own_frames(mesh: PatchedMesh) -> list[float]:

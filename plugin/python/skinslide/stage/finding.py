@@ -11,10 +11,11 @@ from pxr import Pcp, Sdf, Usd, UsdGeom, UsdSkel
 from skinslide.arrays.fetched import PrimFacts
 from skinslide.arrays.finding import Finding, find, nothing_to_slide
 from skinslide.arrays.schema import SCHEMA
-from skinslide.problems import NO_SUCH_PRIM, Problem, StageProblems
+from skinslide.problems import Problem, StageProblems
 from skinslide.stage import schema
 from skinslide.stage.binding import skel_root, skeleton_target
 from skinslide.stage.marks import baked_layer, has_values
+from skinslide.stage.names import no_such_prim
 from skinslide.stage.opening import is_live
 
 _Variant: TypeAlias = tuple[str, str]  # its set, its name
@@ -133,7 +134,7 @@ def _roots(stage: Usd.Stage, prim_paths: Sequence[str] | None, problems: list[Pr
         else:
             named = "this" if str(path) else "an empty name"
             message = f"{named} is not the path of a prim, such as /World/char/geo"
-            message = NO_SUCH_PRIM if valid else message
+            message = no_such_prim(stage, str(path)) if valid else message
             problems.append(Problem("error", str(path), None, None, message))
 
 

@@ -15,8 +15,9 @@ import numpy.typing as npt
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from skinslide.arrays.checks import as_array
-from skinslide.problems import Fault, SliderError, UsageError
+from skinslide.problems import Fault, SliderError, UsageError, in_place_of
 from skinslide.stage import schema
+from skinslide.stage.names import primvar_names, subset_names
 from skinslide.stage.opening import check_clocks, open_stage
 
 StrPath: TypeAlias = str | os.PathLike[str]
@@ -109,7 +110,7 @@ def given_subset(prim: Usd.Prim, name: str) -> Usd.Prim:
     """The child of a mesh that is to be a GeomSubset. Raises Fault, and UsageError for an empty name."""
     child = schema.child(prim, given_name("a GeomSubset", name))
     if not child:
-        raise Fault(f"there is no GeomSubset {name} under the mesh")
+        raise Fault(f"there is no GeomSubset {name} under the mesh; {in_place_of(name, subset_names(prim))}")
     return child
 
 
@@ -117,7 +118,7 @@ def given_primvar(prim: Usd.Prim, name: str) -> UsdGeom.Primvar:
     """A primvar that a mesh is to have. Raises Fault, and UsageError for an empty name."""
     primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(given_name("a primvar", name))
     if not primvar:
-        raise Fault(f"there is no primvar {name} on the mesh")
+        raise Fault(f"there is no primvar {name} on the mesh; {in_place_of(name, primvar_names(prim))}")
     return primvar
 
 

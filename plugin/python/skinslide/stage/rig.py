@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from skinslide.problems import Fault
+from skinslide.problems import Fault, in_place_of
 
 # Of a joint's weight: exporters leave less than this where they round.
 LEAST_WEIGHT = 0.01
@@ -36,8 +36,8 @@ class Rig:
         """The joint of a name, which is its path or how that ends. Raises Fault."""
         found = [i for i, joint in enumerate(self.joints) if joint == name] or self._ending(name)
         if len(found) != 1:
-            there = ", ".join(map(self._name, found)) or ", ".join(self.names())
-            raise Fault(f"{name} is {'not one joint, but any of' if found else 'no joint; there are'} {there}")
+            several = f"not one joint, but any of {', '.join(map(self._name, found))}"
+            raise Fault(f"{name} is {several if found else f'not a joint; {in_place_of(name, self.names())}'}")
         return found[0]
 
     def across(self, joint: int) -> int:
