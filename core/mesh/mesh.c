@@ -36,6 +36,19 @@ skinslide_status ss_check_points(const float *points, int32_t vertex_count, cons
     return SKINSLIDE_OK;
 }
 
+skinslide_status ss_check_used(const skinslide_mesh *mesh, const float *points, const char *what, skinslide_error *error) {
+    if (!points)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
+    int32_t first = INT32_MAX;
+    for (int32_t c = 0; c < mesh->index_count; c++) {
+        int32_t v = mesh->face_indices[c];
+        first = v < first && !ss_is_finite(points + 3 * (int64_t)v) ? v : first;
+    }
+    if (first == INT32_MAX)
+        return SKINSLIDE_OK;
+    return ss_refuse_vertex(what, first, points + 3 * (int64_t)first, 3, SKINSLIDE_BAD_POINTS, error);
+}
+
 /* A vertex that others are one with must be one with itself. */
 static skinslide_status check_weld(const skinslide_mesh *mesh, skinslide_error *error) {
     for (int32_t v = 0; mesh->weld && v < mesh->vertex_count; v++) {
@@ -45,6 +58,18 @@ static skinslide_status check_weld(const skinslide_mesh *mesh, skinslide_error *
                            one);
     }
     return SKINSLIDE_OK;
+}
+
+void ss_measure_rest(const skinslide_mesh *mesh, double size[3]) {
+    for (int k = 0; k < 3; k++) {
+        float low = INFINITY, high = -INFINITY;
+        for (int32_t v = 0; v < mesh->vertex_count; v++) {
+            const float *here = mesh->rest_points + 3 * (int64_t)v;
+            if (ss_is_finite(here))
+                low = here[k] < low ? here[k] : low, high = here[k] > high ? here[k] : high;
+        }
+        size[k] = high >= low ? (double)high - low : 0;
+    }
 }
 
 skinslide_status ss_check_face_counts(const int32_t *counts, int32_t face_count, skinslide_error *error) {

@@ -60,6 +60,10 @@ skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float 
                                   skinslide_error *error);
 /* Names the first vertex that is not finite. */
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
+/* The same of the vertices that faces have; others may be anything. */
+skinslide_status ss_check_used(const skinslide_mesh *mesh, const float *points, const char *what, skinslide_error *error);
+/* The sides of the box around the rest points that are finite. */
+void ss_measure_rest(const skinslide_mesh *mesh, double size[3]);
 /* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. face_start is as ss_start_faces has it; NULL: it
  * is found. label begins messages. */
 skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
@@ -88,7 +92,8 @@ typedef struct ss_spot {
  * scratch [count]. */
 void ss_split_places(const float *points, double tolerance, const int32_t *vertices, int32_t count, ss_spot *spots,
                      int32_t *place);
-/* The places of all points [count] of a pose: place [count] is the lowest point of each. False where memory is short. */
+/* The places of all points [count] of a pose: place [count] is the lowest point of each; one that is not finite has its own.
+ * False where memory is short. */
 bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place);
 /* Which of points [count] have one of others [other_count] in their place: met [count] is 1, else 0. Points that are not finite
  * meet none. False where memory is short. */

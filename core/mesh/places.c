@@ -85,12 +85,16 @@ void ss_split_places(const float *points, double tolerance, const int32_t *verti
 
 bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place) {
     ss_memory scratch = {0};
-    int32_t *all = SS_NEW(&scratch, int32_t, count);
+    int32_t *finite = SS_NEW(&scratch, int32_t, count), finite_count = 0;
     ss_spot *spots = SS_NEW(&scratch, ss_spot, count);
-    for (int32_t i = 0; !scratch.failed && i < count; i++)
-        all[i] = i, place[i] = 0;
+    for (int32_t i = 0; !scratch.failed && i < count; i++) {
+        bool is_finite = ss_is_finite(points + 3 * (int64_t)i);
+        place[i] = is_finite ? 0 : i;
+        if (is_finite)
+            finite[finite_count++] = i;
+    }
     if (!scratch.failed)
-        ss_split_places(points, tolerance, all, count, spots, place);
+        ss_split_places(points, tolerance, finite, finite_count, spots, place);
     ss_free(&scratch);
     return !scratch.failed;
 }

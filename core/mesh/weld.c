@@ -190,13 +190,8 @@ static void write_weld(sewing *s, int32_t *out) {
 /* ---- Creation ---- */
 
 static skinslide_status check_tolerance(const skinslide_mesh *mesh, double tolerance, skinslide_error *error) {
-    double box[3] = {0, 0, 0};
-    for (int k = 0; k < 3; k++) {
-        float low = INFINITY, high = -INFINITY;
-        for (int32_t v = 0; v < mesh->vertex_count; v++)
-            low = fminf(low, mesh->rest_points[3 * (int64_t)v + k]), high = fmaxf(high, mesh->rest_points[3 * (int64_t)v + k]);
-        box[k] = mesh->vertex_count ? (double)high - low : 0;
-    }
+    double box[3];
+    ss_measure_rest(mesh, box);
     double most = 1e-3 * ss_length(box);
     if (tolerance >= 0 && (tolerance == 0 || tolerance <= most))
         return SKINSLIDE_OK;
@@ -313,7 +308,7 @@ skinslide_status skinslide_weld_create(const skinslide_mesh *mesh, const skinsli
     ss_taken_mesh taken;
     skinslide_status status = take_bare(&mesh, &taken, error);
     if (!status)
-        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+        status = ss_check_used(mesh, mesh->rest_points, "rest points", error);
     if (!status)
         status = check_tolerance(mesh, tolerance, error);
     if (status)

@@ -9,7 +9,7 @@
 
 static skinslide_status take_posed(const skinslide_mesh **mesh, ss_taken_mesh *taken, skinslide_error *error) {
     skinslide_status status = ss_take_mesh(mesh, taken, error);
-    return status ? status : ss_check_points((*mesh)->rest_points, (*mesh)->vertex_count, "rest points", error);
+    return status ? status : ss_check_used(*mesh, (*mesh)->rest_points, "rest points", error);
 }
 
 skinslide_status skinslide_note_stretch(const skinslide_mesh *mesh, const float *points, float *stretch,
@@ -19,7 +19,7 @@ skinslide_status skinslide_note_stretch(const skinslide_mesh *mesh, const float 
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no points, or no place for the stretch");
     skinslide_status status = take_posed(&mesh, &taken, error);
     if (!status)
-        status = ss_check_points(points, mesh->vertex_count, "points", error);
+        status = ss_check_used(mesh, points, "points", error);
     for (int32_t f = 0, begin = 0; !status && f < mesh->face_count; begin += mesh->face_counts[f++])
         for (int32_t k = 0; k < mesh->face_counts[f]; k++) {
             int32_t a = mesh->face_indices[begin + k], b = mesh->face_indices[begin + (k + 1) % mesh->face_counts[f]];

@@ -16,7 +16,8 @@ typedef struct mirror {
     const skinslide_mesh *mesh;
     int axis, along; /* along: an axis of the plane, by which vertices are sorted */
     double plane, tolerance;
-    place *places;         /* [vertex_count] ascending */
+    int32_t place_count;
+    place *places;         /* [place_count] ascending */
     int32_t *face_start;   /* [face_count + 1] */
     int32_t *vertex_start; /* [vertex_count + 1] */
     int32_t *corner;       /* [index_count] corners at each vertex */
@@ -34,35 +35,28 @@ static int by_coordinate(const void *a, const void *b) {
     return x->vertex < y->vertex ? -1 : x->vertex > y->vertex;
 }
 
-static void measure(const skinslide_mesh *mesh, double size[3]) {
-    for (int k = 0; k < 3; k++) {
-        float low = INFINITY, high = -INFINITY;
-        for (int32_t v = 0; v < mesh->vertex_count; v++) {
-            float here = mesh->rest_points[3 * (int64_t)v + k];
-            low = here < low ? here : low, high = here > high ? here : high;
-        }
-        size[k] = mesh->vertex_count ? (double)high - low : 0;
-    }
-}
-
 int ss_sort_along(const skinslide_mesh *mesh, int axis, double *tolerance) {
     double size[3];
-    measure(mesh, size);
+    ss_measure_rest(mesh, size);
     int a = (axis + 1) % 3, b = (axis + 2) % 3;
     if (*tolerance < 0)
         *tolerance = 1e-4 * fmax(fmax(size[0], size[1]), size[2]);
     return size[a] >= size[b] ? a : b;
 }
 
+/* Of the points that are finite. */
 static void sort_places(mirror *m) {
-    for (int32_t v = 0; v < m->mesh->vertex_count; v++)
-        m->places[v] = (place){m->mesh->rest_points[3 * (int64_t)v + m->along], v};
-    qsort(m->places, (size_t)m->mesh->vertex_count, sizeof *m->places, by_coordinate);
+    for (int32_t v = 0; v < m->mesh->vertex_count; v++) {
+        const float *at = m->mesh->rest_points + 3 * (int64_t)v;
+        if (ss_is_finite(at))
+            m->places[m->place_count++] = (place){at[m->along], v};
+    }
+    qsort(m->places, (size_t)m->place_count, sizeof *m->places, by_coordinate);
 }
 
 /* The first place with a coordinate of at least low. */
 static int32_t first_place(const mirror *m, double low) {
-    int32_t begin = 0, end = m->mesh->vertex_count;
+    int32_t begin = 0, end = m->place_count;
     while (begin < end) {
         int32_t middle = begin + (end - begin) / 2;
         if (m->places[middle].coordinate < low)
@@ -87,7 +81,7 @@ static double distance(const mirror *m, int32_t vertex, int32_t other) {
 /* The next place, from one on, whose vertex is within tolerance of the mirror image of vertex; -1 where there is none. */
 static int32_t next_candidate(const mirror *m, int32_t vertex, int32_t from) {
     double high = m->mesh->rest_points[3 * (int64_t)vertex + m->along] + m->tolerance;
-    for (int32_t p = from; p < m->mesh->vertex_count && m->places[p].coordinate <= high; p++)
+    for (int32_t p = from; p < m->place_count && m->places[p].coordinate <= high; p++)
         if (distance(m, vertex, m->places[p].vertex) <= m->tolerance)
             return p;
     return -1;
@@ -213,7 +207,7 @@ static skinslide_status allocate(mirror *m, ss_memory *memory, uint8_t **lost, s
 
 skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
                                  int32_t face_count, skinslide_error *error) {
-    skinslide_status status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+    skinslide_status status = ss_check_used(mesh, mesh->rest_points, "rest points", error);
     if (status)
         return status;
     if (axis < 0 || axis > 2 || !isfinite(plane) || !isfinite(tolerance))

@@ -213,9 +213,9 @@ static void write_directions(const strain *s, const chosen *of, float *out) {
 
 static skinslide_status check(const skinslide_mesh *mesh, const float *st, const int32_t *faces, int32_t face_count,
                               const float *points, skinslide_error *error) {
-    skinslide_status status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+    skinslide_status status = ss_check_used(mesh, mesh->rest_points, "rest points", error);
     if (!status)
-        status = ss_check_points(points, mesh->vertex_count, "points", error);
+        status = ss_check_used(mesh, points, "points", error);
     if (!status)
         status = ss_check_faces(mesh->face_count, faces, face_count, error);
     for (int32_t f = 0, c = 0; !status && st && f < mesh->face_count; c += mesh->face_counts[f++])

@@ -241,7 +241,7 @@ static skinslide_status check(const skinslide_mesh *mesh, const float *st, const
     if (!status && mesh->index_count > MOST_CORNERS)
         status = ss_fail(error, SKINSLIDE_UNSUPPORTED, "%d face indices are too many to be drawn", mesh->index_count);
     if (!status && !st)
-        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+        status = ss_check_used(mesh, mesh->rest_points, "rest points", error);
     if (!status)
         status = ss_check_faces(mesh->face_count, faces, face_count, error);
     for (int32_t f = 0, c = 0; !status && st && f < mesh->face_count; c += mesh->face_counts[f++])

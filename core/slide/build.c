@@ -69,8 +69,7 @@ static skinslide_status bring_rest(const skinslide_slider *slider, skinslide_mes
     if (memory->failed)
         return ss_out_of_memory(error);
     ss_bring(slider, &mesh->rest_points, room);
-    return slider->space ? ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points where lengths are taken", error)
-                         : SKINSLIDE_OK;
+    return slider->space ? ss_check_used(mesh, mesh->rest_points, "rest points where lengths are taken", error) : SKINSLIDE_OK;
 }
 
 /* Drops pointers to what is the caller's. */
@@ -128,7 +127,7 @@ skinslide_status skinslide_build_create(const skinslide_mesh *mesh, const skinsl
         return ss_out_of_memory(error);
     skinslide_status status = ss_take_mesh(&mesh, &build->taken, error);
     if (!status)
-        status = ss_check_points(mesh->rest_points, mesh->vertex_count, "rest points", error);
+        status = ss_check_used(mesh, mesh->rest_points, "rest points", error);
     if (!status)
         status = begin(build, setups, setup_count, error);
     if (status)

@@ -1,11 +1,16 @@
 /* Rest points: the pose in which nothing slides. Of several candidates the first that is authored counts, good or bad. */
 #include "stage.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh) {
     return mesh->rest ? mesh->rest_source : "";
+}
+
+const char *skinslide_stage_mesh_rest_warning(const skinslide_stage_mesh *mesh) {
+    return mesh ? mesh->rest_warning : NULL;
 }
 
 static skinslide_status none_found(skinslide_error *error) {
@@ -18,11 +23,43 @@ static skinslide_status none_found(skinslide_error *error) {
                    own->prefix, own->name, primvar->prefix, primvar->name);
 }
 
-static skinslide_status check_finite(const float *rest, int64_t count, const char *source, skinslide_error *error) {
-    for (int64_t i = 0; i < count; i++, rest += 3)
-        if (!ss_is_finite(rest))
-            return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED "[%lld] is (%g, %g, %g)", SS_NAME(source),
-                           (long long)i, (double)rest[0], (double)rest[1], (double)rest[2]);
+static skinslide_status refuse(const float *rest, int32_t vertex, const char *source, skinslide_error *error) {
+    const float *at = rest + 3 * (int64_t)vertex;
+    return ss_fail(error, SKINSLIDE_BAD_POINTS, "rest points: " SS_NAMED "[%d] is (%g, %g, %g)", SS_NAME(source), vertex,
+                   (double)at[0], (double)at[1], (double)at[2]);
+}
+
+/* Of the points that faces have; without faces nothing is slid. */
+static skinslide_status check_faces(const skinslide_stage_mesh *mesh, const float *rest, const char *source,
+                                    skinslide_error *error) {
+    const ss_array *corners = &mesh->taken[SS_ROW_FACE_INDICES].array;
+    int32_t first = INT32_MAX;
+    for (int32_t c = 0; mesh->has_faces && c < corners->count; c++) {
+        int32_t v = ((const int32_t *)corners->values)[c];
+        first = v < first && !ss_is_finite(rest + 3 * (int64_t)v) ? v : first;
+    }
+    return first == INT32_MAX ? SKINSLIDE_OK : refuse(rest, first, source, error);
+}
+
+/* Of all points, once those of faces are known to be finite. */
+static skinslide_status warn_of_others(skinslide_stage_mesh *mesh, const float *rest, const char *source,
+                                       skinslide_error *error) {
+    int32_t count = 0, first = 0;
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        if (!ss_is_finite(rest + 3 * (int64_t)v))
+            first = count++ ? first : v;
+    if (!count)
+        return SKINSLIDE_OK;
+    skinslide_error told;
+    refuse(rest, first, source, &told);
+    char *warning = SS_NEW(&mesh->memory, char, sizeof told.message + 96);
+    if (!warning)
+        return ss_out_of_memory(error);
+    char more[32] = "";
+    if (count > 1)
+        snprintf(more, sizeof more, ", and %d more like it", count - 1);
+    snprintf(warning, sizeof told.message + 96, "%s, which counts for nothing, since no face has it%s", told.message, more);
+    mesh->rest_warning = warning;
     return SKINSLIDE_OK;
 }
 
@@ -36,10 +73,16 @@ static skinslide_status copy_rest(skinslide_stage_mesh *mesh, const ss_record *r
     if (mesh->memory.failed)
         return ss_out_of_memory(error);
     ss_copy_floats(record, rest);
-    skinslide_status status = check_finite(rest, record->length, source, error);
+    skinslide_status status = check_faces(mesh, rest, source, error);
+    if (!status)
+        status = warn_of_others(mesh, rest, source, error);
     if (!status)
         mesh->rest = rest;
     return status;
+}
+
+static bool is_other(float a, float b) {
+    return a != b && !(isnan(a) && isnan(b));
 }
 
 /* Of one that counts. */
@@ -47,7 +90,7 @@ static bool is_same_rest(const skinslide_stage_mesh *mesh, const ss_record *reco
     if (record->length != mesh->vertex_count)
         return false;
     for (int64_t i = 0; i < 3 * record->length; i++)
-        if ((float)ss_number(record, i / 3, (int32_t)(i % 3)) != mesh->rest[i])
+        if (is_other((float)ss_number(record, i / 3, (int32_t)(i % 3)), mesh->rest[i]))
             return false;
     return true;
 }
@@ -71,7 +114,7 @@ skinslide_status ss_take_rest(skinslide_stage_mesh *mesh, int32_t row, const ss_
         return is_last ? none_found(error) : SKINSLIDE_OK;
     snprintf(source, sizeof source, SS_NAMED "%s", SS_NAME(record->value.name), is_last ? " (default)" : "");
     mesh->rest_row = row;
-    mesh->rest = NULL;
+    mesh->rest = NULL, mesh->rest_warning = NULL;
     skinslide_status status =
         is_primvar ? ss_check_by_vertex(record, "rest points: ", SKINSLIDE_BAD_POINTS, error) : SKINSLIDE_OK;
     if (!status && !ss_has_value(record))

@@ -245,7 +245,8 @@ struct skinslide_stage_mesh {
     int32_t *face_start;              /* [face_count + 1] */
     float *rest;                      /* NULL: none yet */
     const char *rest_source;
-    int32_t rest_row; /* the row of the candidate that is used, good or bad; -1: none yet */
+    const char *rest_warning; /* NULL: none */
+    int32_t rest_row;         /* the row of the candidate that is used, good or bad; -1: none yet */
     bool left_handed;
     double weld, weld_tolerance; /* whether points in one place are welded, and how near they must be */
     double world_space;          /* whether lengths are measured in world space */

@@ -147,7 +147,8 @@ class Sliding:
         setups = [meaning.setup(base) for meaning, base in zip(self._meanings, self._base, strict=True)]
         self.rest_points = surface.meaning.rest_points()
         self.slider = _slider(surface, setups)
-        own = (surface.meaning.warning, surface.meaning.space_warning, *(each.warning for each in self._meanings))
+        meaning, patches = surface.meaning, (each.warning for each in self._meanings)
+        own = (meaning.rest_warning, meaning.warning, meaning.space_warning, *patches)
         self.warnings = [each for each in own if each]
 
     def _subdivision(self, source: Input) -> Value:

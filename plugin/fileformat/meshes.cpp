@@ -310,8 +310,8 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
 }
 
 void sayWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
-    for (const char *said :
-         {skinslide_stage_mesh_warning(mesh.mesh.get()), skinslide_stage_mesh_space_warning(mesh.mesh.get())}) {
+    for (const char *said : {skinslide_stage_mesh_rest_warning(mesh.mesh.get()), skinslide_stage_mesh_warning(mesh.mesh.get()),
+                             skinslide_stage_mesh_space_warning(mesh.mesh.get())}) {
         if (said)
             problems->push_back(mesh.path.GetString() + ": " + said);
     }

@@ -1,4 +1,5 @@
 /* Meshes and poses that are degenerate but legal: nothing crashes, nothing is lost, and what was degraded is counted. */
+#include "skinslide/paint.h"
 #include "support.h"
 
 #include <float.h>
@@ -50,15 +51,21 @@ static void patches_with_nothing_free(void **state) {
     }
 }
 
-/* Vertices that no face uses, at the ends and between. */
-static void isolated_vertices_keep_their_bits(void **state) {
-    (void)state;
+/* A grid of quads, and vertices that no face uses, at the ends and between: the even ones. */
+static test_mesh grid_with_isolated(void) {
     test_mesh grid = quad_grid(4, 4), mesh = join_meshes(&grid, &grid);
     mesh.face_count = grid.face_count, mesh.index_count = grid.index_count;
     for (int32_t c = 0; c < mesh.index_count; c++)
         mesh.face_indices[c] = 2 * mesh.face_indices[c] + 1;
     for (int32_t v = 49; v >= 0; v--)
         memcpy(mesh.points + 3 * v, grid.points + 3 * (v / 2), sizeof(float[3]));
+    free_mesh(&grid);
+    return mesh;
+}
+
+static void isolated_vertices_keep_their_bits(void **state) {
+    (void)state;
+    test_mesh mesh = grid_with_isolated();
     check_poses(&mesh, setup_of(NULL, 0));
     rig r = rig_of(&mesh, setup_of(NULL, 0));
     float *points = shaken(&mesh, 1, 0.4), *slid = slide_with(&r, &mesh, points, NULL, NULL);
@@ -67,7 +74,58 @@ static void isolated_vertices_keep_their_bits(void **state) {
     assert_true(largest_difference(slid, points, 150) > 0.01);
     free(points), free(slid);
     free_rig(&r);
-    free_mesh(&grid), free_mesh(&mesh);
+    free_mesh(&mesh);
+}
+
+/* At rest those of no face may be anything: what is slid is as without them, and they meet nothing. */
+static void isolated_vertices_are_nowhere(void **state) {
+    (void)state;
+    test_mesh mesh = grid_with_isolated(), nowhere = grid_with_isolated();
+    for (int32_t v = 0; v < 50; v += 2)
+        nowhere.points[3 * v + v % 3] = v % 4 ? NAN : INFINITY;
+    float *points = shaken(&mesh, 1, 0.4);
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+        skinslide_patch_setup setup = setup_of(NULL, 0);
+        setup.rule = rules[i];
+        rig r = rig_of(&mesh, setup), other = rig_of(&nowhere, setup);
+        float *slid = slide_with(&r, &mesh, points, NULL, NULL), *same = slide_with(&other, &nowhere, points, NULL, NULL);
+        assert_same_bytes(same, slid, POINT_BYTES(&mesh));
+        free(slid), free(same);
+        free_rig(&r), free_rig(&other);
+    }
+    free(points);
+    free_mesh(&mesh), free_mesh(&nowhere);
+}
+
+/* They are welded to nothing, no mirror image is sought among them, and no size is theirs. */
+static void isolated_vertices_say_nothing(void **state) {
+    (void)state;
+    test_mesh nowhere = grid_with_isolated();
+    for (int32_t v = 0; v < 50; v += 2)
+        nowhere.points[3 * v + v % 3] = v % 4 ? NAN : INFINITY;
+    skinslide_mesh view = view_of(&nowhere);
+    int32_t *all = all_faces(&nowhere), vertices[50], faces[16], mirrored[50];
+    float stretch[64] = {0}, *pose = copy_points(&nowhere);
+    uint8_t chosen[16];
+    skinslide_patch_setup setup = setup_of(all, nowhere.face_count);
+    skinslide_weld *weld;
+    skinslide_error error;
+    assert_ok(skinslide_weld_create(&view, &setup, 1, 1e-4, &weld, &error), &error);
+    assert_ok(skinslide_weld_get(weld, vertices, NULL, &error), &error);
+    for (int32_t v = 0; v < 50; v++)
+        assert_int_equal(vertices[v], v);
+    skinslide_weld_destroy(weld);
+    assert_fails(skinslide_weld_create(&view, &setup, 1, 1, &weld, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "weld: the tolerance is 1; it must be 0 to 0.005...");
+    assert_ok(skinslide_mirror(&view, 0, 2, -1, all, nowhere.face_count, faces, mirrored, &error), &error);
+    for (int32_t v = 0; v < 50; v++)
+        assert_int_equal(mirrored[v], v % 2 ? v / 10 * 10 + 10 - v % 10 : -1);
+    pose[3 * 25] += 0.5f; /* vertex 12 of the grid, in its middle */
+    assert_ok(skinslide_note_stretch(&view, pose, stretch, &error), &error);
+    assert_ok(skinslide_mask_stretched(&view, stretch, NULL, chosen, &error), &error);
+    assert_true(chosen[5] && chosen[10]);
+    free(all), free(pose);
+    free_mesh(&nowhere);
 }
 
 /* Rows of a grid pulled into one another at rest: edges of no length are counted, in rest and in the pose. */
@@ -211,10 +269,16 @@ static void either_winding_slides(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(patches_with_nothing_free),   cmocka_unit_test(isolated_vertices_keep_their_bits),
-        cmocka_unit_test(edges_of_no_length),          cmocka_unit_test(edges_of_no_length_do_not_fold),
-        cmocka_unit_test(a_pose_in_one_place),         cmocka_unit_test(flat_and_sliver_poses),
-        cmocka_unit_test(ears_on_the_square_collapse), cmocka_unit_test(sizes_at_the_ends_of_float),
+        cmocka_unit_test(patches_with_nothing_free),
+        cmocka_unit_test(isolated_vertices_keep_their_bits),
+        cmocka_unit_test(isolated_vertices_are_nowhere),
+        cmocka_unit_test(isolated_vertices_say_nothing),
+        cmocka_unit_test(edges_of_no_length),
+        cmocka_unit_test(edges_of_no_length_do_not_fold),
+        cmocka_unit_test(a_pose_in_one_place),
+        cmocka_unit_test(flat_and_sliver_poses),
+        cmocka_unit_test(ears_on_the_square_collapse),
+        cmocka_unit_test(sizes_at_the_ends_of_float),
         cmocka_unit_test(either_winding_slides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

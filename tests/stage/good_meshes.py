@@ -1,6 +1,7 @@
 """Meshes, patches, rest poses and clocks of every kind that slides."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
@@ -64,6 +65,12 @@ def clip_of_split_points(prim: Usd.Prim) -> None:
     attribute = prim.CreateAttribute("points", Types.Point3fArray, False)
     for frame in FRAMES:
         attribute.Set(stages.vectors(stages.grid().moved(frame)[whole]), frame)
+
+
+def with_loose_points() -> stages.Shape:
+    """Three points that no face has."""
+    shape = stages.grid()
+    return replace(shape, points=np.concatenate([shape.points, np.zeros((3, 3), np.float32)]))
 
 
 def points_are_unsampled(scene: Scene) -> None:
@@ -551,6 +558,14 @@ FAULTS = [
         warns="1 point that no patch uses is not finite, and stays as it is: vertex 0 at (",
     )
     for fault, more in ((NAN, [normals("vertex", 100)]), (INFINITY, [subdivided]))
+] + [
+    Good(
+        "rest: not finite at points of no face",
+        all_of(point(49, NAN), point(50, INFINITY)),
+        shape=with_loose_points,
+        warns="rest points: points (default)[49] is (0, nan, 0), which counts for nothing, since no face has it, "
+        "and 1 more like it",
+    ),
 ]
 
 

@@ -265,6 +265,10 @@ SKINSLIDE_API skinslide_status skinslide_stage_mesh_faces(const skinslide_stage_
 /* Where the rest points were found: "primvars:Pref", "points (default)"; "" before that. Lives as long as the mesh. */
 SKINSLIDE_API const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh);
 
+/* A warning of rest points that are not finite, and count for nothing, since no face has them; NULL: none. Lives as long as the
+ * mesh. */
+SKINSLIDE_API const char *skinslide_stage_mesh_rest_warning(const skinslide_stage_mesh *mesh);
+
 /* A warning of rest points of another scale, which are scaled to the cache's; NULL: none. Lives as long as the mesh. Rest is
  * compared with the points of the first time, edge by edge, unless skinSlide:compareRest is off. */
 SKINSLIDE_API const char *skinslide_stage_mesh_warning(const skinslide_stage_mesh *mesh);

@@ -2,6 +2,7 @@
 #include "records.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static skinslide_error error;
@@ -52,6 +53,37 @@ static void each_candidate_counts(void **state) {
         assert_ok(skinslide_stage_mesh_get(mesh, &out, &error), &error);
         assert_true(out.rest_points[0] == (float)own && out.rest_points[8] == (float)own + 8);
         assert_string_equal(skinslide_stage_mesh_rest_source(mesh), own < 5 ? names[own] : "points (default)");
+        skinslide_stage_mesh_destroy(mesh);
+    }
+}
+
+/* Of three that a triangle has, and of a fourth. */
+static void points_of_no_face_may_be_anything(void **state) {
+    (void)state;
+    static const float four[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5};
+    for (int32_t v = 0; v < 4; v++) {
+        skinslide_stage_mesh *mesh = NULL;
+        float points[12];
+        char says[128];
+        memcpy(points, four, sizeof points);
+        assert_ok(skinslide_stage_mesh_create(&mesh, &error), &error);
+        assert_ok(mesh_takes(mesh, "points", array_of("points", SKINSLIDE_VALUE_FLOAT, 3, 4, four), &error), &error);
+        assert_ok(mesh_takes(mesh, "faceVertexCounts", INTS("faceVertexCounts", 3), &error), &error);
+        assert_ok(mesh_takes(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 1, 2), &error), &error);
+        points[3 * v] = NAN;
+        skinslide_value rest = painted_as(array_of("primvars:rest", SKINSLIDE_VALUE_FLOAT, 3, 4, points), "vertex");
+        snprintf(says, sizeof says, "rest points: primvars:rest[%d] is (nan, %g, %g)%s", v, (double)four[3 * v + 1],
+                 (double)four[3 * v + 2], v < 3 ? "" : ", which counts for nothing, since no face has it");
+        skinslide_status status = mesh_takes(mesh, "rest", rest, &error);
+        if (v < 3) {
+            assert_fails(status, &error, SKINSLIDE_BAD_POINTS, says);
+            assert_null(skinslide_stage_mesh_rest_warning(mesh));
+        } else {
+            assert_ok(status, &error);
+            assert_string_equal(skinslide_stage_mesh_rest_warning(mesh), says);
+            assert_ok(skinslide_stage_mesh_check(mesh, input_of(SKINSLIDE_STAGE_MESH, NULL, "rest"), &rest, 1002, &error),
+                      &error);
+        }
         skinslide_stage_mesh_destroy(mesh);
     }
 }
@@ -120,8 +152,11 @@ static void none_at_all_says_what_to_author(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_candidate_counts),           cmocka_unit_test(a_bad_candidate_is_not_passed_over),
-        cmocka_unit_test(bad_rest_points_are_named),       cmocka_unit_test(the_default_of_points_is_named),
+        cmocka_unit_test(each_candidate_counts),
+        cmocka_unit_test(points_of_no_face_may_be_anything),
+        cmocka_unit_test(a_bad_candidate_is_not_passed_over),
+        cmocka_unit_test(bad_rest_points_are_named),
+        cmocka_unit_test(the_default_of_points_is_named),
         cmocka_unit_test(none_at_all_says_what_to_author),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

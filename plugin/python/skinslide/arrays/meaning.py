@@ -72,6 +72,11 @@ class MeshMeaning(Taker):
         return text(lib.skinslide_stage_mesh_rest_source(self.handle.pointer))
 
     @property
+    def rest_warning(self) -> str:
+        """What to warn of in the rest points as they are authored, or nothing."""
+        return _said(lib.skinslide_stage_mesh_rest_warning(self.handle.pointer))
+
+    @property
     def warning(self) -> str:
         """What to warn of, or nothing."""
         return _said(lib.skinslide_stage_mesh_warning(self.handle.pointer))

@@ -178,9 +178,13 @@ class PatchedMesh:
             raise FrameProblem(self.problem(str(fault), time)) from fault
 
     def drawn_points(self, points: np.ndarray) -> np.ndarray:
-        """Points (V, 3) as pictures show them: those off the patches that are not finite where they are at rest."""
+        """Points (V, 3) as pictures show them: those off the patches that are not finite where they are at rest.
+
+        At the origin where no face has them, and they are nowhere at rest either.
+        """
         shown = np.isfinite(points).all(axis=1) | self._patched
-        return np.where(shown[:, None], points, self.rest_points)
+        somewhere = np.isfinite(self.rest_points).all(axis=1)
+        return np.where(shown[:, None], points, np.where(somewhere[:, None], self.rest_points, np.float32(0)))
 
     @cached_property
     def _patched(self) -> np.ndarray:
@@ -273,7 +277,7 @@ class PatchedMesh:
 
     def warnings(self) -> Iterator[Problem]:
         """What rest points and patches are warned of."""
-        for said in filter(None, (self.meaning.warning, self.meaning.space_warning)):
+        for said in filter(None, (self.meaning.rest_warning, self.meaning.warning, self.meaning.space_warning)):
             yield Problem("warning", self.path, None, None, said)
         for patch, each in zip(self.patches, self.animation, strict=True):
             if each.warning:
