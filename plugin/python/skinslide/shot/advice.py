@@ -84,7 +84,7 @@ def _neighbours(mesh: PatchedMesh, slider: Slider) -> Iterator[Problem]:
         slider.check_points(points)
     except (FrameProblem, SliderError):
         return  # which is said of its frame
-    for path, every in mesh.neighbours.near(mesh.prim) if mesh.neighbours else ():
+    for path, every in mesh.neighbours.meeting(mesh.prim) if mesh.neighbours else ():
         others = every[np.isfinite(every).all(axis=1)]
         found = {info: slider.neighbours(patch, points, others) for patch, info in enumerate(slider.patches)}
         for name, pieces in _by_name(slider.patches).items():

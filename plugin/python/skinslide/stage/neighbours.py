@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from hashlib import sha256
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,9 @@ from skinslide.stage.finding import is_skinned
 from skinslide.stage.skinning import Skinning
 from skinslide.stage.values import FIRST
 
+# Odd numbers by which the bits of three coordinates become one number.
+_MIXERS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
+
 
 class Neighbour(NamedTuple):
     """A mesh, and its points (n, 3) at the first time, as they are skinned."""
@@ -23,34 +27,35 @@ class Neighbour(NamedTuple):
 
 
 class Neighbours:
-    """The meshes of a stage by the space that they are in: found once, of which boxes are kept but no points."""
+    """The meshes of a stage by the space that they are in, and which of them meet: found once; no points are kept."""
 
     def __init__(self, stage: Usd.Stage):
         self._stage = stage
         self._found: dict[Gf.Matrix4d, list[Sdf.Path]] | None = None
-        self._boxes: dict[Sdf.Path, Gf.Range3d] = {}
+        self._meetings: dict[Gf.Matrix4d, Meetings] = {}
 
     def of(self, prim: Usd.Prim) -> Iterator[Neighbour]:
         """Those with points; of meshes that UsdSkel cannot skin, as they are authored."""
-        for path in self._beside(prim):
+        _, paths = self._beside(prim)
+        for path in paths:
             points = self._points(path)
-            if len(points):
+            if len(points) and path != prim.GetPath():
                 yield Neighbour(str(path), points)
 
-    def near(self, prim: Usd.Prim) -> Iterator[Neighbour]:
-        """Those whose boxes are no farther away than a hundredth of its own; of others points are read once."""
-        own = self._box(prim.GetPath())
-        margin = Gf.Vec3d(0.01 * own.GetSize().GetLength())
-        around = Gf.Range3d(own.min - margin, own.max + margin)
-        for path in self._beside(prim):
-            if not own.IsEmpty() and not Gf.Range3d.GetIntersection(around, self._box(path)).IsEmpty():
-                yield Neighbour(str(path), self._points(path))
+    def meeting(self, prim: Usd.Prim) -> Iterator[Neighbour]:
+        """Those with a point in the place of one of its own, but for those whose points are all the same."""
+        space, paths = self._beside(prim)
+        if space not in self._meetings:
+            self._meetings[space] = Meetings(map(self._points, paths))
+        for number in self._meetings[space].of(paths.index(prim.GetPath())) if paths else ():
+            yield Neighbour(str(paths[number]), self._points(paths[number]))
 
-    def _beside(self, prim: Usd.Prim) -> Iterator[Sdf.Path]:
+    def _beside(self, prim: Usd.Prim) -> tuple[Gf.Matrix4d, list[Sdf.Path]]:
+        """The space of a mesh, and all meshes in it, itself too; none where its space is none."""
         if self._found is None:
             self._found = self._by_space()
         own = UsdGeom.XformCache(FIRST).GetLocalToWorldTransform(prim)
-        return (path for path in self._found.get(own, ()) if path != prim.GetPath())
+        return own, self._found.get(own, [])
 
     def _by_space(self) -> dict[Gf.Matrix4d, list[Sdf.Path]]:
         spaces, found = UsdGeom.XformCache(FIRST), dict[Gf.Matrix4d, list[Sdf.Path]]()
@@ -63,14 +68,49 @@ class Neighbours:
         points = UsdGeom.Mesh(prim).GetPointsAttr().Get(FIRST)
         return _moved(prim, np.asarray(points)) if points else np.empty((0, 3), np.float32)
 
-    def _box(self, path: Sdf.Path) -> Gf.Range3d:
-        """Around the points of a mesh that are finite; empty where there are none."""
-        if path not in self._boxes:
-            points = self._points(path)
-            finite = points[np.isfinite(points).all(axis=1)].astype(float)
-            ends = (Gf.Vec3d(*finite.min(axis=0)), Gf.Vec3d(*finite.max(axis=0))) if len(finite) else ()
-            self._boxes[path] = Gf.Range3d(*ends)
-        return self._boxes[path]
+
+class Meetings:
+    """Which of some sets of points share a place: all places are sorted at once, those of equal sets but once."""
+
+    def __init__(self, sets: Iterable[np.ndarray]):
+        self._kind = list[int]()  # of each set: those that are the same are of a kind
+        places, kinds = list[np.ndarray](), dict[bytes, int]()
+        for points in sets:
+            own = _places(points)
+            kind = kinds.setdefault(sha256(own.data).digest(), len(kinds))
+            self._kind.append(kind)
+            if kind == len(places):
+                places.append(np.unique(own))
+        self._meet = _shared(places)
+
+    def of(self, number: int) -> list[int]:
+        """The sets that a set shares a place with, in order, but for those that are the same."""
+        met = self._meet[self._kind[number]]
+        return [other for other, kind in enumerate(self._kind) if kind in met]
+
+
+def _places(points: np.ndarray) -> np.ndarray:
+    """A number (n,) for each of the points that are finite, the same for the same place."""
+    finite = points[np.isfinite(points).all(axis=1)].astype(np.float32) + np.float32(0)  # -0 is where 0 is
+    bits = np.ascontiguousarray(finite).view(np.uint32).astype(np.uint64)
+    return (bits * _MIXERS).sum(axis=1, dtype=np.uint64)
+
+
+def _shared(sets: list[np.ndarray]) -> list[set[int]]:
+    """Of each set of numbers, of which none is there twice, the others that have one of them."""
+    found: list[set[int]] = [set() for _ in sets]
+    numbers = np.concatenate(sets) if sets else np.empty(0, np.uint64)
+    owners = np.repeat(np.arange(len(sets)), [len(each) for each in sets])
+    order = np.argsort(numbers, kind="stable")
+    _, starts, counts = np.unique(numbers[order], return_index=True, return_counts=True)
+    for count in np.unique(counts[counts > 1]):
+        runs = starts[counts == count][:, None] + np.arange(count)
+        for several in np.unique(owners[order][runs], axis=0).tolist():
+            for each in several:
+                found[each].update(several)
+    for number, others in enumerate(found):
+        others.discard(number)
+    return found
 
 
 def _moved(prim: Usd.Prim, points: np.ndarray) -> np.ndarray:
