@@ -1,10 +1,12 @@
 """Rigs that UsdSkel cannot skin by: one named error, from check, bake and cache alike, and nothing is written."""
 
+import math
+import re
 from collections.abc import Callable
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
 
 import rigs
 import skinslide
@@ -14,6 +16,7 @@ from skinslide.stage.mesh import read_meshes
 from stages import FRAMES, MESH
 
 SHAPE = f"{MESH}/bulge"
+FLAT = Gf.Matrix4d().SetScale(Gf.Vec3d(1, 0, 1))
 Rig = Callable[[Usd.Stage, UsdGeom.Mesh], object]
 
 
@@ -153,6 +156,22 @@ BAD = {
         two_skeletons,
         f"skel:skeleton of {MESH} names {SKELETON} and {ANIMATION}; it must name one skeleton",
     ),
+    "a bind transform that is flat": (
+        lambda stage, _: skeleton_of(stage).GetBindTransformsAttr().Set([Gf.Matrix4d(1), FLAT, Gf.Matrix4d(1)]),
+        f"bindTransforms of {SKELETON} has no inverse for the joint root/arm",
+    ),
+    "bind transforms that are nothing": (
+        lambda stage, _: skeleton_of(stage).GetBindTransformsAttr().Set([Gf.Matrix4d(0)] * 3),
+        f"bindTransforms of {SKELETON} has no inverse for the joint root",
+    ),
+    "a bind transform that is no number": (
+        lambda stage, _: skeleton_of(stage).GetBindTransformsAttr().Set([Gf.Matrix4d(1), Gf.Matrix4d(math.nan), FLAT]),
+        f"bindTransforms of {SKELETON} has no inverse for the joint root/arm",
+    ),
+    "a geomBindTransform that is flat": (
+        lambda _, mesh: binding_of(mesh).CreateGeomBindTransformAttr(FLAT),
+        "primvars:skel:geomBindTransform has no inverse",
+    ),
     "in an instance": (
         lambda stage, _: stage.GetPrimAtPath("/World/char").SetInstanceable(True),
         "is inside an instance, whose points are shared; author instanceable = false on /World/char",
@@ -198,6 +217,70 @@ def test_transforms_that_cannot_be_at_a_frame_are_named_with_it(tmp_path):
         ):
             write(stage, tmp_path / "out.usda")
     assert not list(tmp_path.iterdir())
+
+
+def nan_rotations(stage, _mesh):
+    rotations = UsdSkel.Animation(stage.GetPrimAtPath(ANIMATION)).GetRotationsAttr()
+    rotations.Set(Vt.QuatfArray([Gf.Quatf(1), Gf.Quatf(0, math.nan, 0, 0)]), FRAMES[1])
+
+
+def endless_scales(stage, _mesh):
+    scales = UsdSkel.Animation(stage.GetPrimAtPath(ANIMATION)).GetScalesAttr()
+    for frame in FRAMES:
+        scales.Set([Gf.Vec3h(math.inf if frame == FRAMES[1] else 1), Gf.Vec3h(1)], frame)
+
+
+def nan_shape(stage, mesh):
+    rigs.blend_shape(mesh)
+    UsdSkel.Animation(stage.GetPrimAtPath(ANIMATION)).GetBlendShapeWeightsAttr().Set([0, math.nan], FRAMES[1])
+
+
+def nan_weight(_stage, mesh):
+    weights = mesh.GetPrim().GetAttribute("primvars:skel:jointWeights")
+    values = np.array(weights.Get())
+    weights.Set(Vt.FloatArray.FromNumpy(values), FRAMES[0])
+    values[12] = math.nan
+    weights.Set(Vt.FloatArray.FromNumpy(values), FRAMES[1])
+
+
+@pytest.mark.parametrize(
+    ("edit", "says"),
+    [
+        (nan_rotations, f"rotations of {ANIMATION} is not finite for root/arm"),
+        (endless_scales, f"scales of {ANIMATION} is not finite for root/arm/hand"),
+        (nan_shape, f"blendShapeWeights of {ANIMATION} is not finite for bulge"),
+        (nan_weight, "primvars:skel:jointWeights[12] is nan"),
+    ],
+)
+def test_what_sends_points_nowhere_is_named_with_its_frame(edit, says, tmp_path):
+    """Where it is of joints or weights, and not of points: off the patch, too."""
+    stage, mesh = rigs.skinned_stage(faces=np.array([35]))
+    edit(stage, mesh)
+    found = [str(each) for each in skinslide.check(stage).problems if each.severity == "error"]
+    assert len(found) == 1 and found[0].startswith(f"error: {MESH}: frame 1002: {says}")
+    for write in (skinslide.bake_to_file, skinslide.cache):
+        with pytest.raises(skinslide.FrameProblem, match=re.escape(f"{MESH}: frame 1002: {says}")):
+            write(stage, tmp_path / "out.usda")
+    assert not list(tmp_path.iterdir())
+
+
+def test_joints_that_move_no_point_may_be_anything():
+    stage, mesh = rigs.skinned_stage()
+    influences("jointIndices", lambda values: values.__setitem__(slice(None), [0, 2] * 49))(stage, mesh)
+    influences("jointWeights", lambda values: values.__setitem__(slice(None), [1, 0] * 49))(stage, mesh)
+    skeleton_of(stage).GetBindTransformsAttr().Set([Gf.Matrix4d(1), FLAT, Gf.Matrix4d(0)])
+    nan_rotations(stage, mesh)
+    assert not skinslide.check(stage).failed
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e6])
+def test_a_bind_pose_may_have_any_size(size):
+    """Also along one axis."""
+    stage, mesh = rigs.skinned_stage()
+    binds = [Gf.Matrix4d().SetScale(Gf.Vec3d(size, 1, size)) for _ in range(3)]
+    skeleton_of(stage).GetBindTransformsAttr().Set(binds)
+    binding_of(mesh).CreateGeomBindTransformAttr(Gf.Matrix4d().SetScale(Gf.Vec3d(1, size, 1)))
+    assert not [each for each in skinslide.check(stage).problems if "inverse" in each.message]
 
 
 def test_weights_that_cannot_be_at_a_frame_are_named_with_it(tmp_path):

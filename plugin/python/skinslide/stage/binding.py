@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-from pxr import Usd, UsdGeom, UsdSkel
+from pxr import Gf, Usd, UsdGeom, UsdSkel
 
 from skinslide.problems import Fault
 from skinslide.stage.values import FIRST
 
 # How far from 1 the weights of a point may add up to: what rounding to eight bits leaves of them.
 _WEIGHT_TOLERANCE = 0.01
+# Of the box that the axes of a transform span when they are square to each other: below it is rounding.
+_LEAST_VOLUME = 1e-12
+_COMPONENTS = ("translations", "rotations", "scales")
 
 
 def skel_root(prim: Usd.Prim) -> Usd.Prim | None:
@@ -90,6 +95,26 @@ def check_joints(query: UsdSkel.SkinningQuery, skeleton: UsdSkel.SkeletonQuery, 
     sums = weights.reshape(-1, count).sum(axis=1, dtype=np.float64)
     for point in np.flatnonzero(~(np.abs(sums - 1) <= _WEIGHT_TOLERANCE))[:1]:
         raise Fault(f"primvars:skel:jointWeights of point {point} add up to {sums[point]:g}, not to 1")
+    order = own if joints is None else list(joints)
+    _check_bound(query, skeleton, {order[index] for index in np.unique(indices[weights != 0])})
+
+
+def _check_bound(query: UsdSkel.SkinningQuery, skeleton: UsdSkel.SkeletonQuery, used: set[str]) -> None:
+    """What is skinned goes back by the transforms of the joints used, and its normals by its own."""
+    if not _has_inverse(query.GetGeomBindTransform(FIRST)):
+        raise Fault("primvars:skel:geomBindTransform has no inverse")
+    for joint, transform in zip(skeleton.GetJointOrder(), skeleton.GetJointWorldBindTransforms(), strict=True):
+        if joint in used and not _has_inverse(transform):
+            raise Fault(f"bindTransforms of {skeleton.GetPrim().GetPath()} has no inverse for the joint {joint}")
+
+
+def _has_inverse(transform: Gf.Matrix4d) -> bool:
+    """Whether it is finite, and flattens nothing, whatever its scale along each axis."""
+    rows = np.array(transform)
+    if not np.isfinite(rows).all():
+        return False
+    volume, sides = abs(np.linalg.det(rows[:3, :3])), np.linalg.norm(rows[:3, :3], axis=1)
+    return bool(volume > _LEAST_VOLUME * sides.prod()) and rows[3, 3] != 0
 
 
 def _check_indices(indices: np.ndarray, joint_count: int) -> None:
@@ -106,11 +131,38 @@ def check_animation(animation: UsdSkel.AnimQuery | None, skeleton: UsdSkel.Skele
         )
 
 
+def check_finite(query: UsdSkel.SkinningQuery, animation: UsdSkel.AnimQuery | None, time: Usd.TimeCode) -> None:
+    """Raises Fault for the first weight or transform that is not finite, by which points come to be nowhere."""
+    weights = query.GetJointWeightsPrimvar()
+    if weights and weights.HasAuthoredValue():
+        found = np.array(weights.ComputeFlattened(time) or ())
+        for index in np.flatnonzero(~np.isfinite(found))[:1]:
+            raise Fault(f"primvars:skel:jointWeights[{index}] is {found[index]:g}")
+    if not animation:
+        return
+    path, components = animation.GetPrim().GetPath(), animation.ComputeJointLocalTransformComponents(time)
+    for name, values in zip(_COMPONENTS, components, strict=True):
+        _check_each(f"{name} of {path}", animation.GetJointOrder(), [_numbers(value) for value in values])
+    _check_each(
+        f"blendShapeWeights of {path}", animation.GetBlendShapeOrder(), animation.ComputeBlendShapeWeights(time) or ()
+    )
+
+
+def _numbers(value: Gf.Vec3f | Gf.Vec3h | Gf.Quatf) -> list[float]:
+    return [value.GetReal(), *value.GetImaginary()] if isinstance(value, Gf.Quatf) else list(value)
+
+
+def _check_each(name: str, owners: Sequence[str], values: Sequence[Sequence[float] | float]) -> None:
+    for owner, value in zip(owners, values, strict=False):
+        if not np.isfinite(np.asarray(value)).all():
+            raise Fault(f"{name} is not finite for {owner}")
+
+
 def check_transforms(animation: UsdSkel.AnimQuery, time: Usd.TimeCode) -> None:
     """Raises Fault where there are not as many transforms as joints, which UsdSkel would then leave at rest."""
     wanted = len(animation.GetJointOrder())
     components = animation.ComputeJointLocalTransformComponents(time)
-    for name, values in zip(("translations", "rotations", "scales"), components, strict=True):
+    for name, values in zip(_COMPONENTS, components, strict=True):
         if len(values) != wanted:
             raise Fault(f"{name} of {animation.GetPrim().GetPath()} has {len(values)} values for {wanted} joints")
 

@@ -20,7 +20,14 @@ from skinslide.arrays.fetched import Value
 from skinslide.arrays.schema import DEFAULT_TIME, Input
 from skinslide.arrays.values import positions
 from skinslide.problems import Fault
-from skinslide.stage.binding import bound_skeleton, check_animation, check_joints, check_transforms, skeleton_query
+from skinslide.stage.binding import (
+    bound_skeleton,
+    check_animation,
+    check_finite,
+    check_joints,
+    check_transforms,
+    skeleton_query,
+)
 from skinslide.stage.blendshapes import BlendShapes
 from skinslide.stage.rig import Rig
 from skinslide.stage.values import FIRST, Source
@@ -73,7 +80,10 @@ class Skinning:
             if not self._query.ComputeSkinnedPoints(transforms, points, time):
                 raise self._unskinned()
             _transform(points, self._to_mesh(time))
-        return np.array(points)
+        made = np.array(points)
+        if not np.isfinite(made[np.isfinite(authored).all(axis=1)]).all():
+            check_finite(self._query, self._animation, time)
+        return made
 
     def bound(self, points: np.ndarray) -> np.ndarray:
         """Points as they are authored (V, 3), in the pose in which they were bound."""
