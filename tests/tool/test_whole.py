@@ -99,8 +99,12 @@ def test_of_a_prim_and_below(shot, tmp_path):
 
 
 @pytest.mark.parametrize("rest", ["points", "rest"])
-def test_one_pose_is_compared_with_rest(rest, shot, tmp_path):
+def test_one_pose_is_compared_with_rest(rest, shot, tmp_path, monkeypatch):
     """It is a sample beside default points, or default points beside a primvar. One that is rest moves nothing."""
+    read, read_moving = list[str](), skinslide.author.whole.read_moving
+    monkeypatch.setattr(
+        "skinslide.author.whole.read_moving", lambda prim: read.append(str(prim.GetPath())) or read_moving(prim)
+    )
     stage, shape, still = stages.new_stage(), stages.squares(SIDE), STILL.replace("still", "at_rest")
     for path, points in ((SKIN, bulging(shape)[FRAMES[-1]]), (still, shape.points)):
         mesh = stages.add_mesh(stage, shape, path, frames=(), rest=rest)
@@ -108,6 +112,7 @@ def test_one_pose_is_compared_with_rest(rest, shot, tmp_path):
         mesh.GetPointsAttr().Set(stages.vectors(points.astype(np.float32)), time)
     report = setup_to_file(stages.save(stage, tmp_path / "pose.usda"), tmp_path / "one.usda", whole=True)
     assert not [problem for problem in report.problems if problem.prim == still]
+    assert sorted(read) == sorted([SKIN, still])
     setup_to_file(shot, tmp_path / "many.usda", SKIN, whole=True)
     one, many = whole(tmp_path / "one.usda"), whole(tmp_path / "many.usda")
     assert list(one) == [SKIN] and one[SKIN]["skin"].tolist() == many[SKIN]["skin"].tolist()

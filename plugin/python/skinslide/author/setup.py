@@ -158,7 +158,7 @@ def _setup_whole(
     paths = None if prim is None else given_paths("prim", prim)
     with without_earlier_bake(stage, paths):
         moving, barred = moving_meshes(stage, paths)
-        _check_pins(moving, settings.pins)
+        _check_pins([mesh.prim for mesh in moving], settings.pins)
         faces, said, wrong = needed_faces(moving, frames)
     wrong = [*barred, *wrong]
     while faces:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from pxr import Usd, UsdGeom
@@ -19,27 +20,34 @@ from skinslide.stage.values import FIRST
 PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
 
 
-def moving_meshes(stage: Usd.Stage, prims: Sequence[str] | None) -> tuple[list[Usd.Prim], list[Problem]]:
+class Moving(NamedTuple):
+    """A mesh whose points move, or are not at rest in the single pose that there is."""
+
+    prim: Usd.Prim
+    pose: PatchedMesh | None  # as it was read, where it has a single pose
+
+
+def moving_meshes(stage: Usd.Stage, prims: Sequence[str] | None) -> tuple[list[Moving], list[Problem]]:
     """The meshes at and below prims, or on the stage, that are rendered and whose points move.
 
     Those that can be slid where they are, and an error for each of the others.
     """
     meshes = [prim for prim in prims_at(stage, prims) if prim.IsA(UsdGeom.Mesh) and prim.IsDefined()]
-    moving = [prim for prim in meshes if _is_rendered(prim) and _has_faces(prim) and _moves(prim)]
-    found, problems = slidable(stage, moving)
-    return [mesh.prim for mesh in found], [replace(each, severity="error") for each in problems]
+    moving = [each for prim in meshes if _is_rendered(prim) and _has_faces(prim) if (each := _moving(prim))]
+    found, problems = slidable(stage, [each.prim for each in moving])
+    paths = {mesh.prim.GetPath() for mesh in found}
+    own = [each for each in moving if each.prim.GetPath() in paths]
+    return own, [replace(each, severity="error") for each in problems]
 
 
-def _moves(prim: Usd.Prim) -> bool:
-    return UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying() or is_skinned(prim) or _leaves_rest(prim)
-
-
-def _leaves_rest(prim: Usd.Prim) -> bool:
-    """Whether the first pose of a mesh, which may be all there is, is another than rest."""
+def _moving(prim: Usd.Prim) -> Moving | None:
+    if UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying() or is_skinned(prim):
+        return Moving(prim, None)
     with suppress(Fault, FrameProblem):  # without rest, for one, it is a mesh that stays
         mesh = read_moving(prim)
-        return not np.array_equal(mesh.points_at(FIRST), mesh.rest_points)
-    return False
+        if not np.array_equal(mesh.points_at(FIRST), mesh.rest_points, equal_nan=True):
+            return Moving(prim, mesh)
+    return None
 
 
 def _has_faces(prim: Usd.Prim) -> bool:
@@ -51,12 +59,12 @@ def _is_rendered(prim: Usd.Prim) -> bool:
 
 
 def needed_faces(
-    prims: Sequence[Usd.Prim], frames: Sequence[float] | None
+    moving: Sequence[Moving], frames: Sequence[float] | None
 ) -> tuple[dict[str, np.ndarray], list[Problem], list[Problem]]:
     """The faces of which each mesh needs a patch, by the frames given or every sample.
 
     Args:
-        prims: Meshes.
+        moving: Meshes.
         frames: Those to look at; None: every sample.
 
     Returns:
@@ -64,10 +72,10 @@ def needed_faces(
         warnings of frames beyond samples; an error for each mesh that cannot be looked at.
     """
     found, said, wrong = dict[str, np.ndarray](), list[Problem](), list[Problem]()
-    for prim in prims:
+    for prim, pose in moving:
         path = str(prim.GetPath())
         try:
-            mesh = read_moving(prim)
+            mesh = pose or read_moving(prim)
             faces = _stretched_faces(mesh, frames)
         except Fault as fault:
             wrong.append(Problem("error", path, None, None, str(fault)))
