@@ -477,6 +477,8 @@ def test_a_stage_is_a_stage_or_a_path(tmp_path):
         lambda given: skinslide.bake_to_file(given, "a.usda"),
         lambda given: skinslide.preview(given, "pictures"),
         lambda given: skinslide.maps(given, "maps"),
+        lambda given: skinslide.cache(given, "a.usda"),
+        lambda given: skinslide.farm(given, "a.usda", chunk=2),
     ],
 )
 @pytest.mark.parametrize("given", [3, None, Sdf.Path("/World")])
@@ -489,6 +491,8 @@ def test_what_is_no_stage(call, given):
     ("call", "name"),
     [
         (lambda shot, given: skinslide.bake_to_file(shot, given), "output"),
+        (lambda shot, given: skinslide.cache(shot, given), "output"),
+        (lambda shot, given: skinslide.farm(shot, given, chunk=2), "output"),
         (lambda shot, given: skinslide.stitch([shot], given), "output"),
         (lambda shot, given: skinslide.setup_to_file(shot, given, MESH, PATCH, faces=FACES), "output"),
         (lambda shot, given: skinslide.maps(shot, given), "folder"),

@@ -33,8 +33,9 @@ def test_a_command_names_the_flag(words, says, shot, tmp_path, capfd):
     assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]
 
 
-def test_an_empty_output_is_none(shot, tmp_path, capfd):
-    assert main(["bake", str(shot), "-o", ""]) == 2
+@pytest.mark.parametrize("command", ["bake", "cache"])
+def test_an_empty_output_is_none(command, shot, capfd):
+    assert main([command, str(shot), "-o", ""]) == 2
     assert capfd.readouterr().err == "error: output is an empty name\n"
 
 

@@ -23,7 +23,7 @@ from skinslide.shot.checks import Options
 from skinslide.shot.frames import checked_frames, spec_of
 from skinslide.shot.options import FarmOptions, Frames, LayerOptions, Prims, SlideOptions
 from skinslide.shot.plan import outside, times_of
-from skinslide.stage.given import StrPath
+from skinslide.stage.given import StageLike, StrPath, given_file
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 from skinslide.stage.opening import open_stage
 from skinslide.write.overs import EXTENSIONS
@@ -67,7 +67,7 @@ class FarmReport:
 
 
 def farm(
-    stage: StrPath,
+    stage: StageLike,
     output: StrPath,
     *,
     chunk: int,
@@ -88,7 +88,7 @@ def farm(
     A task that is run again bakes nothing if its chunk is complete, so a job that failed can be run again as it is.
 
     Args:
-        stage: The path of the stage, which must be the same on the machines of the farm.
+        stage: The stage, as it is in its file, or its path, which must be the same on the machines of the farm.
         output: The layer that the job is to make, .usda, .usdc or .usd; the job and its chunks are written beside it.
             Or the job; its layer then has the same name.
         chunk: The most frames that a task bakes.
@@ -108,19 +108,21 @@ def farm(
         What the job will do.
 
     Raises:
+        TypeError: The stage or the prims are of another type.
         UsageError: The arguments cannot be used.
         StageError: The stage cannot be opened, or the job cannot be written.
         StageProblems: The stage cannot be slid, or does not have one of the frames.
     """
+    file = given_file(stage)
     sliding, own = SlideOptions.of(prims, frames, "auto", 1), FarmOptions(chunk, form)
     limits = (max_folded, max_clamped, max_stretch, max_added_stretch, max_roughness)
     baking = LayerOptions(*limits, False, diagnostics)
     write, suffix, names = _QUEUES[own.form]
     job_file, layer = _places(given_output("output", output), suffix, names)
-    wanted, problems = _wanted(Path(stage), [job_file, layer], sliding)
+    wanted, problems = _wanted(file, [job_file, layer], sliding)
     job = Job(
         tool=_tool(),
-        stage=Path(os.path.abspath(stage)),
+        stage=Path(os.path.abspath(file)),
         layer=Path(os.path.abspath(layer)),
         count=-(-len(wanted) // own.chunk),
         sliding=[*_words(sliding, "prims"), *(["--frames", _spec(frames)] if frames is not None else [])],

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,7 @@ from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh, read_skinned
 from skinslide.stage.skinning import SkinnedVectors
 from skinslide.write.overs import EXTENSIONS, OverLayer, layer_in_place
-from skinslide.write.place import check_not_input, check_output, signals_as_exceptions
+from skinslide.write.place import check_not_input, check_output, given_output, signals_as_exceptions
 
 
 @dataclass(frozen=True)
@@ -104,15 +103,16 @@ def cache(
         FrameProblem: A frame cannot be skinned.
     """
     options, shot = SlideOptions.of(prims, frames, "exact", 1), Shot.of(stage)
-    check_output(Path(output), EXTENSIONS)
-    check_not_input(Path(output), shot.stage, *shot.paths)
+    layer = given_output("output", output)
+    check_output(layer, EXTENSIONS)
+    check_not_input(layer, shot.stage, *shot.paths)
     meshes, problems = read_skinned(shot.stage, options.prims)
     if errors(problems):
         raise StageProblems(problems)
     plans = [_Cached(mesh, _times(mesh, options.frames)) for mesh in meshes]
     total = sum(len(plan.times) for plan in plans)
     comment = f"Skinned by UsdSkel, for skinslide {version()}. Sublayer this above the character."
-    with signals_as_exceptions(), layer_in_place(Path(output), shot.stage, comment, marked=False) as overs:
+    with signals_as_exceptions(), layer_in_place(layer, shot.stage, comment, marked=False) as overs:
         done = 0
         for plan in plans:
             for _ in plan.write(overs):
