@@ -18,10 +18,9 @@ from skinslide.shot.check import CheckReport
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, StageLike, StrPath, given_number, given_text
 from skinslide.stage.patch import Animation, read_chosen, read_patch
+from skinslide.stage.sides import OTHER_SIDE
 
-_SIDES = {"L": "R", "l": "r", "left": "right", "Left": "Right", "LEFT": "RIGHT"}
-_OTHER_SIDE = _SIDES | {right: left for left, right in _SIDES.items()}
-_SIDE = re.compile(rf"(?<![A-Za-z0-9])({'|'.join(_OTHER_SIDE)})(?![A-Za-z0-9])")
+_SIDE = re.compile(rf"(?<![A-Za-z0-9])({'|'.join(OTHER_SIDE)})(?![A-Za-z0-9])")
 # Properties that name points, faces or texture coordinates of one side.
 _OF_ONE_SIDE = {
     "corners",
@@ -136,7 +135,7 @@ def other_side(patch: str) -> str:
     """elbow_R for elbow_L, left:cheek for right:cheek."""
     if len(_SIDE.findall(patch)) != 1:
         raise UsageError(f"the name {patch} does not say its side once, as elbow_L does; name the other side's patch")
-    return _SIDE.sub(lambda match: _OTHER_SIDE[match[1]], patch)
+    return _SIDE.sub(lambda match: OTHER_SIDE[match[1]], patch)
 
 
 def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: float | None) -> None:

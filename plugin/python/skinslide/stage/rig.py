@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from skinslide.problems import Fault, in_place_of
+from skinslide.stage.sides import OTHER_SIDE
 
 # Of a joint's weight: exporters leave less than this where they round.
 LEAST_WEIGHT = 0.01
-_SIDES = {"L": "R", "l": "r", "left": "right", "Left": "Right", "LEFT": "RIGHT"}
-_OTHER_SIDE = _SIDES | {right: left for left, right in _SIDES.items()}
 # A letter stands alone, as in arm_L; a word may be part of another, as in LeftForeArm.
-_SIDE = re.compile(r"left|right|Left|Right|LEFT|RIGHT|(?<![A-Za-z0-9])[LRlr](?![A-Za-z0-9])")
+_WORDS = "|".join(word for word in OTHER_SIDE if len(word) > 1)
+_SIDE = re.compile(rf"{_WORDS}|(?<![A-Za-z0-9])[LRlr](?![A-Za-z0-9])")
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Rig:
     def across(self, joint: int) -> int:
         """The same joint of the other side, by its name. Raises Fault."""
         own = self.joints[joint]
-        other = _SIDE.sub(lambda side: _OTHER_SIDE[side[0]], own)
+        other = _SIDE.sub(lambda side: OTHER_SIDE[side[0]], own)
         if other == own or other not in self.joints:
             raise Fault(f"the joint {self._name(joint)} has no counterpart, which would be {other}")
         return self.joints.index(other)
