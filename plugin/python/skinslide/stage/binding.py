@@ -168,7 +168,8 @@ def check_transforms(animation: UsdSkel.AnimQuery, time: Usd.TimeCode) -> None:
 
 
 def _check_known(said: str, joints: list[str], own: list[str], skeleton: str) -> None:
-    unknown = [joint for joint in joints if joint not in set(own)]
+    known = set(own)
+    unknown = [joint for joint in joints if joint not in known]
     if unknown:
         more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
         raise Fault(f"{said} {unknown[0]}{more}, which the skeleton {skeleton} does not have")
