@@ -4,8 +4,8 @@ The shot payloads the cache with a layer offset. With a patch, whose set-up it h
 `stage.usda`; without one it is `shot.usda`, from which `skinslide setup` makes `stage.usda`.
 """
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,7 @@ class Cache:
     rest_source: str = "points"  # the default value of `points`, or the name of a primvar, such as "Pref"
     subdivision: str = UsdGeom.Tokens.catmullClark
     colours: np.ndarray | None = None  # (F, 3), display colour by face
+    masks: Mapping[str, np.ndarray] = field(default_factory=dict)  # primvars by name: bool (F,) or float (V,)
 
 
 @dataclass(frozen=True)
@@ -123,6 +124,10 @@ def _write_primvars(mesh: UsdGeom.Mesh, cache: Cache) -> None:
     if cache.colours is not None:
         colours = primvars.CreatePrimvar("displayColor", types.Color3fArray, tokens.uniform)
         colours.Set(Vt.Vec3fArray.FromNumpy(cache.colours.astype(np.float32)))
+    for name, mask in cache.masks.items():
+        by_face = mask.dtype == bool
+        kind, where = (types.BoolArray, tokens.uniform) if by_face else (types.FloatArray, tokens.vertex)
+        primvars.CreatePrimvar(name, kind, where).Set(mask if by_face else mask.astype(np.float32))
 
 
 def _write_points(mesh: UsdGeom.Mesh, points: np.ndarray, time: Usd.TimeCode | float) -> None:

@@ -1,56 +1,61 @@
-"""Every command and snippet of the README runs as it stands there."""
+"""Every command and snippet of the README runs as it stands there, on what examples/run.sh has made."""
 
+import os
 import re
-import shlex
 import subprocess
 import sys
-import sysconfig
 from pathlib import Path
 
 import pytest
-from pxr import Sdf, Usd, UsdGeom
 
-from repository import ROOT
+from repository import EXAMPLES, ROOT
 
 README = (ROOT / "README.md").read_text()
-SCRIPTS = Path(sysconfig.get_path("scripts"))
+# What is a command, but not run here: the file that runs it, and by what words.
+ELSEWHERE = {
+    "./examples/run.sh": ("examples/run.sh", ""),
+    "./tests/run.sh": ("tests/run.sh", ""),
+    "pip install skinslide[live]": ("tests/wheel.sh", "[live]"),
+    "python plugin/blender/build.py": ("tests/blender/conftest.py", "build.py"),
+    "cmake -S . -B build/c": ("tests/CMakeLists.txt", '--install "${CMAKE_BINARY_DIR}" --prefix'),
+    "openjd run": ("tests/farm/test_openjd.py", "openjd"),
+}
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """What a reader has: a cached character with masks painted on it, a rigged one, and a stage with a patch set up."""
-    folder = tmp_path_factory.mktemp("readme")
-    subprocess.run([sys.executable, ROOT / "examples/elbow/make.py", folder], check=True, capture_output=True)
-    stage = Usd.Stage.Open(str(folder / "stage.usda"))
-    mesh = stage.GetPrimAtPath("/World/char/geo/body_GEO")
-    painted = mesh.GetAttribute("primvars:skinSlide:elbow_L:patch").Get()
-    character = Usd.Stage.CreateNew(str(folder / "character.usd"))
-    character.GetRootLayer().TransferContent(stage.GetRootLayer())
-    mesh = character.GetPrimAtPath(mesh.GetPath())
-    mask = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("elbowMask", Sdf.ValueTypeNames.BoolArray, UsdGeom.Tokens.uniform)
-    mask.Set(painted)
-    tendon = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("tendon", Sdf.ValueTypeNames.FloatArray, UsdGeom.Tokens.vertex)
-    tendon.Set([1.0] * len(UsdGeom.Mesh(mesh).GetPointsAttr().Get()))
-    mesh.ClearMetadata("apiSchemas")
-    character.Save()
-    subprocess.run(
-        [sys.executable, ROOT / "examples/character/make.py", folder / "rig"], check=True, capture_output=True
-    )
-    Sdf.Layer.FindOrOpen(str(folder / "rig" / "character.usdc")).Export(str(folder / "rigged.usd"))
-    return folder
+def root(tmp_path_factory):
+    """A repository in which examples/run.sh has run, as far as the README needs it."""
+    root = tmp_path_factory.mktemp("readme")
+    made = root / "build" / "examples"
+    made.mkdir(parents=True)
+    (root / "build" / "venv").symlink_to(sys.prefix)
+    for example in ("body", "character"):
+        run([sys.executable, EXAMPLES / example / "make.py", made / example], root)
+    (made / "body" / "bake.json").write_text('{"problems": []}')  # of a bake that failed, which is quick
+    return root
 
 
-def python_snippets():
+@pytest.fixture(scope="module")
+def body(root):
+    return root / "build" / "examples" / "body"
+
+
+def run(words, folder: Path) -> str:
+    """Runs a command that must not fail, in an environment in which skinslide is not on the path."""
+    path = ":".join(each for each in os.environ["PATH"].split(":") if not each.startswith(sys.prefix))
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, env={**os.environ, "PATH": path})
+    assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def python_snippets() -> list[str]:
     return re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 
 
-def shell_commands():
-    """The lines of indented blocks, and inline code, that call the tool."""
-    return re.findall(
-        r"(?:^    |`)(skinslide (?:setup|mirror|paint|check|preview|bake|cache|maps|stitch|farm) [^`\n]*)",
-        README,
-        re.MULTILINE,
-    )
+def shell_commands() -> list[str]:
+    """The lines of indented blocks, and inline code that begins with a command and goes on, in their order."""
+    found = re.findall(r"^    (.+)$|`((?:skinslide|python|pip|cmake|openjd|cd|\./\S+) [^`\n]+)`", README, re.MULTILINE)
+    return [re.sub(r"\s+#.*", "", block or inline) for block, inline in found]
 
 
 def test_readme_is_short():
@@ -63,13 +68,22 @@ def test_links_lead_somewhere():
 
 
 @pytest.mark.parametrize("snippet", python_snippets())
-def test_python_snippet(snippet, folder):
-    subprocess.run([sys.executable, "-c", snippet], cwd=folder, check=True, capture_output=True, text=True)
+def test_python_snippet(snippet, body):
+    run([sys.executable, "-c", snippet], body)
 
 
-def test_shell_commands_in_order(folder):
-    commands = shell_commands()
-    assert len(commands) >= 8
-    for command in commands:
-        words = shlex.split(command.replace("STAGE", "stage.usda"))
-        subprocess.run([SCRIPTS / words[0], *words[1:]], cwd=folder, check=True, capture_output=True, text=True)
+def test_shell_commands_in_order(root):
+    """All that are not run elsewhere, by one shell; each that writes a file leaves one that is there."""
+    commands = [each for each in shell_commands() if not each.startswith(tuple(ELSEWHERE))]
+    assert len(commands) > 15 and all(each.startswith(("cd ", "skinslide ")) for each in commands)
+    run(["bash", "-euxc", "\n".join(commands)], root)
+    folder = root / re.match(r"cd (\S+)", commands[0])[1]
+    written = [each for command in commands for each in re.findall(r"(?:-o|--html|--payload) (\S+)", command)]
+    assert len(written) > 10 and all((folder / each).exists() for each in written)
+
+
+@pytest.mark.parametrize("command", ELSEWHERE)
+def test_what_is_run_elsewhere(command):
+    file, words = ELSEWHERE[command]
+    assert any(each.startswith(command) for each in shell_commands())
+    assert words in (ROOT / file).read_text()
