@@ -14,11 +14,11 @@ typedef struct control {
     layout layout; /* of values */
     const float *values;
     float *own;
-    double *plain;        /* of paint that has to be made so */
-    const float *product; /* of paint by vertex and its map; NULL: not made yet */
+    double *plain;        /* paint converted to one number for each element */
+    const float *product; /* paint by vertex times its map; NULL: not multiplied yet */
     float *own_product;
     const ss_texture *texture;
-    const ss_texture *base_texture; /* that of the base, until another is taken */
+    const ss_texture *base_texture; /* the base's texture, until another is taken */
     ss_texture *own_texture;
     bool unplaced; /* own_texture must find its tiles anew, since its asset or the coordinates are new */
     bool refused;
@@ -110,7 +110,7 @@ static skinslide_status check_count(const skinslide_stage_patch *patch, const ss
     return SKINSLIDE_OK;
 }
 
-/* Memory for the values of an input in any layout, kept from frame to frame. */
+/* Returns memory for the values of an input in any layout, which is kept from frame to frame. */
 static float *own_values(skinslide_stage_controls *controls, int32_t row) {
     const skinslide_stage_mesh *mesh = controls->patch->mesh;
     int32_t faces = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
@@ -120,7 +120,7 @@ static float *own_values(skinslide_stage_controls *controls, int32_t row) {
     return own->own;
 }
 
-/* Paint with one number for each point or face: the record itself, or converted, in memory that is kept as well. */
+/* Gives paint one number for each point or face: the record as it is, or a converted one, in memory that is kept as well. */
 static skinslide_status make_plain(skinslide_stage_controls *controls, int32_t row, ss_record *record, skinslide_error *error) {
     control *own = &controls->controls[row];
     if (ss_is_plain_paint(record))
@@ -138,12 +138,12 @@ static skinslide_status bad_number(const ss_input *input, const ss_record *recor
                    (long long)i, ss_number(record, i, 0), input->wanted);
 }
 
-/* A number as a float: a double may be too large for one, or too near 0. */
+/* A number as the float that it becomes: a double may be too large for one, or too near 0. */
 static double as_float(const ss_record *record, int64_t i) {
     return (double)(float)ss_number(record, i, 0);
 }
 
-/* Expands the values inside the patch; NULL: of all elements. */
+/* Expands the values inside the patch or, if inside is NULL, those of all elements. */
 static skinslide_status expand(const ss_input *input, const ss_record *record, const ss_array *inside, float *values,
                                skinslide_error *error) {
     int64_t count = inside ? inside->count : record->length;
@@ -301,7 +301,7 @@ static void refuse(control *own) {
     own->refused = true;
 }
 
-/* A map at other coordinates: one of the base becomes the controls' own. */
+/* Moves a map to other coordinates: the base's map becomes the controls' own. */
 static skinslide_status move_map(skinslide_stage_controls *controls, int32_t row, skinslide_error *error) {
     control *own = &controls->controls[row];
     controls->controls[inputs()[row].multiplies].product = NULL;

@@ -15,7 +15,7 @@ enum { MOST_POSES = 3 };
 typedef struct derivation {
     skinslide_stage_output output;
     const ss_input *input;
-    skinslide_normals_layout layout; /* of what is carried */
+    skinslide_normals_layout layout; /* of vectors that are carried */
     struct derivation *next;
 } derivation;
 
@@ -247,7 +247,7 @@ static const char *property_name(skinslide_stage_derived *derived, const skinsli
     return name;
 }
 
-/* Appends an output, still empty: NULL where memory is short. */
+/* Appends an output, still empty. NULL if memory is short. */
 static derivation *append(skinslide_stage_derived *derived, const ss_input *input) {
     derivation *made = SS_NEW(&derived->memory, derivation, 1);
     if (!made)
@@ -292,7 +292,7 @@ static skinslide_status judge(const skinslide_stage_derived *derived, const ss_i
     return status ? status : check_value(derived->mesh, input, record, *layout, error);
 }
 
-/* Blocks normals that the primvar hides too, where it is blocked, since they would be read again. */
+/* If the primvar is blocked, also blocks the normals that it hides, since they would be read again. */
 static void block_hidden(skinslide_stage_derived *derived) {
     const ss_input *normals = input_of_row(SS_ROW_NORMALS);
     block(derived, normals, "", normals->shown.type_name);

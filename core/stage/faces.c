@@ -11,7 +11,7 @@ static int32_t face_count_of(const skinslide_stage_patch *patch) {
     return patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count;
 }
 
-/* Lists those of [count] that are marked. False where memory is short. */
+/* Lists the elements that are marked, of count. False if memory is short. */
 static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t count, ss_array *out) {
     int32_t found = 0, *list;
     for (int32_t i = 0; i < count; i++)
@@ -80,7 +80,7 @@ static bool list_chosen(const skinslide_stage_mesh *mesh, const ss_record *recor
     return done;
 }
 
-/* The chosen faces into memory, ascending. */
+/* Copies the chosen faces into memory, ascending. */
 static skinslide_status choose(const skinslide_stage_patch *patch, const ss_record *given, ss_memory *memory, ss_array *faces,
                                skinslide_error *error) {
     ss_record plain = *given, *record = &plain;
@@ -114,7 +114,7 @@ skinslide_status ss_take_primvar_faces(skinslide_stage_patch *patch, const ss_re
     return status;
 }
 
-/* Values may vary where the faces do not, as those of a mesh that some tool resampled. */
+/* Values may vary over time as long as the faces that they choose do not: a tool may have resampled the mesh. */
 skinslide_status ss_check_primvar_faces(const skinslide_stage_patch *patch, const ss_record *record, double frame,
                                         skinslide_error *error) {
     ss_memory scratch = {0};
@@ -227,7 +227,7 @@ static skinslide_status none_there(const skinslide_stage_patch *patch, skinslide
                    primvar, SS_NAME(patch->name));
 }
 
-/* A mesh may have many, so its indices are named after the prim. */
+/* A mesh may have many subsets, so errors name indices by the path of the subset. */
 static skinslide_status name_subset(skinslide_stage_patch *patch, const char *path, skinslide_error *error) {
     static const char suffix[] = ".indices";
     char *name = SS_NEW(&patch->memory, char, (int64_t)(strlen(path) + sizeof suffix));
@@ -267,7 +267,7 @@ skinslide_status skinslide_stage_patch_take_subset(skinslide_stage_patch *patch,
     return status;
 }
 
-/* Where the primvar chose faces, or the subset was refused, nothing is looked at. */
+/* Looks at nothing if the primvar chose faces, or if the subset was refused. */
 skinslide_status ss_take_subset_faces(skinslide_stage_patch *patch, int32_t row, const ss_record *record,
                                       skinslide_error *error) {
     if (patch->faces_by_primvar || patch->taken[SS_ROW_FACES].refused)
@@ -296,7 +296,7 @@ skinslide_status ss_check_subset_faces(const skinslide_stage_patch *patch, int32
 
 /* ---- What is inside ---- */
 
-/* How far around what was chosen the patch reaches. Without rest points it does not. */
+/* How far the patch reaches beyond the faces that were chosen: 0 without rest points. */
 static double way_of(const skinslide_stage_patch *patch) {
     int32_t count;
     const ss_input *grow = &ss_inputs(SKINSLIDE_STAGE_PATCH, &count)[SS_ROW_GROW];
@@ -304,7 +304,7 @@ static double way_of(const skinslide_stage_patch *patch) {
     return counts ? patch->taken[SS_ROW_GROW].number : 0;
 }
 
-/* Adds to the faces what grows them. marked is scratch [face_count]. False where memory is short. */
+/* Adds the faces within the distance that the patch grows by. marked is scratch [face_count]. False if memory is short. */
 static bool grow(skinslide_stage_patch *patch, uint8_t *marked) {
     skinslide_mesh mesh = ss_faces_of(patch->mesh);
     mesh.rest_points = patch->mesh->rest;

@@ -76,7 +76,7 @@ static int by_name(const void *a, const void *b) {
     return order ? order : x->patch - y->patch;
 }
 
-/* Sorts the patches by name. False where memory is short. */
+/* Sorts the patches by name. False if memory is short. */
 static bool sort_patches(search *own) {
     int32_t count = own->finding.patch_count;
     own->by_name = SS_NEW(&own->memory, patch_name, count);

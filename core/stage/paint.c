@@ -10,7 +10,7 @@
 
 /* ---- Names ---- */
 
-/* How like a name is to the schema's, the best last. Underscores stand for colons, which names may not have in some tools. */
+/* How much a name is like the schema's, the best last. Underscores stand for colons, which some tools do not allow in names. */
 typedef enum likeness { LIKE_NOTHING, LIKE_FOLDED, LIKE_UNDERSCORED, LIKE_ITSELF } likeness;
 
 static char folded(char letter) {
@@ -146,7 +146,7 @@ bool ss_is_paint(const ss_paint_names *all, const char *property) {
 /* ---- Types ---- */
 
 static int32_t channel_of(const skinslide_stage_patch *patch) {
-    return patch->taken[SS_ROW_CHANNEL].choice - 1; /* -1: none is named */
+    return patch->taken[SS_ROW_CHANNEL].choice - 1; /* -1 if none is named */
 }
 
 static const char *name_of_channel(const skinslide_stage_patch *patch) {
@@ -158,7 +158,7 @@ static bool is_choice(const skinslide_value *value) {
     return (value->type == SKINSLIDE_VALUE_BOOL || value->type == SKINSLIDE_VALUE_INT32) && value->width == 1;
 }
 
-/* more: what else the type may be. */
+/* Fails: paint is of a wrong type. more lists what else the type may be. */
 static skinslide_status refuse_type(const skinslide_value *value, bool of_faces, const char *more, skinslide_status status,
                                     skinslide_error *error) {
     const char *format = of_faces ? SS_NAMED " is " SS_NAMED "; it must be bool[], int[] or float[]%s"

@@ -27,7 +27,7 @@ typedef struct ratios {
     int32_t count;
 } ratios;
 
-/* Sides of no length in either pose say nothing; points that are not finite are reported when they are slid. */
+/* Leaves out sides that have no length in either pose; points that are not finite are reported when they are slid. */
 static void add_face(ratios *own, int32_t face) {
     const skinslide_stage_mesh *mesh = own->mesh;
     const int32_t *indices = mesh->taken[SS_ROW_FACE_INDICES].array.values;
@@ -64,7 +64,7 @@ static double ranked(const double *values, int64_t count, int64_t k) {
     return value;
 }
 
-/* Leaves the logarithms of the values. */
+/* Finds the median, the spread and how far apart the two are. Replaces the values by their logarithms. */
 static likeness compare(ratios *own) {
     if (!own->count)
         return (likeness){1, 1, 1};
@@ -99,7 +99,7 @@ static int32_t corners_of(const skinslide_stage_mesh *mesh, int32_t face) {
     return mesh->face_start[face + 1] - mesh->face_start[face];
 }
 
-/* Compares the faces chosen, or all of a mesh for NULL. */
+/* Compares the faces that were chosen, or if that is NULL, all of the mesh. */
 static skinslide_status compare_faces(const skinslide_stage_mesh *mesh, const ss_array *faces, likeness *out,
                                       skinslide_error *error) {
     ss_memory scratch = {0};

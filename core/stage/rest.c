@@ -29,7 +29,7 @@ static skinslide_status refuse(const float *rest, int32_t vertex, const char *so
                    (double)at[0], (double)at[1], (double)at[2]);
 }
 
-/* Of the points that faces have; without faces nothing is slid. */
+/* Checks the points that faces use: without faces nothing slides. */
 static skinslide_status check_faces(const skinslide_stage_mesh *mesh, const float *rest, const char *source,
                                     skinslide_error *error) {
     const ss_array *corners = &mesh->taken[SS_ROW_FACE_INDICES].array;
@@ -41,7 +41,7 @@ static skinslide_status check_faces(const skinslide_stage_mesh *mesh, const floa
     return first == INT32_MAX ? SKINSLIDE_OK : refuse(rest, first, source, error);
 }
 
-/* Of all points, once those of faces are known to be finite. */
+/* Warns of other points that are not finite, once those that faces use are known to be. */
 static skinslide_status warn_of_others(skinslide_stage_mesh *mesh, const float *rest, const char *source,
                                        skinslide_error *error) {
     int32_t count = 0, first = 0;
@@ -85,7 +85,7 @@ static bool is_other(float a, float b) {
     return a != b && !(isnan(a) && isnan(b));
 }
 
-/* Of one that counts. */
+/* Whether a later value of the candidate that is used comes to the rest points that were taken. */
 static bool is_same_rest(const skinslide_stage_mesh *mesh, const ss_record *record) {
     if (record->length != mesh->vertex_count)
         return false;

@@ -63,7 +63,7 @@ static double unevenness(gram g) {
     return most > 0 ? sqrt(most / fmax(least, 1e-12 * most)) : 1;
 }
 
-/* Cholesky's factor, rounded to floats, so that rotations of the mesh leave no noise in it. False where G is not positive
+/* Finds Cholesky's factor, rounded to floats, so that rotations of the mesh leave no noise in it. False if G is not positive
  * definite. */
 static bool factor(const gram *g, double out[9]) {
     memset(out, 0, 9 * sizeof *out);

@@ -56,7 +56,7 @@ static skinslide_status take_word(const ss_input *input, const ss_record *record
     return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
-/* Arrays of int32_t and of float have elements of one size. */
+/* Copies an array of int32_t or of float, whose elements have the same size. */
 static skinslide_status copy_array(const ss_input *input, const ss_record *record, skinslide_status status, ss_memory *memory,
                                    ss_array *array, skinslide_error *error) {
     bool is_float = input->kind == SS_KIND_FLOATS;

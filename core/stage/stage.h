@@ -402,7 +402,7 @@ typedef enum ss_following {
     SS_FOLLOWS_UNKNOWN, /* seems to, but cannot be carried: told says why */
 } ss_following;
 
-/* NOT for what is no primvar, or is an input of a table. */
+/* Whether a primvar follows the skin, and as what. SS_FOLLOWS_NOT also for other properties, and for inputs of a table. */
 ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *told);
 
 /* ---- times.c ---- */

@@ -5,7 +5,7 @@
 
 enum { MOST_NESTED = 500 };
 
-/* What brackets do not count in. */
+/* A kind of span in which brackets do not count, such as a comment. */
 typedef struct span_kind {
     const char *begin, *end;
     bool has_escapes, may_be_expression;
@@ -31,7 +31,7 @@ static const span_kind *span_at(const char *text, const char *stop) {
     return NULL;
 }
 
-/* Behind the end of a span whose inside begins at `text`. */
+/* Returns the place behind the end of a span whose inside begins at `text`. */
 static const char *behind(const span_kind *span, const char *text, const char *stop) {
     for (; text < stop; text++) {
         if (begins_with(text, stop, span->end))
@@ -51,7 +51,7 @@ static int32_t openings(const span_kind *span, const char *text, const char *sto
     return count;
 }
 
-/* Where text nests too deep; stop where it does not. */
+/* Returns where text nests too deep, or stop if it does not. */
 static const char *too_deep(const char *text, const char *stop) {
     int32_t open = 0;
     while (text < stop) {

@@ -82,7 +82,7 @@ void ss_texture_drop(ss_texture *texture) {
     destroy_images(&texture->held);
 }
 
-/* Nothing is known of another time's files, but images of the time before are still held. */
+/* Goes on to another time, of whose files nothing is known; images of the time before are still held. */
 static void pass_on(ss_texture *texture) {
     forget(texture);
     destroy_images(&texture->before);
@@ -131,7 +131,7 @@ bool ss_texture_wanted(const ss_texture *texture) {
 
 /* ---- Tiles ---- */
 
-/* The patch's faces; those of the whole mesh where it has none yet. */
+/* The patch's faces, or those of the whole mesh if it has none yet. */
 static const int32_t *faces_of(const skinslide_stage_patch *patch, ss_memory *scratch, int32_t *count) {
     *count = patch->faces.count ? patch->faces.count : patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count;
     if (patch->faces.count)
@@ -142,7 +142,7 @@ static const int32_t *faces_of(const skinslide_stage_patch *patch, ss_memory *sc
     return all;
 }
 
-/* A fault of the core, said of the map. */
+/* Reports an error of the core as one of the map. */
 static skinslide_status of_map(const ss_texture *texture, const char *file, skinslide_status status,
                                const skinslide_error *inner, skinslide_error *error) {
     if (status == SKINSLIDE_OUT_OF_MEMORY)
@@ -150,7 +150,7 @@ static skinslide_status of_map(const ss_texture *texture, const char *file, skin
     return ss_fail(error, status, SS_NAMED ": " SS_FILED ": %s", SS_NAME(texture->name), SS_FILE(file), inner->message);
 }
 
-/* Lists those of the corners' tiles that are any, each once. */
+/* Lists the tiles that corners lie in, each once. */
 static void list_tiles(ss_texture *texture, const int32_t *numbers, int32_t count) {
     for (int32_t i = 0; i < count; i++) {
         int32_t k = 0, number = numbers[i];
@@ -183,7 +183,7 @@ static skinslide_status find_udim_tiles(ss_texture *texture, const float *st, sk
     return status;
 }
 
-/* The path with a tile's number where it says <UDIM>. */
+/* The path, in which a tile's number takes the place of <UDIM>. */
 static const char *path_of_tile(ss_texture *texture, int32_t tile) {
     const char *found = strstr(texture->asset, udim);
     if (!found)
@@ -207,7 +207,7 @@ const skinslide_stage_need *ss_texture_need(const ss_texture *texture) {
     return texture && texture->tiles && texture->given < texture->tile_count ? &texture->need : NULL;
 }
 
-/* Other coordinates may be given for one asset: then its files are asked for again. */
+/* Begins anew: the same asset may get other coordinates, and then its files are asked for again. */
 static void begin(ss_texture *texture) {
     if (texture->held.images) {
         destroy_images(&texture->before);
@@ -220,7 +220,7 @@ static void begin(ss_texture *texture) {
 static skinslide_status find_tiles(ss_texture *texture, const float *st, skinslide_error *error) {
     begin(texture);
     bool is_udim = strstr(texture->asset, udim) != NULL;
-    /* As many as there are corners, at most. */
+    /* at most one tile for each corner */
     int32_t most = is_udim ? ss_faces_of(texture->patch->mesh).index_count : 1;
     texture->tile_count = is_udim ? 0 : 1;
     texture->tiles = SS_NEW(&texture->memory, int32_t, most);
@@ -264,7 +264,7 @@ static skinslide_status decode(const ss_texture *texture, const skinslide_stage_
     return status ? of_map(texture, file->path, status, &inner, error) : SKINSLIDE_OK;
 }
 
-/* The image of a file: that of the time before where it is the same file. */
+/* Holds the image of a file: that of the time before if it is the same file, else a decoded one. */
 static skinslide_status hold(ss_texture *texture, const skinslide_stage_file *file, skinslide_error *error) {
     held_image *own = &texture->held.images[texture->held.count], *held = find_held(&texture->before, file->path);
     if (held) {
@@ -281,7 +281,7 @@ static skinslide_status hold(ss_texture *texture, const skinslide_stage_file *fi
     return decode(texture, file, &own->image, error);
 }
 
-/* No file at all, or a tile that is missing among others. */
+/* Fails: there is no file at all, or a tile is missing among others. */
 static skinslide_status is_missing(ss_texture *texture, skinslide_error *error) {
     int32_t tile = texture->tiles[texture->missing];
     const char *said = skinslide_stage_say(SKINSLIDE_SAYING_NO_FILE);
@@ -297,7 +297,7 @@ static skinslide_status is_missing(ss_texture *texture, skinslide_error *error) 
 
 /* ---- Values ---- */
 
-/* A tile's path with <UDIM> for its number again. */
+/* A tile's path, in which <UDIM> takes the place of its number again. */
 static const char *shown_path(ss_texture *texture) {
     if (!texture->held.count)
         return texture->asset;
@@ -332,7 +332,7 @@ static skinslide_status describe(ss_texture *texture, skinslide_error *error) {
     return SKINSLIDE_OK;
 }
 
-/* Samples at the corners of the patch's faces; 1 everywhere where they have none. */
+/* Samples the map at the corners of the patch's faces; the values are 1 if it has no faces. */
 static skinslide_status sample(ss_texture *texture, const float *st, skinslide_error *error) {
     ss_memory scratch = {0};
     skinslide_error inner;

@@ -10,7 +10,7 @@
 /* Layer offsets leave noise of this size on the times of samples that were authored at one time. */
 static const double same_time = 1e-6;
 
-/* Of frames between samples. */
+/* The most frames between samples. */
 static const int64_t most_between = 10000000;
 
 typedef struct moment {
@@ -51,7 +51,7 @@ skinslide_status skinslide_stage_merge_times(double *times, int64_t *count, skin
     return SKINSLIDE_OK;
 }
 
-/* The whole times between two that lie more than 1 apart; those within noise of either are that one. Returns how many. */
+/* Finds the whole times between two that lie more than 1 apart, except those within noise of either. Returns how many. */
 static double span_between(double before, double after, double *first) {
     *first = floor(before + same_time) + 1;
     return after - before > 1 + same_time ? fmax(ceil(after - same_time) - *first, 0) : 0;

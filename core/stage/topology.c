@@ -107,7 +107,7 @@ static skinslide_status take_face_counts(skinslide_stage_mesh *mesh, const ss_re
     return status ? status : ss_check_face_counts(counts->values, counts->count, error);
 }
 
-/* Where the corners of each face begin. Fails where the counts do not add up to the indices. */
+/* Finds where the corners of each face begin. Fails if the counts do not add up to the indices. */
 static skinslide_status add_up(skinslide_stage_mesh *mesh, skinslide_error *error) {
     const ss_array *counts = &mesh->taken[SS_ROW_FACE_COUNTS].array, *indices = &mesh->taken[SS_ROW_FACE_INDICES].array;
     const int32_t *count = counts->values;
@@ -197,7 +197,7 @@ skinslide_status skinslide_stage_mesh_take(skinslide_stage_mesh *mesh, const ski
     return status;
 }
 
-/* A number that was taken. */
+/* Checks that a number that was taken stays the same. */
 static skinslide_status check_number(const skinslide_stage_mesh *mesh, int32_t row, const ss_record *record, double frame,
                                      skinslide_error *error) {
     const double numbers[] = {mesh->weld, mesh->weld_tolerance, mesh->world_space, mesh->fold_case, mesh->compare_rest};

@@ -1,4 +1,4 @@
-/* What is said of a patch that its rule has no use for. */
+/* Finds the inputs of a patch that say something, but that its rule does not read. */
 #include "stage.h"
 
 static bool patch_says(const skinslide_stage_patch *patch, const ss_input *input, int32_t row) {

@@ -62,7 +62,7 @@ static skinslide_status complete(const skinslide_value *given, skinslide_value *
 
 skinslide_status ss_open(const skinslide_value *given, ss_record *record, skinslide_error *error) {
     skinslide_status status = complete(given, &record->value, error);
-    if (!status) /* which one value cannot have */
+    if (!status) /* a single value has no indices */
         status = complete(record->value.is_array ? record->value.indices : NULL, &record->indices, error);
     if (status)
         return status;
