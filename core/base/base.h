@@ -48,7 +48,7 @@ void *ss_take_room(ss_room *room, int64_t count, size_t size);
 #define SS_TAKE(room, type, count) ((type *)ss_take_room((room), (count), sizeof(type)))
 /* Asks for at least as much as was counted. */
 void ss_ask_room(ss_room *room, const ss_room *counted);
-/* Makes what was asked for. False where memory is short. */
+/* Makes what was asked for. False if memory is short. */
 bool ss_make_room(ss_room *room);
 /* Asks the shared room for as much as was counted or, if that is NULL, makes the object's own of that size. False where memory
  * is short. */

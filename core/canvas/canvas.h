@@ -103,9 +103,9 @@ skinslide_status ss_take_paints(ss_drawing *drawn, skinslide_error *error);
 skinslide_status ss_check_scale(float lowest, float highest, skinslide_error *error);
 /* Checks the painted edges and fills drawn->edge_value. */
 skinslide_status ss_take_edges(ss_drawing *drawn, skinslide_error *error);
-/* Finds the triangles that are seen and their vertices, once the mesh is posed. False where memory is short. */
+/* Finds the triangles that are seen and their vertices, once the mesh is posed. False if memory is short. */
 bool ss_list_seen(ss_drawing *drawn);
-/* Lists the lines and dots, once the mesh is posed. False where memory is short. */
+/* Lists the lines and dots, once the mesh is posed. False if memory is short. */
 bool ss_list_strokes(ss_drawing *drawn);
 void ss_draw_strokes(const ss_drawing *drawn);
 /* Draws the surface, and the strokes: before the shadows of what hides the patch, if there are any. */

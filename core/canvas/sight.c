@@ -146,7 +146,7 @@ static void find_parts(const sight *own, bool inside) {
     }
 }
 
-/* Numbers the vertices of what is seen, and makes room for both. False where memory is short. */
+/* Numbers the vertices of what is seen, and makes room for both. False if memory is short. */
 static bool number_vertices(const sight *own) {
     ss_drawing *drawn = own->drawn;
     int32_t triangles = 0;

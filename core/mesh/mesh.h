@@ -68,7 +68,7 @@ void ss_measure_rest(const skinslide_mesh *mesh, double size[3]);
  * is found. label begins messages. */
 skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
                                const char *label, ss_memory *memory, ss_faces *faces, skinslide_error *error);
-/* Fills corner_edge and edge_count; any number of faces may share an edge. False where memory is short. */
+/* Fills corner_edge and edge_count; any number of faces may share an edge. False if memory is short. */
 bool ss_number_edges(ss_faces *faces);
 /* Numbers the pieces that are connected through edges, by their lowest face: piece_of_face [face_count]. Returns their count.
  */
@@ -93,10 +93,10 @@ typedef struct ss_spot {
 void ss_split_places(const float *points, double tolerance, const int32_t *vertices, int32_t count, ss_spot *spots,
                      int32_t *place);
 /* The places of all points [count] of a pose: place [count] is the lowest point of each; one that is not finite has its own.
- * False where memory is short. */
+ * False if memory is short. */
 bool ss_find_places(const float *points, double tolerance, int32_t count, int32_t *place);
 /* Which of points [count] have one of others [other_count] in their place: met [count] is 1, else 0. Points that are not finite
- * meet none. False where memory is short. */
+ * meet none. False if memory is short. */
 bool ss_find_met(const float *points, int32_t count, const float *others, int32_t other_count, double tolerance, uint8_t *met);
 /* ss_root: the root of a vertex in a forest, whose roots are their own parents. ss_join: joins two trees under the lower
  * root. */
@@ -154,7 +154,7 @@ typedef struct ss_around {
     int32_t *face_start;    /* [face_count + 1] */
     int32_t *corner_vertex; /* [face_start[face_count]] mesh vertices; those that are to have one normal are one here */
 } ss_around;
-/* All faces at chosen vertices: chosen is [vertex_count]. False where memory is short. */
+/* All faces at chosen vertices: chosen is [vertex_count]. False if memory is short. */
 bool ss_take_around(const skinslide_mesh *mesh, const uint8_t *chosen, ss_memory *memory, ss_around *out);
 /* normal [vertex_count] of unit length; 0 where no face at the vertex has an area. Only those of the chosen vertices are whole. */
 void ss_smooth_normals(const ss_around *around, const float *points, int32_t vertex_count, double (*normal)[3]);
@@ -179,13 +179,13 @@ skinslide_status ss_carry(const skinslide_mesh *mesh, const float *turns, skinsl
 /* ---- grow.c: what is near on the mesh at rest ---- */
 
 /* Spreads ways from the vertices where left [vertex_count] is 0 or more: that is how far a way may still go there. Afterwards
- * left is the most that any way has left at each vertex, or below 0 where none comes. False where memory is short. */
+ * left is the most that any way has left at each vertex, or below 0 where none comes. False if memory is short. */
 bool ss_spread(const skinslide_mesh *mesh, double *left);
 /* Fills left [vertex_count] for ways of that length that begin at the faces inside [face_count]. */
 void ss_start_at(const skinslide_mesh *mesh, const uint8_t *inside, double way, double *left);
 /* Adds the faces of which ways come to all vertices. */
 void ss_add_reached(const skinslide_mesh *mesh, const double *left, uint8_t *inside);
-/* Adds the faces that are wholly within that way of those inside. False where memory is short. */
+/* Adds the faces that are wholly within that way of those inside. False if memory is short. */
 bool ss_add_near_faces(const skinslide_mesh *mesh, double way, uint8_t *inside);
 
 /* ---- patch.c: one connected patch ---- */
@@ -272,12 +272,12 @@ int32_t ss_edge_lengths_at_once(const ss_patch *patch, const float *points, doub
 
 /* ---- split.c ---- */
 
-/* Gives every fan of faces at a vertex a vertex of its own, and numbers vertices and edges anew. False where memory is short. */
+/* Gives every fan of faces at a vertex a vertex of its own, and numbers vertices and edges anew. False if memory is short. */
 bool ss_split_vertices(ss_patch *patch);
 
 /* ---- triangles.c ---- */
 
-/* Fills patch->triangles, once all else is there. False where memory is short. */
+/* Fills patch->triangles, once all else is there. False if memory is short. */
 bool ss_list_triangles(ss_patch *patch);
 /* The triangle that has the side which begins at a corner. */
 int32_t ss_triangle_of_side(const ss_patch *patch, int32_t corner);

@@ -52,7 +52,7 @@ static void mark_shared(ss_patch *patch, const ss_piece *piece) {
             patch->shared[v] = 1;
 }
 
-/* Copies the vertices from scratch memory to arrays of the size that they came to. False where memory is short. */
+/* Copies the vertices from scratch memory to arrays of the size that they came to. False if memory is short. */
 static bool keep_vertices(ss_patch *patch) {
     int32_t *mesh_vertex = SS_NEW(&patch->memory, int32_t, patch->vertex_count);
     uint8_t *split = SS_NEW(&patch->memory, uint8_t, patch->vertex_count);
@@ -72,7 +72,7 @@ static void pair_corners(const ss_faces *faces, const skinslide_mesh *mesh, cons
             pairs[c][0] = faces->corner_vertex[c], pairs[c][1] = mesh->face_indices[k];
 }
 
-/* Takes pairs as scratch. False where memory is short. */
+/* Takes pairs as scratch. False if memory is short. */
 static bool list_copies(ss_patch *patch, int32_t (*pairs)[2]) {
     const ss_faces *faces = &patch->faces;
     int32_t count = 0;

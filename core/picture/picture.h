@@ -89,7 +89,7 @@ static inline int32_t ss_grid_triangles(const skinslide_tessellation *tessellati
 /* The vertex on side `side` of a grid, `step` cells along it: the sides go round the grid as those of a face do, from its first
  * corner on. */
 uint32_t ss_on_side(const ss_grid *grid, int side, int32_t step);
-/* Fills same_as. False where memory is short. */
+/* Fills same_as. False if memory is short. */
 bool ss_join_seams(skinslide_tessellation *tessellation);
 /* skinslide_outline_create, of faces that are checked. */
 skinslide_status ss_outline_create(const skinslide_tessellation *tessellation, const int32_t *faces, int32_t face_count,

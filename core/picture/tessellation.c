@@ -284,7 +284,7 @@ static bool allocate_plan(const skinslide_mesh *mesh, ss_memory *memory, bluepri
     return !memory->failed;
 }
 
-/* Faces of corners, and edges. False where memory is short. */
+/* Faces of corners, and edges. False if memory is short. */
 static bool connect_faces(skinslide_tessellation *own) {
     ss_faces *faces = &own->faces;
     faces->face_count = own->mesh_face_count, faces->corner_count = own->face_start[own->mesh_face_count];
@@ -295,7 +295,7 @@ static bool connect_faces(skinslide_tessellation *own) {
     return ss_number_edges(faces);
 }
 
-/* The same of the welded mesh, whose patches have no borders at its seams. False where memory is short. */
+/* The same of the welded mesh, whose patches have no borders at its seams. False if memory is short. */
 static bool connect_skin(skinslide_tessellation *own, const skinslide_mesh *mesh) {
     own->skin = own->faces;
     if (!mesh->weld)

@@ -251,7 +251,7 @@ skinslide_status frame(const Subject &subject, dvec3 up, double aspect, skinslid
     return SKINSLIDE_OK;
 }
 
-/* False where memory is short. */
+/* False if memory is short. */
 bool prepare(Subject &subject, ss_memory *memory) {
     const skinslide_mesh &mesh = *subject.own.mesh;
     subject.start = SS_NEW(memory, int32_t, mesh.face_count);

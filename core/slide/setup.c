@@ -100,7 +100,7 @@ static const ss_rule *rule_of(skinslide_rule rule) {
     return rules[rule];
 }
 
-/* False where memory is short. */
+/* False if memory is short. */
 static bool paint_part(ss_part *part, const skinslide_controls *controls) {
     ss_memory scratch = {0};
     ss_edge_paint *edges = SS_NEW(&scratch, ss_edge_paint, part->patch->faces.edge_count);

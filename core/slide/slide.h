@@ -147,7 +147,7 @@ void ss_destroy_parts(ss_part *parts, int32_t count);
 
 /* ---- reads.c ---- */
 
-/* Fills slider->own and slider->reads, for patches of the vertices chosen [vertex_count]. False where memory is short. */
+/* Fills slider->own and slider->reads, for patches of the vertices chosen [vertex_count]. False if memory is short. */
 bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen);
 /* Names the first point that sliding reads and that is not finite. */
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error);
