@@ -105,7 +105,7 @@ static void print_rules(int32_t side) {
     free_mesh(&mesh);
 }
 
-/* Rest places in the embedding of a bump, by walking and, as if no walk were allowed, by the tree, which is built first. */
+/* Looks up rest places in the embedding of a bump: by walking, and by the tree alone, which is built first. */
 static void print_lookups(int32_t side) {
     test_mesh mesh = quad_grid(side, side);
     skinslide_slider *slider = slider_of(&mesh, SKINSLIDE_RULE_UNIT);
@@ -133,7 +133,7 @@ static void print_lookups(int32_t side) {
     free_mesh(&mesh);
 }
 
-/* Processors that were idle take a while to reach their speed: the first rows would say so. */
+/* Processors that were idle take a while to reach their speed, which would slow the first rows. */
 static void warm_up(void) {
     test_mesh mesh = quad_grid(99, 99);
     for (double start = now(); now() - start < 0.5;)

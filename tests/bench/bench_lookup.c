@@ -37,7 +37,7 @@ static test_mesh uneven_sheet(int32_t columns) {
     return mesh;
 }
 
-/* Drawn out sideways and lifted, by an amount of the sheet's side. */
+/* Draws the sheet out sideways and lifts it, by a share of its side. */
 static void deform(const test_mesh *mesh, double amount, float *points) {
     const double pi = 3.14159265358979;
     for (int32_t v = 0; v < mesh->vertex_count; v++) {

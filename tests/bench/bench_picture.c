@@ -18,7 +18,7 @@ static void stop_unless(skinslide_status status, const skinslide_error *error) {
     exit(1);
 }
 
-/* Seconds of all processors that this process had. */
+/* The seconds that this process has had of all processors. */
 static double spent(void) {
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
@@ -41,7 +41,8 @@ typedef struct scene {
     double create; /* seconds, of the tessellation */
 } scene;
 
-/* A sheet with a bump, seen whole; or from near, where most of it is out of sight. The patch is a fifth of it along each side. */
+/* A sheet with a bump, seen as a whole, or from so near that most of it is out of sight. The patch is a fifth of it along each
+ * side. */
 static scene set_scene(int32_t side, skinslide_scheme scheme, bool near) {
     scene s = {.mesh = quad_grid(side, side)};
     const skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = scheme};
@@ -78,7 +79,7 @@ static void end_scene(scene *s) {
     free_mesh(&s->mesh);
 }
 
-/* Without drawing them: one pose. */
+/* The seconds of one pose that is not drawn. */
 static double tessellate(const scene *s) {
     const double nowhere[3] = {0, 0, 0};
     ss_tessellation_work work = {0};
@@ -91,7 +92,7 @@ static double tessellate(const scene *s) {
     return taken;
 }
 
-/* Seconds to draw, and to read: the device draws when it is read at the latest. */
+/* Adds the seconds to draw and those to read: a device may draw as late as when its pixels are read. */
 static void draw(const scene *s, void *pixels, double seconds[2]) {
     const float grey[3] = {0.2f, 0.2f, 0.2f};
     const skinslide_viewport left = {0, 0, WIDTH / 2, HEIGHT}, right = {WIDTH / 2, 0, WIDTH / 2, HEIGHT};

@@ -77,7 +77,7 @@ static void isolated_vertices_keep_their_bits(void **state) {
     free_mesh(&mesh);
 }
 
-/* At rest those of no face may be anything: what is slid is as without them, and they meet nothing. */
+/* Rest points of no face may be anything: the slide is as if they were not there, and they meet nothing. */
 static void isolated_vertices_are_nowhere(void **state) {
     (void)state;
     test_mesh mesh = grid_with_isolated(), nowhere = grid_with_isolated();
@@ -97,7 +97,7 @@ static void isolated_vertices_are_nowhere(void **state) {
     free_mesh(&mesh), free_mesh(&nowhere);
 }
 
-/* They are welded to nothing, no mirror image is sought among them, and no size is theirs. */
+/* They are not welded, no mirror image is looked for among them, and sizes do not include them. */
 static void isolated_vertices_say_nothing(void **state) {
     (void)state;
     test_mesh nowhere = grid_with_isolated();

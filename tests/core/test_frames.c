@@ -76,7 +76,7 @@ static void a_frame_is_the_same_after_others(void **state) {
         }
 }
 
-/* Also after one that failed. */
+/* A frame is the same after one that failed. */
 static void a_frame_is_the_same_after_a_failure(void **state) {
     (void)state;
     shot s;

@@ -219,7 +219,7 @@ static skinslide_status run_build(const scene *s, skinslide_error *error) {
     return status;
 }
 
-/* A set-up that failed for memory is built in the end, where there is some again. */
+/* A set-up that failed for want of memory is built at the end, if there is memory again. */
 static void each_allocation_of_a_build_fails_in_turn(void **state) {
     (void)state;
     scene s;
@@ -239,7 +239,7 @@ static void each_allocation_of_a_build_fails_in_turn(void **state) {
     free_scene(&s);
 }
 
-/* What artists paint with asks of geometry. */
+/* The functions of paint.h. */
 static skinslide_status run_geometry(void *subject, skinslide_error *error) {
     const test_mesh *grid = subject;
     static const float line[6] = {0, 0, 0, 2, 2, 0};
@@ -504,7 +504,7 @@ static void each_allocation_for_a_stage_fails_in_turn(void **state) {
     free_stage_scene(&s);
 }
 
-/* Paint goes where that of the frame before was. */
+/* Paint of a frame takes the memory of the frame before. */
 static void controls_of_a_frame_allocate_nothing(void **state) {
     (void)state;
     test_mesh grid = quad_grid(3, 3);

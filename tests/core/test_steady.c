@@ -54,7 +54,7 @@ static bool slide_all(const shot *s) {
     return good;
 }
 
-/* Without a clock that needs no call, as on some virtual machines, there is none to see. */
+/* Reads a clock. Some virtual machines have none that needs no call of the kernel. */
 static void tick(const shot *s) {
     (void)s;
     ss_now();
@@ -76,7 +76,7 @@ static bool renounce_calls(void) {
     return !prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) && !prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }
 
-/* How a process ended that may do nothing but work: its exit status, or 0 where it was killed. */
+/* Runs work in a process that may do nothing else. Returns its exit status, or 0 if it was killed. */
 static int end_of(void (*work)(const shot *s), const shot *s) {
     int status = 0;
     pid_t child = fork();

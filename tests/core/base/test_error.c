@@ -36,7 +36,7 @@ static void bytes_that_are_no_text_are_escaped(void **state) {
     says("\xed\xa0\x80\xf4\x90\x80\x80\xff", "\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80\\xff"); /* no characters */
 }
 
-/* A character is there whole or not at all, escaped or not. */
+/* A message that is too long ends with a whole character, whether that is escaped or not. */
 static void what_does_not_fit_is_left_out(void **state) {
     (void)state;
     static const char *const filling[] = {"\x1b", "\xc3\xa9", "\xe2\x82\xac"};

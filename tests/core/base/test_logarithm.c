@@ -10,7 +10,7 @@ static void one_has_none(void **state) {
     assert_true(ss_log(1) == 0 && ss_exp(0) == 1);
 }
 
-/* A quotient and a product are each half a unit off, and so are the sums: three of them. */
+/* A quotient and a product are each off by half a unit, and so are three sums. */
 static void logarithms_are_those_of_the_library(void **state) {
     (void)state;
     for (double x = 1e-12; x < 1e12; x *= 1.00137)
@@ -23,7 +23,7 @@ static void logarithms_are_those_of_the_library(void **state) {
     assert_near(ss_log(DBL_MAX), log(DBL_MAX), 1e-12);
 }
 
-/* Also where one of them is not a normal number, and on processors of either kind. */
+/* Also if one of them is not a normal number, and on processors with and without AVX2. */
 static void several_are_each_to_the_bit(void **state) {
     (void)state;
     enum { COUNT = 1000 };
@@ -42,7 +42,7 @@ static void several_are_each_to_the_bit(void **state) {
     }
 }
 
-/* As they come, of whatever count and with what is not normal among them. */
+/* For any count, and with numbers among them that are not normal. */
 static void squares_are_summed_in_their_order(void **state) {
     (void)state;
     enum { COUNT = 100 };

@@ -79,7 +79,7 @@ static void arrays_of_any_version(void **state) {
                  "struct: number 1 has size 24, the first has 32");
 }
 
-/* Nothing is written beyond the room that there is; and what a newer one would know is nothing. */
+/* Nothing is written beyond the caller's struct, and members that only a newer caller has become 0. */
 static void answers_fit_every_version(void **state) {
     (void)state;
     const ours own[2] = {{sizeof *own, 10, 20, 30}, {sizeof *own, 11, 21, 31}};

@@ -55,8 +55,8 @@ static test_mesh scattered_triangles(void) {
     return copy_mesh(18, 6, counts, indices, points);
 }
 
-/* Two faces back to back, which close each other: flat, so that all of it could slide away as one; concave, or their fans had no
- * normals left. */
+/* Two faces back to back, which close each other: flat, so that all of the skin could slide away at once. They are concave,
+ * since the fans of convex ones would have no normals left. */
 static test_mesh flat_bag(void) {
     const int32_t counts[2] = {4, 4}, indices[8] = {0, 1, 2, 3, 1, 0, 3, 2};
     const float points[12] = {2, 0, 0, -1, 1.7f, 0, -0.5f, 0.9f, 0, -0.5f, -0.9f, 0};
@@ -115,7 +115,7 @@ static void rest_keeps_its_bits(void **state) {
 
 /* ---- Closed bodies ---- */
 
-/* Skin comes from all around: much of what the bump stretched is gone, and nothing turns over. */
+/* Skin comes from all around: much of the bump's stretch is gone, and no face turns over. */
 static void expect_evened(const test_mesh *mesh, double most_left) {
     rig r = rig_of(mesh, even());
     float *points = swollen(mesh, 0.8);
@@ -158,7 +158,7 @@ static void there_is_no_plane(void **state) {
 
 /* ---- Motions that are no stretch ---- */
 
-/* Turned about an axis askew, moved, and scaled. */
+/* Turns points about a skew axis, moves them, and scales them. */
 static float *moved(const test_mesh *mesh, const float *points, double scale, double away) {
     float *out = copy_points(mesh);
     for (int32_t v = 0; v < mesh->vertex_count; v++) {
@@ -170,8 +170,8 @@ static float *moved(const test_mesh *mesh, const float *points, double scale, do
     return out;
 }
 
-/* A pose that is moved and turned gives the slide moved and turned; rest that is scaled, too, slides nowhere: to the rounding of
- * points to float. */
+/* A pose that is moved and turned gives the slide moved and turned. Rest that is also scaled does not slide. Both up to the
+ * rounding of points to float. */
 static void rigid_motions_and_scale_commute(void **state) {
     (void)state;
     test_mesh mesh = sphere(8);
@@ -187,7 +187,7 @@ static void rigid_motions_and_scale_commute(void **state) {
     free_mesh(&mesh);
 }
 
-/* A pose that is scaled gives the slide scaled, though its edges are then longer than at rest, or shorter, one and all. */
+/* A pose that is scaled gives the slide scaled, although all its edges are then longer, or shorter, than at rest. */
 static void scaled_poses_slide_alike(void **state) {
     (void)state;
     static const double scales[4] = {0.6, 0.8, 1.3, 1.7};
@@ -242,7 +242,7 @@ static void pieces_slide_as_each_alone(void **state) {
     free_mesh(&ball), free_mesh(&sheet), free_mesh(&both);
 }
 
-/* Painted frames in between leave another matrix, that must be made anew. */
+/* Painted frames in between leave another matrix, so that it must be made anew. */
 static void frames_come_in_any_order(void **state) {
     (void)state;
     test_mesh mesh = grid_with_holes(true);
@@ -304,7 +304,7 @@ static double slide_of(const float *slid, const float *points, int32_t vertex) {
     return sqrt(square);
 }
 
-/* Over the vertices that are chosen, NULL for all. */
+/* The mean over the chosen vertices, or over all if chosen is NULL. */
 static double mean_slide(const rig *r, const test_mesh *mesh, const float *points, const skinslide_controls *controls,
                          const uint8_t *chosen) {
     float *slid = slide_with(r, mesh, points, controls, NULL);
@@ -356,7 +356,7 @@ static float *slid_by_weights(const rig *r, const test_mesh *mesh, const float *
     return slid;
 }
 
-/* Where paint comes to 0 or 1 in the course of a shot, nothing jumps. */
+/* As paint comes to 0 or to 1 in the course of a shot, no vertex jumps. */
 static void weights_go_smoothly_to_none_and_all(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(12, 12);
@@ -416,7 +416,7 @@ static void holds_and_responses(void **state) {
     free_mesh(&mesh);
 }
 
-/* The root mean square of what is longer, or shorter, than at rest. */
+/* The RMS of the stretch of edges that are longer than at rest, or of those that are shorter. */
 static double one_sided_stretch(const test_mesh *mesh, const float *points, bool longer) {
     double sum = 0;
     for (int32_t c = 0; c < mesh->index_count; c++) {
@@ -558,7 +558,8 @@ static void degenerate_rest_stays_finite(void **state) {
         }
 }
 
-/* Rest that is crumpled has no way for skin to go on which nothing turns over: what does is counted, and what is so at rest is not. */
+/* On crumpled rest, skin cannot go anywhere without turning faces over: these are counted, except those that are turned over at
+ * rest. */
 static void folds_on_crumpled_rest_are_counted(void **state) {
     (void)state;
     int32_t folded = 0;
@@ -599,7 +600,7 @@ static void wild_poses_stay_finite(void **state) {
     free_mesh(&mesh);
 }
 
-/* All that can be painted, each value up to e^power of 1 or none at all. */
+/* All that can be painted, each value within a factor of e^power of 1, or NULL. */
 typedef struct wild_paint {
     skinslide_controls controls;
     float *density, *hold, *weight, *distance;
@@ -624,7 +625,8 @@ static void free_wild_paint(wild_paint *w) {
     free(w->density), free(w->hold), free(w->weight), free(w->distance);
 }
 
-/* Rest keeps its bits, any pose, near or far, is finite, and what is painted in a frame is what is painted in the set-up. */
+/* Rest keeps its bits, every pose, near or far, gives finite points, and paint of a frame acts as the same paint of the
+ * set-up. */
 static void expect_wild_paint(const test_mesh *mesh, skinslide_patch_setup choices, uint64_t seed, double power) {
     wild_paint paint = paint_wildly(mesh, seed, power);
     rig r = rig_of(mesh, choices);
@@ -664,7 +666,7 @@ static void wild_paint_stays_finite(void **state) {
     }
 }
 
-/* Every patch that has nothing to slide, or next to nothing. */
+/* Patches on which nothing can slide, or next to nothing. */
 static void nothing_free_is_nothing_slid(void **state) {
     (void)state;
     test_mesh triangles = scattered_triangles(), strip = quad_grid(5, 1), *meshes[2] = {&triangles, &strip};
@@ -730,7 +732,7 @@ static void split_vertices_stay(void **state) {
 
 /* ---- Loops and limits ---- */
 
-/* Points of a loop are on the loop of the pose. Returns how many have moved. */
+/* Asserts that slid points of a loop are on the loop of the pose. Returns how many have moved. */
 static int32_t expect_on_loop(const ss_patch *patch, int32_t loop, const float *points, const float *slid) {
     int32_t begin = patch->loop_start[loop], end = patch->loop_start[loop + 1], moved_count = 0;
     for (int32_t i = begin; i < end; i++) {
@@ -768,7 +770,7 @@ static void free_loops_slide_along_themselves(void **state) {
     free_mesh(&mesh);
 }
 
-/* With no vertex held anywhere: what is no stretch slides nowhere, and rest keeps its bits. */
+/* Even if no vertex is held anywhere, a motion without stretch slides nothing, and rest keeps its bits. */
 static void expect_no_drift(const test_mesh *mesh) {
     skinslide_patch_setup choices = even();
     choices.holes = SKINSLIDE_HOLES_FREE_ALL;

@@ -34,7 +34,7 @@ static double sorted_scale(ss_weighted *values, int32_t count) {
     return middle;
 }
 
-/* Values that repeat, rise, fall and lie about, of densities alike and not. */
+/* Values that repeat, rise, fall or are in no order, with the same density or with others. */
 static double roll_value(dice *d, int kind, int32_t i) {
     double roll = roll_between(d, -1, 1);
     return kind == 0 ? roll : kind == 1 ? 0.01 * i : kind == 2 ? -0.01 * i : kind == 3 ? floor(3 * roll) : 0.3;
@@ -54,7 +54,7 @@ static void selection_finds_what_sorting_does(void **state) {
     assert_true(ss_find_scale(NULL, 0) == 0);
 }
 
-/* Less than half of a patch may stretch as it likes: the scale stays about that of the others. */
+/* If less than half of a patch stretches, however much, the scale stays about that of the rest. */
 static void few_have_no_say(void **state) {
     (void)state;
     for (double stretch = 0.5; stretch < 1e3; stretch *= 10) {

@@ -253,7 +253,7 @@ static void surfaces_meet_along_sides(void **state) {
     each_mesh(check_sides);
 }
 
-/* Corners go to corners and middles to middles, exactly as parameters of the face name them. */
+/* Corners go to corners, and middles to middles, exactly at the parameters that the face has there. */
 static void check_corners(const test_mesh *mesh, skinslide_scheme scheme, int32_t i) {
     skinslide_subdivision own = {.size = sizeof(skinslide_subdivision), .scheme = scheme};
     if (i == 1 || i == 2 || i == 5)

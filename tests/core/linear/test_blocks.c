@@ -110,7 +110,8 @@ static void fill_springs(ss_blocks *blocks, const ss_patch *patch, dice *d, doub
         }
 }
 
-/* However far apart and however slack, all is solved, to rounding of what there is: in units of the square roots of the diagonal. */
+/* However far apart stiffnesses are, and however little holds, residuals are rounding, in units of the square roots of the
+ * diagonal. */
 static void what_hardly_holds_is_solved(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 30; seed++) {

@@ -67,7 +67,7 @@ static built_net star(int32_t count) {
     return b;
 }
 
-/* Pairs, of which one is fixed each: nothing free is joined. */
+/* Pairs of vertices, one of each fixed: no two free vertices are joined. */
 static built_net pairs(int32_t count) {
     built_net b = new_net(2 * count, count);
     for (int32_t i = 0; i < count; i++)
@@ -221,7 +221,8 @@ static long double *solve_whole(const ss_factor *factor, const built_net *b) {
 
 static const double ranges[4] = {0, 5, 12, 20};
 
-/* To 1e-12 of each number, however the densities differ, carried along and solved for after. */
+/* Each number is right to 1e-12 of itself, however much densities differ, for right sides that are carried along and for those
+ * solved afterwards. */
 static void every_number_is_right(void **state) {
     (void)state;
     for (int i = 4; i < 6; i++)

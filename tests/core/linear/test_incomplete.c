@@ -77,7 +77,7 @@ static void what_fills_nothing_is_solved(void **state) {
     }
 }
 
-/* A random matrix fills much. */
+/* The factor of a random matrix would have many more entries, which are dropped. */
 static void what_fills_is_nearly_solved(void **state) {
     (void)state;
     for (uint64_t seed = 1; seed < 20; seed++) {

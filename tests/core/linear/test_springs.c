@@ -54,7 +54,7 @@ static double solve_random(const ss_net *net, double stiffness, double least) {
     return residual;
 }
 
-/* To some roundings of floats for each of the springs and of the entries that a solution is summed from. */
+/* The residual is some roundings of floats for each spring, and for each entry that a solution is summed from. */
 static void forces_are_balanced(void **state) {
     (void)state;
     for (int32_t side = 2; side < 80; side += 11)

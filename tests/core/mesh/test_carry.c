@@ -81,7 +81,7 @@ static void the_least_rotation(void **state) {
     free_mesh(&mesh);
 }
 
-/* There is no least rotation to the opposite, and none from nothing. */
+/* There is no least rotation to the opposite direction, and none from a zero vector. */
 static void without_a_rotation(void **state) {
     (void)state;
     const double up[3] = {0, 0, 1}, down[3] = {0, 0, -1}, nothing[3] = {0, 0, 0};
@@ -117,7 +117,7 @@ static void layouts_by_hand(void **state) {
     free_mesh(&mesh);
 }
 
-/* In doubles the same, to the rounding of floats. */
+/* Doubles are carried as floats are, to the rounding of floats. */
 static void doubles_as_floats(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(3, 3);

@@ -7,7 +7,7 @@
 
 enum { MOST = 200 };
 
-/* What is left, by trying every pair of corners of each face again and again. */
+/* Finds what is left of the way at each vertex by trying every pair of corners of each face again and again. */
 static void relax(const test_mesh *mesh, double *left) {
     for (bool changed = true; changed;) {
         changed = false;
@@ -65,7 +65,7 @@ static void faces_join_as_a_whole(void **state) {
     free_mesh(&grid);
 }
 
-/* The same of two sheets, of which one begins where the other ends, with points of its own. */
+/* The same on two sheets, one of which begins where the other ends, with points of its own. */
 static void over_seams(void **state) {
     (void)state;
     test_mesh whole = quad_grid(4, 2), half = quad_grid(2, 2), other = quad_grid(2, 2);

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-/* Of as many edges as leave none, one, two and three beside fours; the first of each row too short. */
+/* For counts of edges that leave none, one, two or three beside groups of four; the first edge of each row is too short. */
 static void lengths_at_once_are_each_to_the_bit(void **state) {
     (void)state;
     int seen[4] = {0};

@@ -95,7 +95,7 @@ static void bad_faces_are_named(void **state) {
                   "patch p: faces 0 and 1 are wound against each other at edge 0-1");
 }
 
-/* Once alone, once with a neighbour at each side, once the other way round. */
+/* The face alone, with a neighbour at each side, and the second time wound the other way round. */
 static void a_face_twice_is_named(void **state) {
     (void)state;
     const char *text = "patch p: faces 0 and 1 have the same vertices";

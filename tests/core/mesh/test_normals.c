@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of all vertices, to be freed; around those that are chosen, NULL: all. */
+/* The normals of all vertices, from the faces around the chosen ones, or all faces if chosen is NULL. To be freed. */
 static double (*normals_of(const test_mesh *mesh, const float *points, const uint8_t *chosen))[3] {
     uint8_t *all = malloc((size_t)mesh->vertex_count);
     memset(all, 1, (size_t)mesh->vertex_count);

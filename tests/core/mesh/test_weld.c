@@ -54,7 +54,7 @@ static void free_split(split_mesh *split) {
     free(split->whole);
 }
 
-/* Points of the whole as those of the split: to be freed. */
+/* Points of the whole mesh as points of the split one. To be freed. */
 static float *split_points(const split_mesh *split, const float *points) {
     float *own = calloc(3 * (size_t)split->mesh.vertex_count, sizeof *own);
     for (int32_t v = 0; v < split->mesh.vertex_count; v++)
@@ -142,7 +142,8 @@ static void a_mesh_split_at_every_corner_is_its_twin(void **state) {
     }
 }
 
-/* Two sides of a seam that crosses the sheet, and one that ends within it: below, of one edge at which only one vertex is split. */
+/* A seam that crosses the sheet, and one that ends inside it; the test below has a seam of one edge, of which only one end is
+ * split. */
 static void a_mesh_split_along_a_seam_is_its_twin(void **state) {
     (void)state;
     for (int32_t length = 2; length <= 8; length += 3) {
@@ -426,7 +427,8 @@ static void points_of_other_meshes_are_counted(void **state) {
     free_mesh(&sheet), free_mesh(&beside);
 }
 
-/* A pose tells nothing of points that share no place, and is not looked at where one that does is not finite. */
+/* A pose says nothing about points that share their place with no other, and may not be finite there; where one that shares its
+ * place is not finite, the pose is refused. */
 static void faults_are_named_where_they_are_looked_at(void **state) {
     (void)state;
     test_mesh grid = quad_grid(3, 4);

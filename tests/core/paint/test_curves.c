@@ -64,7 +64,7 @@ static void a_line_by_hand(void **state) {
     assert_int_equal(count_near(&line, 100, SKINSLIDE_DIRECTION_ANY), EDGES);
 }
 
-/* That within which just one is found; none, where no edge runs that way. */
+/* The distance of the nearest edge; infinite if no edge runs that way. */
 static void the_nearest_tells_its_distance(void **state) {
     (void)state;
     const float points[6] = {-1, 1.625F, 0.25F, 9, 1.625F, 0.25F};
@@ -84,7 +84,7 @@ static void the_nearest_tells_its_distance(void **state) {
     }
 }
 
-/* Just the distance counts, and a diagonal is along both. */
+/* Edges at exactly the distance count, and those at exactly 45 degrees to a curve run along it. */
 static void borders_count(void **state) {
     (void)state;
     const float points[6] = {0, 0, 0, 4, 4, 0};

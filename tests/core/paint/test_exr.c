@@ -15,7 +15,7 @@ static skinslide_error error;
 
 enum { BEFORE = 7 }; /* bytes of something else, in front of a file that lies in another */
 
-/* The file, in one that lies open, and goes on in zeros to its size. */
+/* Reads the file from one that is open, in which it is followed by zeros up to a size. */
 static skinslide_status read_open(exr_file file, int64_t size, const char *channel, skinslide_image **image,
                                   skinslide_error *said) {
     FILE *open = tmpfile();
@@ -262,7 +262,7 @@ static void kinds_that_are_no_map(void **state) {
     assert_refused(plain, "a\nb", SKINSLIDE_BAD_IMAGE, "there is no channel a\\nb; the file has A, B, G, R");
 }
 
-/* Where an attribute's value begins: after its name, type and size. */
+/* Returns where an attribute's value begins: after its name, type and size. */
 static uint8_t *attribute(exr_file file, const char *name, const char *type) {
     size_t name_size = strlen(name) + 1, type_size = strlen(type) + 1;
     for (uint8_t *at = file.bytes; at < file.bytes + file.size - name_size - type_size; at++)
@@ -299,7 +299,7 @@ static void windows_that_cannot_be(void **state) {
                           "truncated or corrupt: row 0 of 37 cannot be decoded...");
 }
 
-/* 4 GB without a block on the disk, of which the header alone is read. */
+/* A file of 4 GB without a block on the disk, of which only the header is read. */
 static void assert_large_refused(const int32_t box[4], skinslide_status expected, const char *text) {
     exr_part part = plain;
     exr_file file = write_exr(&part, 1);
@@ -324,7 +324,7 @@ static void large_files_of_nothing(void **state) {
                 512 << 10); /* kilobytes; AddressSanitizer notes an eighth of what is freed */
 }
 
-/* An attribute that says it is longer than the most of a header. */
+/* An attribute that claims to be longer than a header may be. */
 static void a_header_that_does_not_end(void **state) {
     (void)state;
     exr_part part = plain;

@@ -35,7 +35,7 @@ static exr_file file_of_kind(int kind) {
     return write_exr(parts, kind / 5 == 2 ? 2 : 1);
 }
 
-/* Bytes, or numbers of two or four, changed; runs copied; the end cut off. */
+/* Changes bytes, or numbers of two or four bytes, copies runs, and cuts the end off. */
 static void damage(exr_file *file, dice *d) {
     static const int32_t odd[] = {0, 1, -1, 2, 255, 65535, 16384, INT32_MAX, INT32_MIN, 0x7f800000};
     int32_t size = (int32_t)file->size, at = roll_below(d, roll_below(d, 2) ? size : size < 500 ? size : 500);

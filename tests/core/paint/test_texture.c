@@ -11,7 +11,7 @@ static skinslide_error error;
 /* Two texels by two: 1 2 on top, 3 4 below. Texel centres lie at s, t of 0.25 and 0.75, and t grows upwards. */
 static const float four[4] = {1, 2, 3, 4};
 
-/* Good until the next. */
+/* The layout is valid until the next call. */
 static const skinslide_texture_layout *layout_of(const skinslide_mesh *mesh, const int32_t *faces, int32_t face_count,
                                                  const float *st) {
     static skinslide_texture_layout layout;
@@ -205,7 +205,7 @@ static void coordinates_that_cannot_be(void **state) {
     free_mesh(&grid);
 }
 
-/* What is not a number stops only where it is used. */
+/* A texel that is not a number is an error only if it is used. */
 static void texels_that_are_no_numbers(void **state) {
     (void)state;
     const float pixels[4] = {1, NAN, 3, INFINITY};

@@ -168,7 +168,7 @@ static double doubled_area(const double a[2], const double b[2], const double c[
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* What the last triangle that holds the centre says. */
+/* The value of the last triangle that holds the texel's centre. */
 static answer search(const scene *s, int32_t side, int32_t x, int32_t y) {
     answer found = {0, false};
     const double p[2] = {x + 0.5, y + 0.5};
@@ -459,7 +459,7 @@ static void faces_without_a_texel_are_counted(void **state) {
     }
 }
 
-/* What the place for the texels held leaves no trace. */
+/* What the memory for the texels held before leaves no trace. */
 static void a_map_is_drawn_over_another(void **state) {
     (void)state;
     scene large, small;

@@ -16,7 +16,7 @@ typedef struct scene {
     skinslide_strain out;
 } scene;
 
-/* Of a mesh in a pose of its own, its st turned by an angle against x and y. */
+/* A scene of a mesh with a pose of its own, whose st is turned by an angle against x and y. */
 static scene scene_of(test_mesh mesh, double angle) {
     scene s = {.mesh = mesh, .faces = all_faces(&mesh), .pose = copy_points(&mesh)};
     size_t size = (size_t)mesh.vertex_count * sizeof(float);

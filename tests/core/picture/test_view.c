@@ -126,7 +126,7 @@ static void every_point_is_in_sight(void **state) {
         }
 }
 
-/* Of part of a mesh, whatever the order of its faces. */
+/* A camera for a part of a mesh, in whatever order its faces are given. */
 static void only_the_faces_count(void **state) {
     (void)state;
     framed f;

@@ -31,7 +31,7 @@ static void free_net(net *n) {
     free_mesh(&n->mesh);
 }
 
-/* Of a slab, where no side is in doubt. */
+/* The centre of a slab, where it is clear on which side of each line a point is. */
 static void centre_of(const ss_paving *paving, int32_t slab, double out[2]) {
     for (int axis = 0; axis < 2; axis++) {
         out[axis] = 0;
@@ -40,7 +40,7 @@ static void centre_of(const ss_paving *paving, int32_t slab, double out[2]) {
     }
 }
 
-/* Both ways of processors. Returns how many slabs were entered. */
+/* Hops as processors with and without AVX2 do. Returns how many slabs were entered. */
 static int64_t approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE]) {
     int32_t plain[SS_AT_ONCE];
     memcpy(plain, slab, sizeof plain);
@@ -50,7 +50,7 @@ static int64_t approach(const ss_paving *paving, const double (*p)[2], int32_t s
     return entered;
 }
 
-/* Those to a slab within as many steps of a walk come there, the others as far as hops go. */
+/* Hops arrive if the slab is within as many steps of a walk; the others go as far as hops can. */
 static void hops_are_steps_of_walks(void **state) {
     (void)state;
     dice d = {6};

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* None; any faces; for half of them a face that holds the query, so often not the lowest of those that touch it. */
+/* Proposes nothing, any faces, or for half of the queries a face that holds them, which is often not the lowest that does. */
 static void propose(const ss_patch *patch, const double (*uv)[2], const double query[2], dice *d, ss_candidates out) {
     const ss_faces *faces = &patch->faces;
     for (int k = 0; k < SS_CANDIDATES; k++)

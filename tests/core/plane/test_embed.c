@@ -164,7 +164,7 @@ static void nothing_free_is_nothing_to_solve(void **state) {
     free_mesh(&mesh);
 }
 
-/* Densities that a double cannot divide by. */
+/* Densities by which a double cannot be divided. */
 static void what_cannot_be_solved_is_refused(void **state) {
     (void)state;
     const int32_t edges[3][2] = {{0, 1}, {1, 2}, {2, 3}};

@@ -77,7 +77,7 @@ static int32_t count_turned(const test_mesh *mesh, const double (*uv)[2]) {
     return turned;
 }
 
-/* Wherever they are, among triangles of an odd number or an even one. */
+/* Folds are counted wherever they are, among an odd or an even number of triangles. */
 static void each_fold_is_counted(void **state) {
     (void)state;
     dice d = {8};

@@ -55,7 +55,7 @@ static void every_slab_is_a_triangle_of_the_patch(void **state) {
     }
 }
 
-/* How far apart in memory neighbours are, in the mean. */
+/* How far apart in memory neighbours are, on average. */
 static double mean_way(const ss_paving *paving) {
     double sum = 0;
     for (int32_t s = 0; s < paving->patch->triangles.count; s++)

@@ -105,7 +105,8 @@ static void a_slide_by_hand(void **state) {
     free_mesh(&mesh);
 }
 
-/* Less than by the paper's rule, and than where it sets out from, on a bump; on the surface to the rounding of points to float. */
+/* On a bump, less stretch is left than by the paper's rule, and than where relaxed starts; skin stays on the surface, up to the
+ * rounding of points to float. */
 static void stretch_is_less_than_by_other_rules(void **state) {
     (void)state;
     for (int triangles = 0; triangles < 2; triangles++) {
@@ -202,8 +203,8 @@ static void no_stretch_is_added_on_crumpled_rest(void **state) {
     assert_true(evened > 30);
 }
 
-/* In none of these poses, which are a sample, unpainted. Disks at random are left out, whose points have no shape: rest is
- * crumpled there, and what it turns over is counted. */
+/* Unpainted, no face turns over in these poses, which are a sample. Random disks are left out: their points have no shape, so
+ * rest is crumpled, and faces that turn over are counted. */
 static void nothing_turns_over(void **state) {
     (void)state;
     for (int32_t i = 0; i < FIXTURE_COUNT; i++)
@@ -261,7 +262,7 @@ static float *flexed(const test_mesh *mesh, double angle) {
     return points;
 }
 
-/* Of the motion between two angles in so many steps. */
+/* The roughest second difference of a slide between two angles, in so many steps. */
 static double roughest_slide(const rig *r, const test_mesh *mesh, double from, double to, int steps) {
     float *slid[3] = {0};
     double roughest = 0;
@@ -296,8 +297,8 @@ static void no_slide_jumps(void **state) {
 
 /* ---- How far ---- */
 
-/* By every rule: none goes farther, one that did not want to keeps its bits, and none at all where the limit is zero. The chord
- * is no longer than the way, and 1e-6 is rounding. */
+/* Under every rule no vertex goes farther than its limit, one that would not have keeps its bits, and one whose limit is zero
+ * stays. The chord is no longer than the way; 1e-6 is for rounding. */
 static void largest_distances_are_kept(void **state) {
     (void)state;
     test_mesh mesh = grid_with_holes(false);

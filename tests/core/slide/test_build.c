@@ -54,7 +54,7 @@ static skinslide_build *begin(const scene *s) {
     return build;
 }
 
-/* Of a frame of a slider, which goes. */
+/* Slides a frame by a slider, which is destroyed. */
 static float *slid_by(const scene *s, skinslide_slider *slider) {
     rig r = {.slider = slider};
     assert_ok(skinslide_workspace_create(slider, NULL, &r.workspace, &error), &error);
@@ -85,7 +85,7 @@ static void expect_same(const scene *s, skinslide_build *build, const float *exp
     free(slid);
 }
 
-/* All from the last on; each second; one again and again; none; and such as are not there. */
+/* Set-ups are built from the last to the first, every second one, one several times, none, and numbers that do not exist. */
 static void in_any_order(void **state) {
     (void)state;
     static const int32_t orders[][SETUPS] = {{7, 6, 5, 4, 3, 2, 1, 0},
@@ -149,7 +149,7 @@ static void expect_fault(const scene *s, skinslide_status expected, const char *
     skinslide_build_destroy(build);
 }
 
-/* Also where the fault is the mesh's, which set-ups of other interpolations do not see. */
+/* Also if the error is in the mesh, which set-ups of other interpolations do not notice. */
 static void the_first_fault_is_said(void **state) {
     (void)state;
     scene s;

@@ -133,7 +133,7 @@ typedef struct expected {
     double stretch, density;
 } expected;
 
-/* Of one vertex, looking at every other: quadratic, and plain. Set-ups are of one piece. */
+/* What is expected at one vertex, found by looking at every other: quadratic, and plain. Set-ups are in one piece. */
 static expected expect(const test_mesh *mesh, const skinslide_patch_setup *setups, int32_t count, const uint8_t *chosen,
                        const float *points, int32_t v) {
     double squares = 0, edges = 0, densities = 0, patches = 0;

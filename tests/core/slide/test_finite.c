@@ -259,7 +259,7 @@ static void faults_off_the_patch_pass(void **state) {
     free_mesh(&mesh);
 }
 
-/* One in a face at the patch, of whose normals it would have a say. */
+/* A point of a face next to the patch fails, since normals of the patch depend on it. */
 static void faults_at_the_patch_fail(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(SIDE, SIDE);

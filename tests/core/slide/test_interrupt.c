@@ -54,7 +54,7 @@ static void one_frame_fails_and_the_next_does_not(void **state) {
     skinslide_workspace_interrupt(NULL);
 }
 
-/* Those that take longest, asked while they are at it: no step is taken, nothing is fitted. */
+/* The stages that take longest are stopped while they run: no step is taken, and nothing is fitted. */
 static void stages_are_left(void **state) {
     (void)state;
     const int stop = 1;

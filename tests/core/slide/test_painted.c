@@ -62,7 +62,7 @@ static void weights_are_clamped_and_counted(void **state) {
     free_mesh(&mesh);
 }
 
-/* The same two triangles, split along the diagonal: of copies of 0 and 2 each is painted on its own. */
+/* The same two triangles, split along the diagonal, with other paint on each copy of 0 and of 2. */
 static void copies_count_as_their_mean(void **state) {
     (void)state;
     const float points[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0};

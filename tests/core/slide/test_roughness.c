@@ -93,7 +93,7 @@ static void rounding_does_not_count(void **state) {
     close_shot(&s);
 }
 
-/* Times at the ends of what numbers say, and points at those of float. */
+/* Times at the ends of the range of doubles, and points at those of float. */
 static void far_and_near(void **state) {
     (void)state;
     shot s = open_shot();

@@ -38,7 +38,7 @@ static void what_can_be_undone_is(void **state) {
     free_mesh(&mesh);
 }
 
-/* No more than in the cache and slid, and the same again. */
+/* The least stretch is no more than that of the cache and that of the slide, and the same the second time. */
 static void no_rule_is_better(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(8, 8);

@@ -76,8 +76,8 @@ static void rest_slides_nothing_in_overlaps(void **state) {
 
 /* ---- What stays ---- */
 
-/* Vertices of a part of a mesh, which is held by its boundary and by pinned holes: everything else keeps its bits, also the
- * bits of zeros below zero. */
+/* The patch is a part of a mesh, held at its boundary and at pinned holes: every vertex that is not free keeps its bits, those
+ * of negative zeros too. */
 static void what_is_not_free_keeps_its_bits(void **state) {
     (void)state;
     test_mesh mesh = grid_with_holes(false);
@@ -384,7 +384,7 @@ static void points_may_be_slid_in_place(void **state) {
     free_mesh(&mesh);
 }
 
-/* In frames that follow each other, either way. */
+/* Frames with and without measures, in either order. */
 static void measuring_changes_no_point(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(8, 8);

@@ -34,7 +34,7 @@ static float *brought(const float *points, int32_t count, const double m[9]) {
 
 static const skinslide_rule rules[] = {SKINSLIDE_RULE_FAST, SKINSLIDE_RULE_RELAXED, SKINSLIDE_RULE_EVEN};
 
-/* Of every rule, with points, figures, diagnostics and the least stretch. */
+/* For every rule: points, results, diagnostics and the least stretch. */
 static void a_slide_is_that_of_the_mesh_brought_there(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(8, 8), there = quad_grid(8, 8);
@@ -69,7 +69,7 @@ static void a_slide_is_that_of_the_mesh_brought_there(void **state) {
     free_mesh(&mesh), free_mesh(&there);
 }
 
-/* To the bit, in any space; and no bit changes in the mesh's own. */
+/* Rest keeps its bits in any space, and the mesh's own space changes no bit. */
 static void rest_stays_and_the_own_space_is_none(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(8, 8);

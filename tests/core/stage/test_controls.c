@@ -220,7 +220,7 @@ static void bad_edge_densities_are_named(void **state) {
     end_scene(&s);
 }
 
-/* A frame that fails does not spoil the next. */
+/* A frame that fails leaves the next one as it would be. */
 static void what_was_refused_may_be_given_again(void **state) {
     (void)state;
     patch_scene s = set_up(NULL);

@@ -191,7 +191,7 @@ static void later_samples_that_cannot_be_carried(void **state) {
     }
 }
 
-/* What is not finite passes, and is told of. */
+/* Values that are not finite pass, with a warning. */
 static void faults_are_counted(void **state) {
     (void)state;
     float faulty[3 * VERTICES] = {[1] = NAN};
@@ -224,7 +224,7 @@ static const skinslide_stage_output *only_output(const scene *s) {
     return skinslide_stage_derived_output(s->derived, 0);
 }
 
-/* As skinslide_carry makes them. */
+/* Normals are carried as skinslide_carry does it. */
 static void normals_are_carried(void **state) {
     (void)state;
     scene s = set_up();
@@ -278,7 +278,7 @@ static void expect_warning(const scene *s, int32_t number, const char *text) {
         assert_null(said);
 }
 
-/* Of one pose on points of several. */
+/* Vectors of one pose on points that have several. */
 static void static_vectors_are_warned_of(void **state) {
     (void)state;
     const char *said = "normals has one value for all frames, but points moves: it belongs to one pose alone";
@@ -331,7 +331,7 @@ static void offered_primvars_are_inputs(void **state) {
     tear_down(&s);
 }
 
-/* What follows, as which, and what is said of what seems to. */
+/* Which primvars follow, as what, and the warnings about those that only seem to. */
 static void which_primvars_follow(void **state) {
     (void)state;
     static const char *const names[] = {"normal",     "N",         "tangents",  "tangent",  "tangentU",    "TANGENTV",
@@ -476,7 +476,7 @@ static void rates_are_recomputed(void **state) {
     tear_down(&s);
 }
 
-/* Of samples far apart: from frame to frame, of which there are enough where samples alone are too few. */
+/* If samples are far apart, rates are found from frame to frame, even where there are too few samples. */
 static void rates_from_frame_to_frame(void **state) {
     (void)state;
     const double far[] = {1, 4};

@@ -131,7 +131,7 @@ static void bad_primvars_are_named(void **state) {
     tear_down(&s);
 }
 
-/* Other values may choose the same faces, as those that some tool resampled. */
+/* Other values may choose the same faces, as after a tool has resampled them. */
 static void faces_must_stay_the_same(void **state) {
     (void)state;
     scene s = set_up();
@@ -193,7 +193,7 @@ static void a_primvar_wins_over_a_subset(void **state) {
     tear_down(&s);
 }
 
-/* What is wrong with a subset is said once, and then of each again. */
+/* An error of a subset is reported once: after that its inputs are not looked at, until a subset is taken again. */
 static void expect_subset(const scene *s, skinslide_value element, skinslide_value indices, const char *text) {
     const skinslide_stage_subset subset = subset_of();
     assert_ok(skinslide_stage_patch_take_subset(s->patch, &subset, &error), &error);

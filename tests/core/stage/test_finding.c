@@ -199,7 +199,7 @@ static void settings_that_are_none(void **state) {
 #define NO_PAINT "is not paint of an applied patch, and has no effect"
 #define CASE     "is paint in another case, and has no effect unless skinSlide:foldCase is on"
 
-/* Under names of tools that know no namespaces, or no case; what a bake tells of the skin is no paint. */
+/* Paint under names of tools without namespaces, or without case. Primvars that a bake writes are not paint. */
 static void paint_that_counts_for_nothing(void **state) {
     (void)state;
     skinslide_stage_prim prim = WITH("SkinSlideAPI:elbow_L", "SkinSlideAPI:left:knee");
@@ -251,7 +251,7 @@ static void every_input_is_a_setting(void **state) {
     }
 }
 
-/* Problems of any number and names of any length. */
+/* Any number of problems, and names of any length. */
 static void many_and_long_names(void **state) {
     (void)state;
     enum { MANY = 300, LONG = 2000 };
@@ -270,7 +270,7 @@ static void many_and_long_names(void **state) {
     skinslide_stage_finding_destroy(finding);
 }
 
-/* Of two letters: patches lie in patches, and properties in them, deeper than settings are. */
+/* Names of two letters, so that patches lie within patches, and properties deeper than settings do. */
 static void name_at_random(dice *d, char *name) {
     for (int32_t left = 1 + roll_below(d, 3); left > 0; left--)
         strcat(strcat(name, roll_below(d, 2) ? "a" : "b"), left > 1 ? ":" : "");
@@ -297,7 +297,7 @@ static bool is_stray(const char *property, const char *patch, char patches[SOME]
     return strcmp(more, "envelope") != 0;
 }
 
-/* As it is defined, patch by patch, of any names. */
+/* Compares with the definition, patch by patch, for random names. */
 static void strays_are_those_of_each_patch(void **state) {
     (void)state;
     dice d = {1};
@@ -337,7 +337,7 @@ static void strays_are_those_of_each_patch(void **state) {
     assert_in_range(all, 200, 100000);
 }
 
-/* So many that a comparison of each with each does not end. */
+/* So many patches that comparing each with each would not end. */
 static void patches_without_number(void **state) {
     (void)state;
     enum { MANY = 100000 };

@@ -100,7 +100,7 @@ static void halves_and_doubles(void **state) {
     end_scene(&s);
 }
 
-/* A double may be no float. */
+/* A double may be too large for a float. */
 static void doubles_beyond_floats(void **state) {
     (void)state;
     const double large[VERTICES] = {0, 1e300}, small = 1e-300;
@@ -158,7 +158,7 @@ static void corners_are_averaged(void **state) {
     end_scene(&s);
 }
 
-/* A point with a corner that was chosen is. */
+/* A point is chosen if one of its corners is. */
 static void faces_by_corner(void **state) {
     (void)state;
     patch_scene s = set_up("elbow", "none", false);
@@ -197,7 +197,7 @@ static void what_was_taken_is_said(void **state) {
     end_scene(&s);
 }
 
-/* So many that looking through all names for each does not end. */
+/* So many names that looking through all of them for each input would not end. */
 static void names_without_number(void **state) {
     (void)state;
     enum { MANY = 100000 };

@@ -166,7 +166,7 @@ static void another_order_is_refused(void **state) {
     }
 }
 
-/* Longer one way: half of the edges. */
+/* Half of the edges, those that run one way, are longer. */
 static void a_poor_likeness_is_told(void **state) {
     (void)state;
     scene s = set_up();
@@ -179,7 +179,7 @@ static void a_poor_likeness_is_told(void **state) {
     tear_down(&s);
 }
 
-/* Points that are not finite, or all in one place, tell nothing. */
+/* Nothing follows from points that are not finite, or all in one place. */
 static void what_has_no_length_tells_nothing(void **state) {
     (void)state;
     for (int nan = 0; nan < 2; nan++) {

@@ -57,7 +57,7 @@ static void each_candidate_counts(void **state) {
     }
 }
 
-/* Of three that a triangle has, and of a fourth. */
+/* The mesh has the three points of a triangle, and a fourth. */
 static void points_of_no_face_may_be_anything(void **state) {
     (void)state;
     static const float four[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5};

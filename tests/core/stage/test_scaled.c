@@ -85,7 +85,7 @@ static void what_is_not_even_is_warned_of(void **state) {
     tear_down(&s);
 }
 
-/* Of any vector, whatever else turns and moves the mesh. */
+/* For any vector, whatever else turns and moves the mesh. */
 static void lengths_are_those_in_the_world(void **state) {
     (void)state;
     scene s = set_up(true);

@@ -178,7 +178,7 @@ static void indices_must_stay_the_same(void **state) {
     end_scene(&s);
 }
 
-/* Of what is a choice or a word the first sample counts, whatever comes after it. */
+/* Of choices and words the first sample counts, whatever comes after it. */
 static void only_tokens_may_change(void **state) {
     (void)state;
     const skinslide_stage_input *input = NULL;

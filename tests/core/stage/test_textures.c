@@ -232,7 +232,7 @@ static void images_are_held_between_frames(void **state) {
     end_scene(&s);
 }
 
-/* Of one asset, with no need to take it again. */
+/* The asset is the same, and need not be taken again. */
 static void other_coordinates_ask_for_files_again(void **state) {
     (void)state;
     patch_scene s = set_up();
@@ -424,7 +424,7 @@ static void products_that_cannot_be(void **state) {
     end_scene(&s);
 }
 
-/* Of what could be, and of nothing else, in the order in which it is offered. */
+/* Primvars that could be coordinates are listed, and no others, in the order in which they are offered. */
 static void coordinates_that_there_are_are_listed(void **state) {
     (void)state;
     static const char *const offers[][3] = {{"primvars:map1", "texCoord2f[]", "faceVarying"},

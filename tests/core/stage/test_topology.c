@@ -109,7 +109,7 @@ static void bad_faces_are_named(void **state) {
            "faceVertexCounts is not an array of int");
     expect(mesh, "faceVertexCounts", nothing_of("faceVertexCounts"), SKINSLIDE_BAD_MESH, "faceVertexCounts has no value");
     expect(mesh, "faceVertexCounts", INTS("faceVertexCounts", 3, -4), SKINSLIDE_BAD_MESH, "face 1 has -4 vertices");
-    takes(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 9)); /* nothing to hold them against */
+    takes(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 9)); /* there is nothing to compare them with */
     takes(mesh, "faceVertexCounts", INTS("faceVertexCounts", 3, 3));
     expect(mesh, "faceVertexIndices", nothing_of("faceVertexIndices"), SKINSLIDE_BAD_MESH, "faceVertexIndices has no value");
     expect(mesh, "faceVertexIndices", INTS("faceVertexIndices", 0, 1, 2, 3), SKINSLIDE_BAD_MESH,
@@ -275,7 +275,7 @@ static void bad_subdivision_is_named(void **state) {
     free_mesh(&grid);
 }
 
-/* Of a mesh that renders as its faces the rest counts for nothing. */
+/* If a mesh renders as its faces, the other inputs of subdivision have no effect. */
 static void a_mesh_of_no_scheme_has_no_subdivision(void **state) {
     (void)state;
     test_mesh grid = quad_grid(2, 2);

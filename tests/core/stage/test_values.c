@@ -112,7 +112,7 @@ static void other_types_are_named(void **state) {
     assert_fails(skinslide_value_integers(&text, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of int");
 }
 
-/* What an older reader does not know of counts as its default, and a newer one's more is not read. */
+/* Members that an older reader does not know have their defaults, and those that only a newer one knows are not read. */
 static void records_of_other_versions(void **state) {
     (void)state;
     float out[2];

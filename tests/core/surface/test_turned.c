@@ -74,7 +74,7 @@ static void straight_from_a_place(void **state) {
     free_scene(&s);
 }
 
-/* No way at all leaves the vertex itself, exactly; a meter ends the walk where it says. */
+/* A way of no length ends at the vertex itself, exactly; a meter ends a walk at its limit. */
 static void nothing_and_a_meter(void **state) {
     (void)state;
     walk_scene s = scene_of(torus(9, 7));
@@ -90,7 +90,8 @@ static void nothing_and_a_meter(void **state) {
     free_scene(&s);
 }
 
-/* A meter that a walk comes to the end of says so exactly, whatever sums round to on the way: else nobody could tell. */
+/* If a walk comes to the end of its meter, walked is exactly the limit, whatever sums were rounded to: else callers could not
+ * tell. */
 static void a_meter_ends_at_its_limit(void **state) {
     (void)state;
     walk_scene s = scene_of(triangle_grid(3, 3));
