@@ -25,7 +25,7 @@ from skinslide.shot.options import PictureOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 SIZE, COLUMNS = (1020, 300), 3
-MOST_STRETCH = 0.4
+STRETCH_SCALE = 0.4
 
 
 def first_mesh(path: str) -> PatchedMesh:
@@ -58,9 +58,9 @@ def draw(path: str, painted: Sequence[str]) -> np.ndarray:
         time, shown = columns(mesh, patch)
         slider = mesh.build([patch])
         for view in ("chequer", "stretch"):
-            options = PictureOptions(views=view, follow=True, size=SIZE, most_stretch=MOST_STRETCH)
+            options = PictureOptions(views=view, follow=True, size=SIZE, stretch_scale=STRETCH_SCALE)
             series = Series.of(Skin.of(mesh, patch.faces, None), slider, 0, options, COLUMNS)
-            rows.append(series.draw(canvas, view, series.moment(time), shown, MOST_STRETCH))
+            rows.append(series.draw(canvas, view, series.moment(time), shown, STRETCH_SCALE))
     return np.concatenate(rows)[..., :3]
 
 

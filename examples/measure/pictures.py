@@ -20,7 +20,7 @@ from skinslide.shot.options import PictureOptions
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 
 COLUMN, HEIGHT = 480, 480
-MOST_STRETCH = 0.5
+STRETCH_SCALE = 0.5
 
 
 def columns(mesh: PatchedMesh, time: Usd.TimeCode, rules: Sequence[str]) -> list[Column]:
@@ -43,10 +43,10 @@ def draw(path: Path, rules: Sequence[str], views: Sequence[str], camera: str | N
     slider, size = mesh.slider(), (COLUMN * (1 + len(rules)), HEIGHT)
     times = [Usd.TimeCode(time) for time in mesh.sample_times()]
     worst = max(times, key=lambda time: slider.slide(mesh.points_at(time)).patches[0].stretch_before)
-    options = PictureOptions(views=views, camera=camera, follow=camera is None, size=size, most_stretch=MOST_STRETCH)
+    options = PictureOptions(views=views, camera=camera, follow=camera is None, size=size, stretch_scale=STRETCH_SCALE)
     series = Series.of(Skin.of(mesh, slider.faces(0), None), slider, 0, options, columns=1 + len(rules))
     canvas, shown = Canvas(*size), columns(mesh, worst, rules)
-    rows = [series.draw(canvas, view, series.moment(worst), shown, MOST_STRETCH) for view in views]
+    rows = [series.draw(canvas, view, series.moment(worst), shown, STRETCH_SCALE) for view in views]
     return np.concatenate(rows)[..., :3]
 
 

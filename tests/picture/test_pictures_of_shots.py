@@ -79,7 +79,7 @@ def test_cells_of_the_chequer_become_more_alike(tmp_path):
 def test_stretch_is_shown_by_colour(tmp_path):
     """The frame at rest has one colour in all of the patch, that of no stretch; a stretched one has many."""
     stage, _mesh = sheet()
-    draw(stage, tmp_path, views="stretch", most_stretch=0.2)
+    draw(stage, tmp_path, views="stretch", stretch_scale=0.2)
     middles = [
         half[20:-20, 60:-60] for frame in ("1001", "1003") for half in halves(picture(tmp_path, "stretch", frame))
     ]

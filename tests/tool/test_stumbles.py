@@ -33,6 +33,27 @@ def test_a_command_names_the_flag(words, says, shot, tmp_path, capfd):
     assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]
 
 
+@pytest.mark.parametrize(
+    ("words", "flag"),
+    [
+        (["preview", "--stretch-scale", "0"], "--stretch-scale"),
+        (["preview", "--most-stretch=0"], "--most-stretch"),
+        (["bake", "--html", "p.html", "--most-stretch", "0"], "--most-stretch"),
+        (["maps", "--map-size", "16385"], "--map-size"),
+        (["maps", "--size", "16385"], "--size"),
+        (["bake", "--html", "p.html", "--size", "64x32", "--maps", "m", "--map-size", "16385"], "--map-size"),
+    ],
+)
+def test_a_flag_has_the_name_that_was_typed(words, flag, shot, tmp_path, capfd):
+    """Flags of before are understood, and are not in the help."""
+    assert main([words[0], str(shot), "-o", str(tmp_path / "out.usda"), *words[1:]]) == 2
+    assert capfd.readouterr().err.startswith(f"error: {flag} is ")
+    assert main([words[0], "--help"]) == 0
+    said = capfd.readouterr().out
+    assert "--stretch-scale" in said or words[0] == "maps"
+    assert "--most-stretch" not in said and ("--size" in said) == (words[0] != "maps")
+
+
 @pytest.mark.parametrize("command", ["bake", "cache"])
 def test_an_empty_output_is_none(command, shot, capfd):
     assert main([command, str(shot), "-o", ""]) == 2

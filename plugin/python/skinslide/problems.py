@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from difflib import SequenceMatcher
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
     from pxr import Tf
@@ -83,26 +83,50 @@ class StageError(RuntimeError):
 class UsageError(ValueError):
     """What the caller asked for cannot be done, whatever the stage holds."""
 
-    _option: tuple[str, str] | None = None
+    _template: str = ""
+    _flags: Mapping[str, Sequence[str]] = {}
 
-    def name_option(self, name: str, flag: str) -> None:
-        """Says that it is of an option, by its keyword and its flag on a command line.
+    @classmethod
+    def of_options(cls, template: str, flags: Mapping[str, Sequence[str]]) -> Self:
+        """An error that names options.
+
+        Args:
+            template: What to say, with the keywords of options in braces.
+            flags: By keyword, the flags of an option on a command line, the usual one first.
+
+        Returns:
+            The error, of which the message has the keywords.
+        """
+        error = cls(template.format(**{name: name for name in flags}))
+        error._template, error._flags = template, flags
+        return error
+
+    def name_option(self, name: str, flags: Sequence[str]) -> None:
+        """Says that it is of an option, where its message begins with the keyword.
 
         Args:
             name: The keyword.
-            flag: The flag, such as --max-roughness.
-        """
-        self._option = name, flag
-
-    def on_command_line(self) -> str:
-        """The message as a command says it.
-
-        Returns:
-            The same, with the flag where it begins with the keyword.
+            flags: The flags of the option, such as --max-roughness, the usual one first.
         """
         message = str(self)
-        name, flag = self._option or ("", "")
-        return flag + message.removeprefix(name) if name and message.startswith((f"{name} ", f"{name}:")) else message
+        if message.startswith((f"{name} ", f"{name}:")):
+            rest = message.removeprefix(name).replace("{", "{{").replace("}", "}}")
+            self._template, self._flags = f"{{{name}}}{rest}", {name: flags}
+
+    def on_command_line(self, words: Sequence[str] = ()) -> str:
+        """The message as a command says it.
+
+        Args:
+            words: Those of the command.
+
+        Returns:
+            The same, with flags in place of keywords: those that are among the words.
+        """
+        if not self._template:
+            return str(self)
+        typed = {word.partition("=")[0] for word in words}
+        shown = {name: next((flag for flag in flags if flag in typed), flags[0]) for name, flags in self._flags.items()}
+        return self._template.format(**shown)
 
 
 class FrameSpecError(UsageError):

@@ -116,16 +116,18 @@ def _add_options(command: argparse._ActionsContainer, table: type[Options], *nam
     for each in fields(table):
         if names and each.name not in names:
             continue
-        _add_option(command, each, each.name, each.metadata["flag"])
+        _add_option(command, each, each.name, *each.metadata["flags"])
         if each.name == "lookup":
             _add_device(command)
 
 
-def _add_option(command: argparse._ActionsContainer, each: Field[Any], keyword: str, *flags: str) -> None:
+def _add_option(command: argparse._ActionsContainer, each: Field[Any], keyword: str, flag: str, *old: str) -> None:
     words, default = dict(each.metadata["words"]), each.default
     if keyword == "jobs":
         default = words["default"] = _processors()
-    command.add_argument(*flags, dest=keyword, **{**words, "help": described(each, default)})
+    command.add_argument(flag, dest=keyword, **{**words, "help": described(each, default)})
+    for other in old:
+        command.add_argument(other, dest=keyword, **{**words, "help": argparse.SUPPRESS})
 
 
 def _add_device(command: argparse._ActionsContainer) -> None:
@@ -197,7 +199,7 @@ def _add_bake(command: argparse.ArgumentParser) -> None:
     maps = command.add_argument_group("maps of the same frames, as maps draws them, with --patch and --st")
     maps.add_argument("--maps", metavar="DIR", help="folder for them, as maps -o")
     size = MapOptions.__dataclass_fields__["size"]
-    _add_option(maps, size, "map_size", size.metadata["flag"])
+    _add_option(maps, size, "map_size", size.metadata["flag"])  # whose old flag is that of the size of pictures
     _add_options(maps, MapOptions, "strain")
     _add_table(command)
 
@@ -239,9 +241,7 @@ def _add_maps(command: argparse.ArgumentParser) -> None:
         dest="folder",
     )
     _add_options(command, SlideOptions)
-    _add_options(command, MapOptions, "patches", "st", "strain")
-    size = MapOptions.__dataclass_fields__["size"]
-    _add_option(command, size, "size", size.metadata["flag"], "--size")  # of bake that is the size of pictures
+    _add_options(command, MapOptions)
     _add_printing(command)
     _add_table(command)
 

@@ -46,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         json = False  # a document that breaks off is not followed by another
         return say(*result)
     except expected() as error:
-        return failed(error, json, _outcome(given, before))
+        return failed(error, json, _outcome(given, before), words)
 
 
 def _loaded(home: str, name: str) -> Callable[..., Any]:

@@ -100,12 +100,13 @@ def as_json(value: Any, margin: str = "\n") -> Iterator[str]:
         yield "null" if isinstance(value, float) and not math.isfinite(value) else json.dumps(value)
 
 
-def failed(error: BaseException, json: bool, done: str = "") -> int:
+def failed(error: BaseException, json: bool, done: str = "", words: Sequence[str] = ()) -> int:
     """Says why nothing came of a command: on stderr, and with json as a document on stdout too. Gives the exit code.
 
-    done  what became of the output, for where that is in question
+    done   what became of the output, for where that is in question
+    words  those of the command
     """
-    code, problems = _verdict(error, done)
+    code, problems = _verdict(error, done, words)
     for line in told(problems):
         tell(line)
     if json:
@@ -113,7 +114,7 @@ def failed(error: BaseException, json: bool, done: str = "") -> int:
     return code
 
 
-def _verdict(error: BaseException, done: str) -> tuple[int, Sequence[Problem]]:
+def _verdict(error: BaseException, done: str, words: Sequence[str]) -> tuple[int, Sequence[Problem]]:
     if isinstance(error, _usd_errors()):
         return FAILED, [_plain(f"USD: {usd_message(error)}")]
     match error:
@@ -130,7 +131,7 @@ def _verdict(error: BaseException, done: str) -> tuple[int, Sequence[Problem]]:
         case UnicodeDecodeError():  # of USD's: its strings are decoded as they are read
             return FAILED, [_plain(f"the stage holds text that is not UTF-8: {error.object[:200]!r}")]
         case UsageError():
-            return USAGE, [_plain(error.on_command_line())]
+            return USAGE, [_plain(error.on_command_line(words))]
         case _:
             return FAILED, [_plain(str(error))]
 

@@ -248,7 +248,7 @@ class MeshPictures(MeshMaking):
         for series, moment in zip(self._series, moments, strict=True):
             columns = [self._before(frame, series.index)]
             columns += [self._after(title, each, series.index) for title, each in slid.items()]
-            yield from series.draw_all(canvas, self._options.views, moment, columns, self._options.most_stretch)
+            yield from series.draw_all(canvas, self._options.views, moment, columns, self._options.stretch_scale)
 
     def _before(self, frame: SlidFrame, index: int) -> Column:
         measured, points = frame.measured(), self._mesh.drawn_points(frame.cached)

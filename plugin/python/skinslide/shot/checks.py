@@ -25,9 +25,10 @@ T = TypeVar("T", bound=type)
 LEAST, MOST = 1e-37, 1e37  # of what is a float in the core
 
 
-def option(default: Any, check: Check, flag: str, **words: Any) -> Any:
-    """A field of Options. flag and words are argparse's."""
-    return field(default=default, metadata={"check": check, "flag": flag, "words": words})
+def option(default: Any, check: Check, flag: str, *, old: str = "", **words: Any) -> Any:
+    """A field of Options. flag and words are argparse's; an old flag is understood, but not told of."""
+    flags = (flag, old) if old else (flag,)
+    return field(default=default, metadata={"check": check, "flag": flag, "flags": flags, "words": words})
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,13 @@ class Options:
                 try:
                     object.__setattr__(self, each.name, each.metadata["check"](each.name, getattr(self, each.name)))
                 except UsageError as error:
-                    error.name_option(each.name, each.metadata["flag"])
+                    error.name_option(each.name, each.metadata["flags"])
                     raise
+
+    @classmethod
+    def _fault(cls, template: str) -> UsageError:
+        """An error that names several of the options, which are in braces."""
+        return UsageError.of_options(template, {each.name: each.metadata["flags"] for each in fields(cls)})
 
 
 def described(each: Field[Any], default: Any) -> str:

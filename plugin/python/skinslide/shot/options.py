@@ -266,10 +266,11 @@ class PictureOptions(Options):
         metavar="N",
         help="squares of the chequer for each unit of st, or of length (default: 16 across the patch)",
     )
-    most_stretch: float = option(
+    stretch_scale: float = option(
         0.5,
         checks.positive,
-        "--most-stretch",
+        "--stretch-scale",
+        old="--most-stretch",
         type=float,
         metavar="X",
         help="the stretch at the end of the scale of colours (default: %(default)s)",
@@ -296,7 +297,7 @@ class PictureKeywords(TypedDict, total=False):
     form: str
     st: str | None
     squares: float | None
-    most_stretch: float
+    stretch_scale: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -315,6 +316,7 @@ class MapOptions(Options):
         1024,
         checks.map_size,
         "--map-size",
+        old="--size",
         type=checks.positive_text,
         metavar="N",
         help="texels along each side, 1 to 16384 (default: %(default)s)",
