@@ -184,7 +184,7 @@ void ss_factor_clear(ss_factor *factor);
 bool ss_factorise(ss_factor *factor);
 /* Replaces right by the solutions. */
 void ss_solve(ss_factor *factor);
-/* Both. */
+/* Factorises, then solves. */
 bool ss_factorise_and_solve(ss_factor *factor);
 
 /* ---- blocks.c: entries of two by two ---- */
@@ -222,7 +222,7 @@ static inline double *ss_blocks_between(ss_blocks *blocks, int32_t edge, bool *f
 bool ss_blocks_factor(ss_blocks *blocks, const int *stop);
 /* Replaces right by the solution. */
 void ss_blocks_solve(ss_blocks *blocks);
-/* Both. */
+/* Factors, then solves. */
 bool ss_blocks_factor_and_solve(ss_blocks *blocks, const int *stop);
 
 /* ---- springs.c: a net of springs ---- */

@@ -124,11 +124,11 @@ double ss_face_tree_nearest(const ss_face_tree *tree, const double p[2], ss_plac
 double ss_nearest_on_side(const ss_faces *faces, const double (*uv)[2], int32_t corner, const double p[2], double out[2]);
 
 typedef struct ss_located {
-    int32_t centre, around; /* found in the first candidate; in another */
+    int32_t centre, around; /* queries found in the first candidate; in another candidate */
     int32_t walked;
-    int32_t searched; /* by the tree */
-    int32_t clamped;  /* in no face, and put on the nearest */
-    int64_t steps;    /* of walks */
+    int32_t searched; /* queries found by the tree */
+    int32_t clamped;  /* queries in no face, put on the nearest */
+    int64_t steps;    /* steps of walks */
 } ss_located;
 
 typedef struct ss_locator ss_locator;
