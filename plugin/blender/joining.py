@@ -26,7 +26,8 @@ class Joined:
 
         from skinslide.author.layer import EXTENSIONS
         from skinslide.stage.sources import EXTENSION
-        from skinslide.write.place import check_output, partial_name
+        from skinslide.write.place import check_output
+        from skinslide.write.replacing import partial_name
 
         with as_fault():
             check_output(Path(cache), [each for each in EXTENSIONS if each != EXTENSION])
@@ -69,7 +70,7 @@ class Joined:
 
     def put(self, write: Callable[[], str]) -> str:
         """Puts the cache in place, and calls write for the rest."""
-        from skinslide.write.place import replacing, saved
+        from skinslide.write.replacing import replacing, saved
 
         self._layer.startTimeCode, self._layer.endTimeCode = self._frames[0], self._frames[-1]
         with as_fault(), self._put_back():

@@ -14,20 +14,9 @@ from skinslide.problems import StageError, UsageError
 from skinslide.stage.given import StageLike, StrPath, given_file, given_stage
 from skinslide.stage.opening import read_text_layer
 from skinslide.stage.sources import EXTENSION
-from skinslide.write.place import (
-    Changed,
-    State,
-    asset_path,
-    check_not_input,
-    check_not_read,
-    check_output,
-    given_output,
-    partial_name,
-    replacing,
-    saved,
-    state,
-    writing,
-)
+from skinslide.write.inputs import check_not_input, check_not_read
+from skinslide.write.place import asset_path, check_output, given_output
+from skinslide.write.replacing import Changed, State, partial_name, replacing, saved, state, writing
 
 Report = TypeVar("Report")
 EXTENSIONS = (EXTENSION, ".usda", ".usdc", ".usd")

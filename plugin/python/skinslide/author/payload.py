@@ -14,7 +14,9 @@ from skinslide.author.layer import EXTENSIONS, describe, in_the_way
 from skinslide.problems import UsageError
 from skinslide.stage.given import StageLike, StrPath, given_file, given_stage
 from skinslide.stage.sources import EXTENSION
-from skinslide.write.place import asset_path, check_not_input, check_output, given_output, replacing, saved, writing
+from skinslide.write.inputs import check_not_input
+from skinslide.write.place import asset_path, check_output, given_output
+from skinslide.write.replacing import replacing, saved, writing
 
 
 class PayloadLayer:

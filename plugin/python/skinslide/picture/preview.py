@@ -39,7 +39,9 @@ from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.write.folder import OutputFolder, check_frames, frame_label
-from skinslide.write.place import check_not_input, check_output, check_writable, given_output, replacing, writing
+from skinslide.write.inputs import check_not_input
+from skinslide.write.place import check_output, given_output
+from skinslide.write.replacing import check_writable, replacing, writing
 
 _MOST_PIXELS = 1 << 27  # on canvases at once: each takes some forty bytes
 

@@ -20,7 +20,8 @@ from skinslide.picture.page import render
 from skinslide.problems import Problem, UsageError, counted, lines_text, told
 from skinslide.shot.report import RECORD, far_apart, roughness_text, stretch_text, time_text
 from skinslide.stage.given import StrPath
-from skinslide.write.place import check_output, given_output, replacing, writing
+from skinslide.write.place import check_output, given_output
+from skinslide.write.replacing import replacing, writing
 
 _PAGE = "shots.html"
 

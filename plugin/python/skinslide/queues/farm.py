@@ -26,8 +26,10 @@ from skinslide.shot.plan import outside, times_of
 from skinslide.stage.given import StageLike, StrPath, given_file
 from skinslide.stage.mesh import PatchedMesh, read_meshes
 from skinslide.stage.opening import open_stage
+from skinslide.write.inputs import check_not_input
 from skinslide.write.overs import EXTENSIONS
-from skinslide.write.place import check_not_input, check_output, given_output, replacing, writing
+from skinslide.write.place import check_output, given_output
+from skinslide.write.replacing import replacing, writing
 
 # How a queue's job is written, what its name ends in, and what other names do.
 _QUEUES: dict[str, tuple[Callable[[Job], str], str, tuple[str, ...]]] = {

@@ -32,8 +32,9 @@ from skinslide.shot.shares import Shares
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.write.earlier import EarlierBake, replacing_earlier_bake
+from skinslide.write.inputs import check_not_input
 from skinslide.write.overs import EXTENSIONS, OverLayer, author_on_stage, layer_in_place
-from skinslide.write.place import check_not_input, check_output, given_output
+from skinslide.write.place import check_output, given_output
 from skinslide.write.target import check_target, hidden_by, spec_path
 
 # What may be limited at each frame, in words.

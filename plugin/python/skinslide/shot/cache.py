@@ -29,8 +29,10 @@ from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh, read_skinned
 from skinslide.stage.skinning import SkinnedVectors
+from skinslide.write.inputs import check_not_input
 from skinslide.write.overs import EXTENSIONS, OverLayer, layer_in_place
-from skinslide.write.place import check_not_input, check_output, given_output, signals_as_exceptions
+from skinslide.write.place import check_output, given_output
+from skinslide.write.signals import signals_as_exceptions
 
 
 @dataclass(frozen=True)

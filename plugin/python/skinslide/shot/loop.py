@@ -33,7 +33,7 @@ from skinslide.shot.plan import Plan, PlannedMesh, frame_of
 from skinslide.shot.products import Making, MeshMaking, Product, Shot, SlidFrame
 from skinslide.shot.report import BakeReport, MeshReport
 from skinslide.shot.workers import Progress, core_named, pool_of, work_ahead
-from skinslide.write.place import signals_as_exceptions
+from skinslide.write.signals import signals_as_exceptions
 
 
 def slide(

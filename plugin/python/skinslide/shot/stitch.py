@@ -35,8 +35,9 @@ from skinslide.stage.marks import is_marked
 from skinslide.stage.opening import why_not_opened
 from skinslide.write.clips import Clip, ClipLayer, block, manifest_of
 from skinslide.write.overs import EXTENSIONS, clock_of
-from skinslide.write.place import check_output, given_output, replacing, saved, state, writing
+from skinslide.write.place import check_output, given_output
 from skinslide.write.record import Record, joined
+from skinslide.write.replacing import replacing, saved, state, writing
 
 _ORIGINS = {
     "topology": "topology",

@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 from pxr import Gf, Sdf, UsdUtils, Vt
 
-from skinslide.write.place import asset_path, replacing, saved, writing
+from skinslide.write.place import asset_path
 from skinslide.write.record import Record, joined
+from skinslide.write.replacing import replacing, saved, writing
 
 _SAMPLES = "timeSamples"
 _BYTES = 4  # of a digest

@@ -15,16 +15,9 @@ from skinslide.stage import schema
 from skinslide.stage.finding import patched_prims
 from skinslide.stage.given import StrPath
 from skinslide.stage.textures import texture_files
-from skinslide.write.place import (
-    Inputs,
-    check_output,
-    check_place,
-    given_output,
-    nearest_folder,
-    not_writable,
-    replacing,
-    writing,
-)
+from skinslide.write.inputs import Inputs
+from skinslide.write.place import check_output, check_place, given_output, nearest_folder, not_writable
+from skinslide.write.replacing import replacing, writing
 
 _PLACES = 6  # of a frame's fraction; layer offsets leave noise beyond
 

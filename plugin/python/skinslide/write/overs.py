@@ -13,7 +13,8 @@ from pxr import Sdf, Usd, UsdGeom, UsdSkel, Vt
 from skinslide.arrays.attributes import extent
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
-from skinslide.write.place import check_not_read, replacing, saved, writing
+from skinslide.write.inputs import check_not_read
+from skinslide.write.replacing import replacing, saved, writing
 
 EXTENSIONS = (".usda", ".usdc", ".usd")
 _TEXT = ".usda"
