@@ -22,7 +22,8 @@ from skinslide.arrays.canvas import Canvas
 from skinslide.arrays.setups import PatchSetup
 from skinslide.picture.series import Column, Series, Skin
 from skinslide.shot.options import PictureOptions
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 SIZE, COLUMNS = (1020, 300), 3
 STRETCH_SCALE = 0.4

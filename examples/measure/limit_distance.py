@@ -19,7 +19,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cells import lines
 
 from skinslide.arrays.limit import limit_points
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 WAYS = ("linear", "meanValue", "limit")
 HEADINGS = ("example", "interpolation", "max", "mean", "closer: max", "mean", "stretch", "change", "ms")

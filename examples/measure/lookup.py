@@ -15,7 +15,8 @@ from PIL import Image
 from pxr import Usd
 
 from skinslide import Frame, Lookup, choose_lookup
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 EXAMPLES = ("elbow", "bicep", "face", "finger", "sleeve", "chequer")
 PICTURED = ("elbow", "face", "chequer")

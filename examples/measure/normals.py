@@ -18,7 +18,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cells import lines
 
 import skinslide
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 HEADINGS = ("example", "largest slide", "turned by", "jump", "seams, cache", "slid")
 TINY = 5e-6  # units

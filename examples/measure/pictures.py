@@ -17,7 +17,8 @@ from pxr import Usd
 from skinslide.arrays.canvas import Canvas
 from skinslide.picture.series import Column, Series, Skin
 from skinslide.shot.options import PictureOptions
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 COLUMN, HEIGHT = 480, 480
 STRETCH_SCALE = 0.5

@@ -23,7 +23,8 @@ from sliders import sliders_of
 from smoothness import RULES, Rough, mean_edge, motions
 
 from skinslide.arrays.slider import Frame
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 HEADINGS = (
     "example",

@@ -26,7 +26,8 @@ from cells import lines
 from sliders import sliders_of
 
 from skinslide.arrays.slider import Frame, Slider
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 RULES = ("unit", "fast", "even", "relaxed")
 HEADINGS = ("example", "frame", "cache", "best", *RULES, "steps", "off", "folded")

@@ -25,7 +25,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cells import lines
 from sliders import sliders_of
 
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 RULES = ("unit", "even", "relaxed")
 HEADINGS = ("example", "rule", "ratio", "above 2", "worst", "vertex", "frame", "shrinks")

@@ -16,7 +16,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cells import lines
 
 from skinslide.arrays.slider import Slider
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 HEADINGS = ("example", "points", "frames", "farthest", "off the surface")
 OFF = 1e-3  # of the mean edge

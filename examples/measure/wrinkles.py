@@ -20,7 +20,8 @@ from skinslide.picture.lettering import BACKGROUND, columns, write_text
 from skinslide.picture.series import Series, Skin
 from skinslide.shot.diagnostics import MeshStrain
 from skinslide.shot.options import PictureOptions
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 SIZE, TEXELS = (1280, 640), 2048
 WAYS = np.pi * np.arange(4) / 4  # the directions of the waves in the texture, as angles

@@ -61,9 +61,9 @@ def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarra
     """
     import_usd()
     from skinslide.stage.finding import patched_prims
-    from skinslide.stage.mesh import take_mesh
     from skinslide.stage.opening import open_stage, read_text_layer
     from skinslide.stage.schema import patch_names
+    from skinslide.stage.taking import take_mesh
 
     try:
         stage = open_stage(path)

@@ -6,7 +6,7 @@ from pxr import Usd
 import stages
 from repository import load
 from skinslide.arrays.setups import Sample
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 from pxr import Usd
 
 from repository import load
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 
 
 @pytest.mark.parametrize("name", ["elbow", "bicep", "sleeve", "finger"])

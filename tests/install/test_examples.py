@@ -12,7 +12,7 @@ from pxr import Usd, UsdGeom, UsdValidation
 
 import skinslide
 from repository import EXAMPLES, load
-from skinslide.stage.mesh import read_moving
+from skinslide.stage.reading import read_moving
 
 MESH_PATH = "/World/char/geo/body_GEO"
 # Example → its patch, and how many boundary loops that has: eyes, nostrils and mouth are holes of the face.

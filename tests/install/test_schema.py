@@ -150,7 +150,7 @@ mesh.CreateFaceVertexCountsAttr([4])
 mesh.CreateFaceVertexIndicesAttr([0, 1, 2, 3])
 mesh.GetPrim().AddAppliedSchema("SkinSlideAPI:elbow_L")
 UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("skinSlide:elbow_L:patch", Sdf.ValueTypeNames.BoolArray, "uniform").Set([True])
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 (read,), problems = read_meshes(stage)
 (patch,) = read.patches
 assert not problems and patch.name == "elbow_L" and patch.controls.envelope == 1 and patch.holes == "pinned"

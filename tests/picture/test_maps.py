@@ -19,8 +19,8 @@ from library import decode_exr
 from skinslide import FrameProblem, StageError, StageProblems, UsageError, maps
 from skinslide.arrays.images import Corners, draw_map
 from skinslide.command.cli import main
-from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage
+from skinslide.stage.reading import read_meshes
 from skinslide.write.folder import frame_label
 from stages import FRAMES, MESH, PATCH
 

@@ -11,7 +11,7 @@ from makers import refine
 from repository import load
 from skinslide import PatchSetup, Slider, SliderError, Subdivision, bake_to_file
 from skinslide.arrays.limit import limit_points
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH, PATCH
 
 CATMULL_CLARK = Subdivision()

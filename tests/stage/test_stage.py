@@ -7,8 +7,9 @@ from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 import stages
 from skinslide.arrays.values import merge_times
 from skinslide.problems import FrameProblem, UsageError, errors
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.opening import open_stage
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames

@@ -16,8 +16,8 @@ from library import Image, decode_exr, sample_map
 from skinslide import check
 from skinslide.arrays.images import Corners, encode_exr
 from skinslide.command.cli import main
-from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames

@@ -64,7 +64,7 @@ def contrast(pixels):
 def projected(stage, vertices, points, size):
     """Where points are on one half of a picture, with the tool's camera but by USD's own matrices."""
     from skinslide.picture.cameras import ShotCamera
-    from skinslide.stage.mesh import read_meshes
+    from skinslide.stage.reading import read_meshes
 
     mesh = read_meshes(stage)[0][0]
     camera = ShotCamera(mesh, mesh.patches[0].faces, size[0] / 2 / size[1]).camera(Usd.TimeCode(FRAMES[-1]))

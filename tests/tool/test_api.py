@@ -18,7 +18,7 @@ from skinslide.arrays.schema import inputs
 from skinslide.author import mirror, paint, setup
 from skinslide.shot import options
 from skinslide.shot.frames import checked_frames
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH, PATCH
 
 Types = Sdf.ValueTypeNames

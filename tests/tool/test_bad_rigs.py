@@ -12,7 +12,7 @@ import rigs
 import skinslide
 import stages
 from rigs import ANIMATION, SKELETON
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH
 
 SHAPE = f"{MESH}/bulge"

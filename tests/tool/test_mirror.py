@@ -12,9 +12,10 @@ from skinslide.arrays.geometry import mirror_faces
 from skinslide.arrays.images import encode_exr
 from skinslide.author.mirror import other_side
 from skinslide.command.cli import main
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.opening import open_stage
 from skinslide.stage.patch import Animation
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH
 
 Types = Sdf.ValueTypeNames

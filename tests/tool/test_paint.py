@@ -8,8 +8,8 @@ import stages
 from skinslide import Controls, PatchSetup, Slider, StageProblems, UsageError, paint_to_file, setup_to_file
 from skinslide.arrays.topology import Topology
 from skinslide.command.cli import main
-from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage
+from skinslide.stage.reading import read_meshes
 from stages import MESH, PATCH
 
 CURVE = "/World/char/lines"

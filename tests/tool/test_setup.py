@@ -12,8 +12,8 @@ import stages
 from skinslide.author.setup import parse_faces, setup_to_file
 from skinslide.command.cli import main
 from skinslide.problems import StageProblems, UsageError
-from skinslide.stage.mesh import read_meshes
 from skinslide.stage.opening import open_stage
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH
 
 

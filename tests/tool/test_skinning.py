@@ -10,7 +10,7 @@ import rigs
 import skinslide
 import stages
 from skinslide.command.cli import main
-from skinslide.stage.mesh import read_meshes
+from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH
 
 POINTS = f"{MESH}.points"

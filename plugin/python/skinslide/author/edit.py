@@ -15,8 +15,8 @@ from skinslide.problems import Fault, Problem, StageProblems, errors, in_place_o
 from skinslide.shot.check import CheckReport, check
 from skinslide.stage import schema
 from skinslide.stage.given import PrimLike, given_path
-from skinslide.stage.mesh import read_faces_of_mesh
 from skinslide.stage.names import prim_of_type
+from skinslide.stage.taking import read_faces_of_mesh
 from skinslide.write.earlier import without_earlier_bake
 from skinslide.write.target import check_target, hidden_by, whole_or_not_at_all
 

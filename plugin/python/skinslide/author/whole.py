@@ -14,7 +14,8 @@ from skinslide.arrays.geometry import least_stretch, mask_stretched, note_stretc
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError
 from skinslide.shot.plan import beyond
 from skinslide.stage.finding import is_skinned, prims_at, slidable
-from skinslide.stage.mesh import PatchedMesh, read_moving
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_moving
 from skinslide.stage.values import FIRST
 
 PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)

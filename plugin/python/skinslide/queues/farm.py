@@ -24,8 +24,9 @@ from skinslide.shot.frames import checked_frames, spec_of
 from skinslide.shot.options import FarmOptions, Frames, LayerOptions, Prims, SlideOptions
 from skinslide.shot.plan import outside, times_of
 from skinslide.stage.given import StageLike, StrPath, given_file
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.opening import open_stage
+from skinslide.stage.reading import read_meshes
 from skinslide.write.inputs import check_not_input
 from skinslide.write.overs import EXTENSIONS
 from skinslide.write.place import check_output, given_output

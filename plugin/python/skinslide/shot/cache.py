@@ -27,7 +27,8 @@ from skinslide.shot.report import time_text
 from skinslide.shot.samples import finite_problem
 from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
-from skinslide.stage.mesh import PatchedMesh, read_skinned
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_skinned
 from skinslide.stage.skinning import SkinnedVectors
 from skinslide.write.inputs import check_not_input
 from skinslide.write.overs import EXTENSIONS, OverLayer, layer_in_place

@@ -14,7 +14,8 @@ from skinslide.arrays.slider import Slider
 from skinslide.problems import Problem, StageProblems, UsageError, counted, errors, frame_text, in_place_of
 from skinslide.shot.frames import AUTHORED, AskedFrames, Chunk
 from skinslide.shot.options import SlideOptions
-from skinslide.stage.mesh import PatchedMesh, read_meshes
+from skinslide.stage.mesh import PatchedMesh
+from skinslide.stage.reading import read_meshes
 
 
 class PlannedMesh(NamedTuple):

@@ -1,4 +1,4 @@
-"""The meshes of a stage that carry patches, as arrays: what a bake and a check need to know of each."""
+"""A mesh of a stage with its patches, as arrays: what a bake and a check need to know of it."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from skinslide.problems import (
     core_problem,
     counted,
 )
-from skinslide.stage.finding import FoundMesh, find_meshes, find_skinned, is_skinned
 from skinslide.stage.following import carried, offered
 from skinslide.stage.neighbours import Neighbours
-from skinslide.stage.patch import Animation, read_patches
-from skinslide.stage.skinning import SkinnedPoints, SkinnedVectors, Skinning
-from skinslide.stage.values import FIRST, Source, Span, noting, read_value, take
+from skinslide.stage.patch import Animation
+from skinslide.stage.skinning import SkinnedVectors, Skinning
+from skinslide.stage.taking import source_of, take_mesh, take_subdivision
+from skinslide.stage.values import FIRST, Source, Span, read_value
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ class PatchedMesh:
     def bound_points(self) -> np.ndarray | None:
         """The default value of points, float32 (V, 3), as `SkinnedPoints` has it; None where there is none."""
         wanted = next(each for each in inputs("mesh") if each.when == DEFAULT_TIME)
-        source = _source(self.prim, wanted, self.skinning)
+        source = source_of(self.prim, wanted, self.skinning)
         return positions(source.first()) if source.at(Usd.TimeCode.Default()) else None
 
     def derived_sources(self, meaning: DerivedMeaning) -> Iterator[Source]:
@@ -309,117 +309,3 @@ class PatchedMesh:
 
     def _core_problem(self, error: SliderError) -> Problem:
         return core_problem(self.path, [patch.name for patch in self.patches], str(error))
-
-
-def read_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tuple[list[PatchedMesh], list[Problem]]:
-    """Every mesh with patches that can be read, and every problem found on the way.
-
-    A mesh comes with those of its patches that are good: whoever wants all or none looks for errors among the problems.
-    """
-    found, problems = find_meshes(stage, prim_paths)
-    neighbours = Neighbours(stage)
-    meshes = [_read_mesh(each, neighbours, problems) for each in found]
-    return [mesh for mesh in meshes if mesh is not None], problems
-
-
-def read_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None) -> tuple[list[PatchedMesh], list[Problem]]:
-    """Every mesh that UsdSkel skins, without patches, and every problem found on the way."""
-    found, problems = find_skinned(stage, prim_paths)
-    meshes = [_read_skinned(each.prim, problems) for each in found]
-    return [mesh for mesh in meshes if mesh is not None], problems
-
-
-def _read_skinned(prim: Usd.Prim, problems: list[Problem]) -> PatchedMesh | None:
-    try:
-        return read_moving(prim)
-    except Fault as fault:
-        problems.append(Problem("error", str(prim.GetPath()), None, None, str(fault)))
-        return None
-
-
-def read_moving(prim: Usd.Prim) -> PatchedMesh:
-    """A mesh as it moves, skinned where UsdSkel does so, without patches. Raises Fault."""
-    skinning = Skinning(prim) if is_skinned(prim) else None
-    meaning, faults = take_mesh(prim, skinning)
-    if faults:
-        raise Fault(faults[0])
-    return PatchedMesh.of(prim, meaning, [], skinning)
-
-
-def _read_mesh(found: FoundMesh, neighbours: Neighbours, problems: list[Problem]) -> PatchedMesh | None:
-    prim, path = found.prim, str(found.prim.GetPath())
-
-    def say(faults: Sequence[str], patch: str | None = None) -> None:
-        problems.extend(Problem("error", path, patch, None, fault) for fault in faults)
-
-    try:
-        skinning = Skinning(prim) if found.is_skinned else None
-    except Fault as fault:
-        say([str(fault)])
-        return None
-    meaning, faults = take_mesh(prim, skinning)
-    faults += take_space(prim, meaning) if meaning.has_faces else []
-    say(faults)
-    if not meaning.has_faces:
-        return None
-    read = list(read_patches(prim, dict.fromkeys(found.patches), meaning, neighbours))
-    for name, _, wrong in read:
-        say(wrong, name)
-    animation = [good for _, good, _ in read if good]
-    if faults or not animation:
-        return None
-    faults = take_subdivision(prim, meaning) if any(each.needs_subdivision for each in animation) else []
-    say(faults)
-    if faults:
-        return None
-    mesh = PatchedMesh.of(prim, meaning, animation, skinning, neighbours)
-    problems.extend(mesh.warnings())
-    return mesh
-
-
-def take_mesh(prim: Usd.Prim, skinning: Skinning | None = None) -> tuple[MeshMeaning, list[str]]:
-    """The points, faces and rest points of a mesh, and what is wrong with them."""
-    meaning, faults = MeshMeaning(), []
-    points, *others = (_source(prim, each, skinning) for each in inputs("mesh"))
-    faults += take(meaning, [points])
-    faults = faults or take(meaning, others)
-    for each in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
-        interpolation = each.GetAttr().GetMetadata("interpolation")
-        meaning.offer(each.GetName(), str(each.GetTypeName()), interpolation)
-    return meaning, faults
-
-
-def take_space(prim: Usd.Prim, meaning: MeshMeaning) -> list[str]:
-    """How the transforms above a mesh scale it, at each time at which they were authored. Returns what is wrong."""
-    faults: list[str] = []
-    above = (UsdGeom.Xformable(each) for each in _and_above(prim))
-    times = sorted({time for each in above if each for time in each.GetTimeSamples()})
-    with noting(faults):
-        for time in [FIRST, *map(Usd.TimeCode, times)]:
-            matrix = UsdGeom.XformCache(time).GetLocalToWorldTransform(prim)
-            meaning.take_space(np.array(matrix), 0.0 if time.IsEarliestTime() else time.GetValue())
-    return faults
-
-
-def _and_above(prim: Usd.Prim) -> Iterator[Usd.Prim]:
-    while prim:
-        yield prim
-        prim = prim.GetParent()
-
-
-def _source(prim: Usd.Prim, wanted: Input, skinning: Skinning | None) -> Source:
-    is_points = wanted.property() == UsdGeom.Tokens.points
-    return SkinnedPoints(prim, wanted, skinning) if skinning and is_points else Source(prim, wanted)
-
-
-def read_faces_of_mesh(prim: Usd.Prim) -> MeshMeaning:
-    """A mesh with its points and faces, and with its rest points where they can be read. Raises Fault."""
-    meaning, faults = take_mesh(prim)
-    if not meaning.has_faces:
-        raise Fault(faults[0])
-    return meaning
-
-
-def take_subdivision(prim: Usd.Prim, meaning: MeshMeaning) -> list[str]:
-    """How the mesh is subdivided. Returns what is wrong."""
-    return take(meaning, [Source(prim, each) for each in inputs("subdivision")])
