@@ -56,7 +56,7 @@ def write(folder: Path, cache: Cache, patch: Patch | None = None) -> Path:
 def write_skinned(folder: Path, define: Callable[[Usd.Stage], None]) -> Path:
     """The same for a character that `define` makes at /char, a SkelRoot. The shot has no patch."""
     folder.mkdir(parents=True, exist_ok=True)
-    published, shot = _new_stage("char", first_frame=1), _payloading_stage("./character.usdc", "SkelRoot")
+    published, shot = new_stage("char", first_frame=1), _payloading_stage("./character.usdc", "SkelRoot")
     define(published)
     published.GetRootLayer().Export(str(folder / "character.usdc"))
     shot.GetRootLayer().Export(str(folder / "shot.usda"))
@@ -64,7 +64,7 @@ def write_skinned(folder: Path, define: Callable[[Usd.Stage], None]) -> Path:
 
 
 def _cache_stage(cache: Cache) -> Usd.Stage:
-    stage = _new_stage("char", first_frame=1)
+    stage = new_stage("char", first_frame=1)
     char = UsdGeom.Xform.Define(stage, "/char").GetPrim()
     Usd.ModelAPI(char).SetKind(Kind.Tokens.component)
     UsdGeom.Scope.Define(stage, "/char/geo")
@@ -81,7 +81,7 @@ def _cache_stage(cache: Cache) -> Usd.Stage:
 
 
 def _payloading_stage(payload: str, type_name: str = "Xform") -> Usd.Stage:
-    stage = _new_stage("World", first_frame=FIRST_SHOT_FRAME)
+    stage = new_stage("World", first_frame=FIRST_SHOT_FRAME)
     world = UsdGeom.Xform.Define(stage, "/World").GetPrim()
     Usd.ModelAPI(world).SetKind(Kind.Tokens.group)
     char = stage.DefinePrim("/World/char", type_name)
@@ -99,7 +99,8 @@ def _shot_stage(cache: Cache, patch: Patch | None) -> Usd.Stage:
     return stage
 
 
-def _new_stage(default_prim: str, first_frame: int) -> Usd.Stage:
+def new_stage(default_prim: str, first_frame: int) -> Usd.Stage:
+    """An empty stage in centimetres, Y up, with FRAME_COUNT frames, 24 a second."""
     # Nothing is loaded: the shot's payload has no folder to be found in until the layer is exported.
     stage = Usd.Stage.CreateInMemory(load=Usd.Stage.LoadNone)
     stage.SetDefaultPrim(stage.OverridePrim(f"/{default_prim}"))

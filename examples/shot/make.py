@@ -9,14 +9,14 @@ skinslide.
 import sys
 from pathlib import Path
 
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, UsdGeom
 
 import skinslide  # noqa: F401 (registers the file format)
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from elbow.make import make as make_elbow
 from makers.command import main
-from makers.stage import FIRST_SHOT_FRAME, FRAME_COUNT
+from makers.stage import FIRST_SHOT_FRAME, new_stage
 
 ENVELOPES = {"stuck": 0.0, "slid": 1.0}
 APART = 200.0  # cm
@@ -25,15 +25,8 @@ APART = 200.0  # cm
 def make(folder: Path) -> Path:
     """Writes the example into `folder` and returns the shot's path."""
     make_elbow(folder).replace(folder / "elbow.skinslide")
-    stage = Usd.Stage.CreateInMemory(load=Usd.Stage.LoadNone)
-    world = UsdGeom.Xform.Define(stage, "/World")
-    stage.SetDefaultPrim(world.GetPrim())
-    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
-    UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.centimeters)
-    stage.SetTimeCodesPerSecond(24)
-    stage.SetFramesPerSecond(24)
-    stage.SetStartTimeCode(FIRST_SHOT_FRAME)
-    stage.SetEndTimeCode(FIRST_SHOT_FRAME + FRAME_COUNT - 1)
+    stage = new_stage("World", FIRST_SHOT_FRAME)
+    UsdGeom.Xform.Define(stage, "/World")
     for number, (name, envelope) in enumerate(ENVELOPES.items()):
         character = UsdGeom.Xform.Define(stage, f"/World/{name}")
         character.AddTranslateOp().Set((number * APART, 0, 0))

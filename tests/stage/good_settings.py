@@ -1,7 +1,7 @@
 """Controls and settings of a patch, every way they can be authored."""
 
 import numpy as np
-from pxr import Ts, Usd, Vt
+from pxr import Usd, Vt
 
 import stages
 from edits import (
@@ -39,10 +39,7 @@ from stages import FRAMES
 
 
 def spline(scene: Scene) -> None:
-    curve = Ts.Spline("float")
-    for time, value in ((1001, 0.0), (1003, 1.0)):
-        curve.SetKnot(Ts.Knot(typeName="float", time=time, value=value, nextInterp=Ts.InterpLinear))
-    scene.prim.GetAttribute(f"{PLACE}:envelope").SetSpline(curve)
+    scene.prim.GetAttribute(f"{PLACE}:envelope").SetSpline(stages.linear_spline({1001: 0.0, 1003: 1.0}))
 
 
 def clip_of_envelope(prim: Usd.Prim) -> None:

@@ -234,13 +234,7 @@ def test_animated_controls_add_their_samples():
 
 def test_spline_envelope_adds_its_frames():
     stage, mesh = stages.patched_stage()
-    spline = Ts.Spline("float")
-    for time, value in ((999.5, 0.0), (1002.25, 1.0)):
-        knot = Ts.Knot("float")
-        knot.SetTime(time)
-        knot.SetValue(value)
-        knot.SetNextInterpolation(Ts.InterpLinear)
-        spline.SetKnot(knot)
+    spline = stages.linear_spline({999.5: 0.0, 1002.25: 1.0})
     mesh.GetPrim().GetAttribute(f"skinSlide:{PATCH}:envelope").SetSpline(spline)
     read = only_mesh(stage)
     # Whole frames of the shot only: an artist's knot may lie anywhere.
@@ -299,29 +293,14 @@ def test_variant(tmp_path):
 
 
 def test_value_clips(tmp_path):
-    shape = stages.grid()
-    stage, mesh = stages.patched_stage(shape, rest="Pref")
-    for frame in FRAMES:
-        mesh.GetPointsAttr().ClearAtTime(frame)
-        clip = Usd.Stage.CreateInMemory()
-        attr = clip.OverridePrim(MESH).CreateAttribute("points", Types.Point3fArray, False)
-        attr.Set(stages.vectors(shape.moved(frame)), frame)
-        stages.save(clip, tmp_path / f"points.{frame:.0f}.usdc")
-    manifest = Usd.Stage.CreateInMemory()
-    manifest.OverridePrim(MESH).CreateAttribute("points", Types.Point3fArray, False)
-    stages.save(manifest, tmp_path / "manifest.usda")
-    clips = Usd.ClipsAPI(stage.GetPrimAtPath("/World"))
-    clips.SetClipManifestAssetPath(Sdf.AssetPath("./manifest.usda"))
-    clips.SetClipPrimPath("/World")
-    clips.SetClipTemplateAssetPath("./points.####.usdc")
-    clips.SetClipTemplateStartTime(FRAMES[0])
-    clips.SetClipTemplateEndTime(FRAMES[-1])
-    clips.SetClipTemplateStride(1)
+    stage, clips = stages.clipped_stage(tmp_path)
+    stages.use_clip_template(clips)
     for name in ("shot.usda", "shot.skinslide"):
         (tmp_path / name).write_text(stage.GetRootLayer().ExportToString())
         read = only_mesh(open_stage(tmp_path / name))
         assert read.sample_times() == list(FRAMES)
-        np.testing.assert_array_equal(read.points_at(Usd.TimeCode(FRAMES[1])), shape.moved(FRAMES[1]))
+        moved = stages.grid().moved(FRAMES[1])
+        np.testing.assert_array_equal(read.points_at(Usd.TimeCode(FRAMES[1])), moved)
 
 
 def test_frame_problem_names_the_frame():

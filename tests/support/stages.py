@@ -1,14 +1,14 @@
 """Small awkward stages for the tests: a mesh that moves, and patches on it."""
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, Vt
+from pxr import Sdf, Ts, Usd, UsdGeom, Vt
 
 import skinslide  # noqa: F401 (registers the schema, before the first stage is opened)
 
@@ -168,6 +168,18 @@ def set_property(mesh: UsdGeom.Mesh, name: str, value, time: float | None = None
     attr.Set(value, Usd.TimeCode.Default() if time is None else time)
 
 
+def linear_spline(knots: Mapping[float, float]) -> Ts.Spline:
+    """Floats that go straight from knot to knot: values by their times."""
+    spline = Ts.Spline("float")
+    for time, value in knots.items():
+        knot = Ts.Knot("float")
+        knot.SetTime(time)
+        knot.SetValue(value)
+        knot.SetNextInterpolation(Ts.InterpLinear)
+        spline.SetKnot(knot)
+    return spline
+
+
 def new_stage() -> Usd.Stage:
     """An empty stage with the metadata of a published one."""
     stage = Usd.Stage.CreateInMemory()
@@ -189,6 +201,36 @@ def patched_stage(
     mesh = add_mesh(stage, shape, rest=rest)
     add_patch(mesh, shape.all_faces if faces is None else faces)
     return stage, mesh
+
+
+def clipped_stage(folder: Path) -> tuple[Usd.Stage, Usd.ClipsAPI]:
+    """A patched grid whose points are in value clips in the folder, clip.FRAME.usda; which is read when is left open.
+
+    The clips have a manifest, so that USD opens none before it is needed.
+    """
+    shape = grid()
+    stage, mesh = patched_stage(shape, rest="Pref")
+    for frame in FRAMES:
+        mesh.GetPointsAttr().ClearAtTime(frame)
+        clip = Usd.Stage.CreateInMemory()
+        points = clip.OverridePrim(MESH).CreateAttribute("points", Sdf.ValueTypeNames.Point3fArray, False)
+        points.Set(vectors(shape.moved(frame)), frame)
+        save(clip, folder / f"clip.{frame:.0f}.usda")
+    manifest = Usd.Stage.CreateInMemory()
+    manifest.OverridePrim(MESH).CreateAttribute("points", Sdf.ValueTypeNames.Point3fArray, False)
+    save(manifest, folder / "manifest.usda")
+    clips = Usd.ClipsAPI(stage.GetPrimAtPath("/World"))
+    clips.SetClipManifestAssetPath(Sdf.AssetPath("./manifest.usda"))
+    clips.SetClipPrimPath("/World")
+    return stage, clips
+
+
+def use_clip_template(clips: Usd.ClipsAPI) -> None:
+    """Each clip at its frame, by the template of their names."""
+    clips.SetClipTemplateAssetPath("./clip.####.usda")
+    clips.SetClipTemplateStartTime(FRAMES[0])
+    clips.SetClipTemplateEndTime(FRAMES[-1])
+    clips.SetClipTemplateStride(1)
 
 
 def save(stage: Usd.Stage, path: Path) -> Path:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from pxr import Sdf, Ts, Usd, UsdGeom, Vt
+from pxr import Sdf, Usd, UsdGeom, Vt
 
 import stages
 from skinslide import StageError, StageProblems, UsageError, bake_to_file, stitch
@@ -509,11 +509,7 @@ def test_a_chunk_of_another_spline_is_baked_again(tmp_path):
 
     def animate(*values):
         def edit(stage):
-            spline = Ts.Spline("float")
-            for frame, value in zip((FRAMES[0], FRAMES[3], FRAMES[-1]), values, strict=True):
-                knot = Ts.Knot("float")
-                knot.SetTime(frame), knot.SetValue(value), knot.SetNextInterpolation(Ts.InterpLinear)
-                spline.SetKnot(knot)
+            spline = stages.linear_spline(dict(zip((FRAMES[0], FRAMES[3], FRAMES[-1]), values, strict=True)))
             name = f"skinSlide:{PATCH}:envelope"
             stage.GetPrimAtPath(MESH).CreateAttribute(name, Sdf.ValueTypeNames.Float).SetSpline(spline)
 

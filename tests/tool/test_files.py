@@ -35,35 +35,12 @@ def refused(shot: Path, output: Path, message: str = "the stage reads this file"
 # ---- What the stage reads ----
 
 
-@pytest.fixture
-def clips(tmp_path):
-    """Value clips with a manifest, so that USD opens none before it is needed."""
-    shape = stages.grid()
-    stage, mesh = stages.patched_stage(shape, rest="Pref")
-    for frame in FRAMES:
-        mesh.GetPointsAttr().ClearAtTime(frame)
-        clip = Usd.Stage.CreateInMemory()
-        attr = clip.OverridePrim(MESH).CreateAttribute("points", Sdf.ValueTypeNames.Point3fArray, False)
-        attr.Set(stages.vectors(shape.moved(frame)), frame)
-        stages.save(clip, tmp_path / f"clip.{frame:.0f}.usda")
-    manifest = Usd.Stage.CreateInMemory()
-    manifest.OverridePrim(MESH).CreateAttribute("points", Sdf.ValueTypeNames.Point3fArray, False)
-    stages.save(manifest, tmp_path / "manifest.usda")
-    api = Usd.ClipsAPI(stage.GetPrimAtPath("/World"))
-    api.SetClipManifestAssetPath(Sdf.AssetPath("./manifest.usda"))
-    api.SetClipPrimPath("/World")
-    return stage, api
-
-
 @pytest.mark.parametrize("template", [False, True])
 @pytest.mark.parametrize("name", ["shot.usda", "shot.skinslide"])
-def test_value_clips(clips, template, name, tmp_path):
-    stage, api = clips
+def test_value_clips(template, name, tmp_path):
+    stage, api = stages.clipped_stage(tmp_path)
     if template:
-        api.SetClipTemplateAssetPath("./clip.####.usda")
-        api.SetClipTemplateStartTime(FRAMES[0])
-        api.SetClipTemplateEndTime(FRAMES[-1])
-        api.SetClipTemplateStride(1)
+        stages.use_clip_template(api)
     else:
         api.SetClipAssetPaths([Sdf.AssetPath(f"./clip.{frame:.0f}.usda") for frame in FRAMES])
         api.SetClipActive([(frame, index) for index, frame in enumerate(FRAMES)])

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, Ts, Usd, UsdGeom, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
 import stages
 from skinslide import PatchSetup, StageProblems, UsageError, check, mirror_to_file
@@ -185,13 +185,7 @@ def test_animation(tmp_path):
 
 def test_a_spline(tmp_path):
     stage, mesh = new_shot()
-    spline = Ts.Spline("float")
-    for time, value in ((1001, 0.0), (1003, 1.0)):
-        knot = Ts.Knot("float")
-        knot.SetTime(time)
-        knot.SetValue(value)
-        knot.SetNextInterpolation(Ts.InterpLinear)
-        spline.SetKnot(knot)
+    spline = stages.linear_spline({1001: 0.0, 1003: 1.0})
     mesh.GetPrim().GetAttribute(f"skinSlide:{LEFT}:envelope").SetSpline(spline)
     _, controls, _mesh = mirrored(stage, tmp_path)
     assert controls.at(Usd.TimeCode(1002)).envelope == pytest.approx(0.5)
