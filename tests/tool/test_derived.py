@@ -22,7 +22,6 @@ from shots import (
     pose,
 )
 from skinslide import PatchSetup, Slider, bake, bake_to_file
-from skinslide.arrays.attributes import carry
 from stages import vectors
 
 
@@ -58,7 +57,7 @@ def test_normals_are_carried_at_their_interpolation(shot, out, interpolation, co
     _stage, mesh = baked_mesh(out)
     assert mesh.GetNormalsAttr().GetTimeSamples() == mesh.GetPointsAttr().GetTimeSamples()
     turns = Slider(COUNTS, INDICES, REST, [PatchSetup("sheet", np.arange(FACES))]).slide(pose(2), turns=True).turns
-    expected = carry(COUNTS, INDICES, turns, np.array(flat_normals(count)), interpolation)
+    expected = skinslide.carry(COUNTS, INDICES, turns, np.array(flat_normals(count)), interpolation)
     assert np.array(mesh.GetNormalsAttr().Get(OFFSET + 2)).tobytes() == expected.tobytes()
     assert not mesh.GetNormalsAttr().HasMetadata("interpolation")
     assert [problem.message for problem in report.problems] == (

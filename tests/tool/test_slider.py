@@ -528,17 +528,17 @@ def test_carry(counts, indices, rest, sheet):
         ("uniform", FACES),
     ]:
         cached = np.tile(np.float32([0, 0, 1]), (count, 1))
-        same = attributes.carry(counts, indices, 0 * turns, cached, interpolation)
+        same = skinslide.carry(counts, indices, 0 * turns, cached, interpolation)
         assert same.tobytes() == cached.tobytes()
-        carried = attributes.carry(counts, indices, turns, cached, interpolation)
+        carried = skinslide.carry(counts, indices, turns, cached, interpolation)
         assert np.allclose(np.linalg.norm(carried, axis=1), 1, atol=1e-6)  # float32
         assert (carried != cached).any() and cached.tobytes() == same.tobytes()
         with pytest.raises(SliderError, match=f"it must be {count} x 3"):
-            attributes.carry(counts, indices, turns, cached[1:], interpolation)
-    of_corners = attributes.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (4 * FACES, 1)), "faceVarying")
-    of_vertices = attributes.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (VERTICES, 1)), "vertex")
+            skinslide.carry(counts, indices, turns, cached[1:], interpolation)
+    of_corners = skinslide.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (4 * FACES, 1)), "faceVarying")
+    of_vertices = skinslide.carry(counts, indices, turns, np.tile(np.float32([0, 0, 1]), (VERTICES, 1)), "vertex")
     assert of_corners.tobytes() == of_vertices[indices].tobytes()
-    along = attributes.carry(counts, indices, turns, turns, "vertex")
+    along = skinslide.carry(counts, indices, turns, turns, "vertex")
     assert np.allclose(along, turns, atol=1e-7)
 
 

@@ -7,7 +7,7 @@ On stages:
   `Pictures` or `Maps`. `report` makes one page of many shots.
 - `farm` writes a job that bakes chunks of a shot, and `stitch` joins them.
 
-On numpy arrays, without USD: `Slider`.
+On numpy arrays, without USD: `Slider`, and `carry` for the normals of what it slid.
 
 Importing skinslide loads only this module: each name loads what it needs when it is first used.
 """
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from skinslide import registration
 
 if TYPE_CHECKING:
+    from skinslide.arrays.attributes import carry
     from skinslide.arrays.lookup import Lookup, choose_lookup
     from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
     from skinslide.arrays.setups import Controls, PatchSetup, Sample, Subdivision
@@ -116,6 +117,7 @@ __all__ = [
     "bake",
     "bake_to_file",
     "cache",
+    "carry",
     "check",
     "choose_lookup",
     "cmake_dir",
@@ -137,6 +139,7 @@ __all__ = [
 
 # The modules that have these names; a test compares them with what type checkers are told above.
 _HOMES = {
+    "arrays.attributes": ("carry",),
     "arrays.lookup": ("Lookup", "choose_lookup"),
     "arrays.records": ("LookupInfo", "PatchInfo", "PatchResult", "Roughness"),
     "arrays.setups": ("Controls", "PatchSetup", "Sample", "Subdivision"),

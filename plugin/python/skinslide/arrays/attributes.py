@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from skinslide._core import ffi, lib
 from skinslide.arrays.checks import as_array
@@ -11,19 +12,26 @@ from skinslide.arrays.structs import Arguments
 
 
 def carry(
-    face_counts: np.ndarray, face_indices: np.ndarray, turns: np.ndarray, vectors: np.ndarray, interpolation: str
+    face_counts: npt.ArrayLike,
+    face_indices: npt.ArrayLike,
+    turns: npt.ArrayLike,
+    vectors: npt.ArrayLike,
+    interpolation: str,
 ) -> np.ndarray:
-    """The cache's normals, tangents or other vectors on the skin, turned as a frame's skin turned.
+    """Turns the cache's normals, tangents or other vectors on the skin as a frame's skin turned.
 
     Args:
         face_counts: Vertices of each face (F,).
         face_indices: Vertices (sum of counts,), face by face.
-        turns: Of the frame (V, 3): axis times the sine of half the angle.
+        turns: Of a `Frame` (V, 3): axis times the sine of half the angle.
         vectors: The cache's (n, 3).
         interpolation: Which elements have one: vertex, varying, faceVarying or uniform.
 
     Returns:
         float32 (n, 3); those that do not turn keep their bits.
+
+    Raises:
+        SliderError: The arrays do not fit each other, or the interpolation is another.
     """
     native = Arguments()
     mesh = native.mesh(face_counts, face_indices, turns)

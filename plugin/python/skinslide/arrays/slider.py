@@ -31,7 +31,7 @@ class Frame(NamedTuple):
         points: float32 (V, 3).
         patches: What happened to each of the slider's patches, if it was measured; else none.
         embeddings: Each patch laid out in the plane, float64 (patch vertices, 2), if asked for; else None.
-        turns: How the skin turned under each vertex, float32 (V, 3), if asked for; else None. See `carry`.
+        turns: How the skin turned under each vertex, float32 (V, 3), if asked for: see `carry`; else None.
     """
 
     points: np.ndarray
