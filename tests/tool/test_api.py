@@ -1,5 +1,6 @@
 """SkinSlideAPI as pxr has schemas, and set-ups made through it in a stage's edit target."""
 
+import inspect
 import subprocess
 import sys
 import textwrap
@@ -14,10 +15,12 @@ import skinslide
 import stages
 from repository import ROOT
 from skinslide import FrameSpecError, SkinSlideAPI, SkinSlideLiveAPI, SkinSlideMeshAPI, StageProblems, UsageError
+from skinslide.arrays import geometry
 from skinslide.arrays.schema import inputs
-from skinslide.author import mirror, paint, setup
-from skinslide.shot import options
+from skinslide.author import options
+from skinslide.shot import options as shot_options
 from skinslide.shot.frames import checked_frames
+from skinslide.stage import schema
 from skinslide.stage.reading import read_meshes
 from stages import FRAMES, MESH, PATCH
 
@@ -356,12 +359,16 @@ def test_a_layer_and_an_edit_target_get_the_same(chain, tmp_path):
 
 
 BAD = {
-    "no such face": (setup.setup, dict(faces=[36]), "there is no face 36"),
-    "pinched": (setup.setup, dict(faces=[1, 2, 6, 8, 12, 13, 14], rule="unit"), "touches itself"),
-    "no such subset": (setup.setup, dict(subset="gone"), "no GeomSubset gone"),
-    "paint no edge": (paint.paint, dict(value=2, edges=[[0, 8]]), "edges has 0-8, which is not an edge of the mesh"),
-    "paint off the patch": (paint.paint, dict(value=2, edges=[[47, 48]]), "edges chooses no edge of the patch"),
-    "mirror": (mirror.mirror, dict(axis="y"), "no mirror image"),
+    "no such face": (skinslide.setup, dict(faces=[36]), "there is no face 36"),
+    "pinched": (skinslide.setup, dict(faces=[1, 2, 6, 8, 12, 13, 14], rule="unit"), "touches itself"),
+    "no such subset": (skinslide.setup, dict(subset="gone"), "no GeomSubset gone"),
+    "paint no edge": (
+        skinslide.paint,
+        dict(value=2, edges=[[0, 8]]),
+        "edges has 0-8, which is not an edge of the mesh",
+    ),
+    "paint off the patch": (skinslide.paint, dict(value=2, edges=[[47, 48]]), "edges chooses no edge of the patch"),
+    "mirror": (skinslide.mirror, dict(axis="y"), "no mirror image"),
 }
 
 
@@ -413,25 +420,53 @@ def test_an_edit_target_that_takes_nothing(stage, prim):
         skinslide.setup(stage, prim, PATCH, faces=FACES)
 
 
-@pytest.mark.parametrize(
-    ("module", "keywords", "function"),
-    [(setup, "PatchChoice", "setup"), (paint, "EdgeChoice", "paint"), (mirror, "Reflection", "mirror")],
-)
-def test_keywords_are_those_of_the_function(module, keywords, function):
-    """What type checkers know of **choice."""
-    hints = getattr(module, function).__annotations__
-    fixed = {"stage", "prim", "patch", "value", "return"}
-    told = {name: reference.__forward_arg__ for name, reference in getattr(module, keywords).__annotations__.items()}
-    assert told == {name: hints[name] for name in hints if name not in fixed}
+def of_table(table):
+    return {field.name: field.type for field in fields(table)}
 
 
 @pytest.mark.parametrize(
     ("keywords", "table"),
-    [(options.PictureKeywords, options.PictureOptions), (options.MapKeywords, options.MapOptions)],
+    [
+        (shot_options.PictureKeywords, shot_options.PictureOptions),
+        (shot_options.MapKeywords, shot_options.MapOptions),
+        (options.SetupKeywords, options.SetupOptions),
+        (options.PaintKeywords, options.PaintOptions),
+        (options.MirrorKeywords, options.MirrorOptions),
+    ],
 )
 def test_keywords_are_the_options(keywords, table):
+    """What type checkers know of **choice; a mesh, a patch and a value are arguments of their own."""
     told = {name: reference.__forward_arg__ for name, reference in keywords.__annotations__.items()}
-    assert told == {field.name: field.type for field in fields(table)}
+    own = {} if table.__module__ == shot_options.__name__ else {"prim": ..., "patch": ..., "value": ...}
+    assert told == {name: kind for name, kind in of_table(table).items() if name not in own}
+
+
+@pytest.mark.parametrize(
+    ("function", "table"),
+    [
+        (skinslide.setup, options.SetupOptions),
+        (skinslide.setup_to_file, options.SetupOptions),
+        (skinslide.paint, options.PaintOptions),
+        (skinslide.paint_to_file, options.PaintOptions),
+        (skinslide.mirror, options.MirrorOptions),
+        (skinslide.mirror_to_file, options.MirrorOptions),
+    ],
+)
+def test_a_signature_has_the_options(function, table):
+    """With their defaults; the docstring has a line for each, in which keywords stand for flags."""
+    parameters = inspect.signature(function).parameters
+    for field in fields(table):
+        keyword = parameters[field.name]
+        assert keyword.kind != inspect.Parameter.KEYWORD_ONLY or keyword.default == field.default
+        assert f"        {field.name}: " in function.__doc__
+    assert "--" not in function.__doc__ and all(len(line) <= 120 for line in function.__doc__.splitlines())
+
+
+def test_words_of_the_schema_are_its_own():
+    tokens = {"forceDensityRule": options.RULES, "holes": options.HOLES, "interpolation": options.INTERPOLATIONS}
+    for name, words in tokens.items():
+        assert tuple(schema.declared(name).allowedTokens) == words
+    assert options.AXES == geometry.AXES
 
 
 # ---- What is given ----

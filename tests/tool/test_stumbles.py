@@ -54,6 +54,41 @@ def test_a_flag_has_the_name_that_was_typed(words, flag, shot, tmp_path, capfd):
     assert "--most-stretch" not in said and ("--size" in said) == (words[0] != "maps")
 
 
+ON = ["--prim", MESH, "--patch", "other"]
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["setup", *ON, "--faces", "x"], "--faces 'x': 'x' is neither a face nor a range such as 0-120"),
+        (["setup", *ON, "--faces", "3", "--reach", "2"], "--reach and --mirror go with --joint"),
+        (["setup", *ON, "--joint", "arm", "--reach", "-2"], "--reach is -2; it must be above 0, from "),
+        (["setup", *ON, "--faces", "3", "--grow", "-1"], "--grow is -1; it must be 0 or more, "),
+        (["setup", *ON, "--faces", "3", "--frames", "1"], "--frames goes with --whole"),
+        (["setup", *ON[2:], "--faces", "3"], "--prim and --patch are needed, unless --whole is asked for"),
+        (["paint", *ON, "--value", "-2", "--primvar", "a"], "--value is -2; it must be above 0, from "),
+        (["paint", *ON, "--value", "2", "--curve", "/a"], "--curve needs --within, in the mesh's units"),
+        (["paint", *ON, "--value", "2", "--primvar", "a", "--within", "1"], "--within and --direction go with --curve"),
+        (
+            ["paint", *ON, "--value", "2", "--primvar", "a", "--threshold", "nan"],
+            "--threshold is nan; it must be finite",
+        ),
+        (["mirror", *ON, "--plane", "inf"], "--plane is inf; it must be finite"),
+        (["mirror", *ON, "--tolerance", "-1"], "--tolerance is -1; it must be 0 or more, "),
+    ],
+)
+def test_commands_that_author_name_the_flag(words, says, shot, tmp_path, capfd):
+    assert main([words[0], str(shot), "-o", str(tmp_path / "out.usda"), *words[1:]]) == 2
+    assert capfd.readouterr().err.startswith(f"error: {says}")
+    assert [each.name for each in tmp_path.iterdir()] == ["shot.usda"]
+
+
+def test_any_direction_is_no_choice(shot, tmp_path, capfd):
+    """What is given as it is by default asks for nothing."""
+    words = [*ON[:2], "--patch", PATCH, "--value", "2", "--primvar", "none", "--direction", "any"]
+    assert main(["paint", str(shot), "-o", str(tmp_path / "out.usda"), *words]) == 3
+
+
 @pytest.mark.parametrize("command", ["bake", "cache"])
 def test_an_empty_output_is_none(command, shot, capfd):
     assert main([command, str(shot), "-o", ""]) == 2

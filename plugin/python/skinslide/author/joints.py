@@ -13,8 +13,6 @@ from skinslide.stage.finding import is_skinned
 from skinslide.stage.rig import LEAST_WEIGHT, Rig
 from skinslide.stage.skinning import Skinning
 
-REACH = 0.75  # where none is asked for
-
 
 def read_rig(prim: Usd.Prim) -> Rig:
     """The rig of a mesh. Raises Fault."""

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any, NamedTuple, TypedDict, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from skinslide.arrays.geometry import AXES, mirror_faces, mirror_nearest
+from skinslide.arrays.geometry import mirror_faces, mirror_nearest
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import Fault, Problem, SliderError, UsageError, not_one_of
+from skinslide.author.options import MirrorKeywords, MirrorOptions
+from skinslide.problems import Fault, Problem, SliderError, UsageError
 from skinslide.shot.check import CheckReport
+from skinslide.shot.checks import takes
 from skinslide.stage import schema
-from skinslide.stage.given import PrimLike, StageLike, StrPath, given_number, given_text
+from skinslide.stage.given import PrimLike, StageLike, StrPath
 from skinslide.stage.patch import Animation, read_chosen, read_patch
 from skinslide.stage.sides import OTHER_SIDE
 
@@ -35,25 +37,8 @@ _OF_ONE_SIDE = {
 }
 
 
-class Reflection(TypedDict, total=False):
-    """The keywords of `mirror`."""
-
-    to: str | None
-    axis: str
-    plane: float
-    tolerance: float | None
-
-
-def mirror(
-    stage: Usd.Stage,
-    prim: PrimLike,
-    patch: str,
-    *,
-    to: str | None = None,
-    axis: str = "x",
-    plane: float = 0.0,
-    tolerance: float | None = None,
-) -> CheckReport:
+@takes(MirrorOptions)
+def mirror(stage: Usd.Stage, prim: PrimLike, patch: str, **reflection: Unpack[MirrorKeywords]) -> CheckReport:
     """Copies a patch's set-up to the other side of a symmetric mesh, in the stage's edit target.
 
     Faces, corners, paint and settings are copied, with their animation. Maps are sampled and become paint, since the
@@ -67,11 +52,7 @@ def mirror(
         stage: The stage.
         prim: The mesh.
         patch: The patch's name.
-        to: The new patch's name; None: the other side's, such as elbow_R for elbow_L.
-        axis: x, y or z: the mesh is symmetric at rest about the plane where this coordinate is `plane`.
-        plane: That coordinate, in the mesh's units.
-        tolerance: How far a mirror image may be from its counterpart or, by nearest place, from the mesh, in the mesh's
-            units; None: 1e-4 of its largest extent.
+        **reflection: Where it goes.
 
     Returns:
         What `check` says of the mesh; errors of its other patches are warnings.
@@ -82,15 +63,16 @@ def mirror(
         StageProblems: Points or faces have no counterpart, or the new patch could not be slid. Nothing is authored
             then.
     """
-    to = other_side(given_text("patch", patch)) if to is None else given_text("to", to)
-    plane, tolerance = given_number("plane", plane), None if tolerance is None else given_number("tolerance", tolerance)
-    _check_arguments(patch, to, axis, plane, tolerance)
+    asked = MirrorOptions(prim=prim, patch=patch, **reflection)
+    to = other_side(patch) if asked.to is None else asked.to
+    if to == patch:
+        raise UsageError(f"{patch} cannot be mirrored to itself")
     with edited(stage, prim, to, source=patch) as mesh:
         mesh.check_patch(patch)
         animation, faults = read_patch(mesh.prim, patch, mesh.meaning)
         if animation is None:
             raise Fault(faults[0])
-        across = _across(mesh, animation.setup.faces, axis, plane, tolerance)
+        across = _across(mesh, animation.setup.faces, asked)
         copy = _Copy(mesh, patch, animation, across)
         copy.run(read_chosen(mesh.prim, patch, mesh.meaning))
         report = mesh.checked()
@@ -98,6 +80,7 @@ def mirror(
         return replace(report, problems=[*report.problems, *notes])
 
 
+@takes(MirrorOptions)
 def mirror_to_file(
     stage: StageLike,
     output: StrPath,
@@ -105,7 +88,7 @@ def mirror_to_file(
     patch: str,
     *,
     force: bool = False,
-    **reflection: Unpack[Reflection],
+    **reflection: Unpack[MirrorKeywords],
 ) -> CheckReport:
     """Mirrors as `mirror` does, in a layer that sublayers the stage.
 
@@ -138,17 +121,6 @@ def other_side(patch: str) -> str:
     return _SIDE.sub(lambda match: OTHER_SIDE[match[1]], patch)
 
 
-def _check_arguments(patch: str, to: str, axis: str, plane: float, tolerance: float | None) -> None:
-    if to == patch:
-        raise UsageError(f"{patch} cannot be mirrored to itself")
-    if axis not in AXES:
-        raise UsageError(not_one_of("axis", axis, AXES))
-    if not np.isfinite(plane):
-        raise UsageError(f"plane {plane:g} must be finite")
-    if tolerance is not None and not (np.isfinite(tolerance) and tolerance >= 0):
-        raise UsageError(f"tolerance {tolerance:g} must be 0 or more")
-
-
 class _OtherSide(NamedTuple):
     """The faces of the other side, with the faces of this side whose paint they take; the same for vertices."""
 
@@ -159,13 +131,13 @@ class _OtherSide(NamedTuple):
     told: str  # what to say of it, or nothing
 
 
-def _across(mesh: EditedMesh, faces: np.ndarray, axis: str, plane: float, tolerance: float | None) -> _OtherSide:
+def _across(mesh: EditedMesh, faces: np.ndarray, asked: MirrorOptions) -> _OtherSide:
     shape = (mesh.topology.face_counts, mesh.topology.face_indices, mesh.meaning.rest_points(), faces)
     try:
-        found = mirror_faces(*shape, axis=axis, plane=plane, tolerance=tolerance)
+        found = mirror_faces(*shape, axis=asked.axis, plane=asked.plane, tolerance=asked.tolerance)
     except SliderError as error:
         try:
-            nearest = mirror_nearest(*shape, axis=axis, plane=plane, tolerance=tolerance)
+            nearest = mirror_nearest(*shape, axis=asked.axis, plane=asked.plane, tolerance=asked.tolerance)
         except SliderError:
             raise Fault(f"the mesh is not symmetric here: {error}") from error
         told = f"mirrored by nearest place, since faces are not symmetric: the farthest is {nearest.worst:.3g} off"

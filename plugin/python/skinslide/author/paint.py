@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import Any, NamedTuple, TypedDict, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
-import numpy.typing as npt
 from pxr import Gf, Usd, UsdGeom
 
 from skinslide.arrays.geometry import Curves, edges_near, nearest_edge
@@ -18,25 +17,22 @@ from skinslide.arrays.values import integers, positions
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import edited
 from skinslide.author.layer import author_layer
-from skinslide.problems import NO_EDGE, Fault, SliderError, UsageError, counted, not_one_of, one_line
+from skinslide.author.options import PaintKeywords, PaintOptions
+from skinslide.problems import NO_EDGE, Fault, SliderError, counted, one_line
 from skinslide.shot.check import CheckReport
+from skinslide.shot.checks import takes
 from skinslide.stage import schema
 from skinslide.stage.given import (
     PrimLike,
     StageLike,
     StrPath,
     given_array,
-    given_number,
-    given_path,
     given_primvar,
     given_subset,
-    given_text,
 )
 from skinslide.stage.names import prim_of_type
 from skinslide.stage.patch import read_edges, read_faces, read_pairs
 from skinslide.stage.values import FIRST, read_primvar, read_value
-
-DIRECTIONS = ("any", "along", "across")
 
 
 @dataclass(frozen=True)
@@ -80,34 +76,8 @@ class _Surface:
     edges: np.ndarray
 
 
-class EdgeChoice(TypedDict, total=False):
-    """The keywords of `paint`."""
-
-    edges: npt.ArrayLike | None
-    subset: str | None
-    primvar: str | None
-    threshold: float
-    curve: PrimLike | None
-    distance: float | None
-    direction: str
-    clear: bool
-
-
-def paint(
-    stage: Usd.Stage,
-    prim: PrimLike,
-    patch: str,
-    value: float,
-    *,
-    edges: npt.ArrayLike | None = None,
-    subset: str | None = None,
-    primvar: str | None = None,
-    threshold: float = 0.5,
-    curve: PrimLike | None = None,
-    distance: float | None = None,
-    direction: str = "any",
-    clear: bool = False,
-) -> PaintReport:
+@takes(PaintOptions)
+def paint(stage: Usd.Stage, prim: PrimLike, patch: str, value: float, **choice: Unpack[PaintKeywords]) -> PaintReport:
     """Gives edges of a patch a force density, in the stage's edit target.
 
     One of edges, subset, primvar and curve says which edges.
@@ -117,15 +87,7 @@ def paint(
         prim: The mesh.
         patch: The patch's name.
         value: The factor, above 0; it replaces what an edge was painted by edge before.
-        edges: Point indices (k, 2), a pair for each edge of the mesh.
-        subset: The name of a GeomSubset under the mesh, of elementType edge.
-        primvar: The name of a vertex primvar of the mesh: edges with at least `threshold` at both ends.
-        threshold: With `primvar`.
-        curve: A BasisCurves prim drawn on the mesh at rest; its default points are used if it has any, else its first
-            sample. Chooses edges whose middle is within `distance` of it, and that run in `direction` there.
-        distance: With `curve`, in the mesh's units.
-        direction: With `curve`: "along", at 45 degrees or less to it; "across", at more; or "any".
-        clear: First removes what was painted by edge before.
+        **choice: Which edges.
 
     Returns:
         How many edges were painted, and what `check` says of the mesh.
@@ -135,8 +97,8 @@ def paint(
         UsageError: The arguments cannot be used, or the edit target takes no opinions.
         StageProblems: There is no such patch, or nothing to paint. Nothing is authored then.
     """
-    what, choose = _choice(edges, subset, primvar, threshold, curve, distance, direction)
-    _check_value(value)
+    asked = PaintOptions(prim=prim, patch=patch, value=value, **choice)
+    what, choose = _choice(asked)
     with edited(stage, prim, patch) as mesh:
         mesh.check_patch(patch)
         before = read_faces(mesh.prim, patch, mesh.meaning)
@@ -144,14 +106,15 @@ def paint(
         chosen, left_out = _split(choose(_Surface(mesh.prim, mesh.meaning, mesh.topology, own)), own)
         if not len(chosen):
             raise Fault(f"{what} {NO_EDGE}")
-        painted, factors = _before(mesh.prim, before, clear)
+        painted, factors = _before(mesh.prim, before, asked.clear)
         kept = ~_rows_in(painted, chosen)
         painted = np.concatenate([painted[kept], chosen])
-        factors = np.concatenate([factors[kept], np.full(len(chosen), value, np.float32)])
+        factors = np.concatenate([factors[kept], np.full(len(chosen), asked.value, np.float32)])
         SkinSlideAPI(mesh.prim, patch).SetEdges(painted, factors)
-        return PaintReport(patch, value, len(chosen), left_out, len(painted), mesh.checked())
+        return PaintReport(patch, asked.value, len(chosen), left_out, len(painted), mesh.checked())
 
 
+@takes(PaintOptions)
 def paint_to_file(
     stage: StageLike,
     output: StrPath,
@@ -160,7 +123,7 @@ def paint_to_file(
     value: float,
     *,
     force: bool = False,
-    **choice: Unpack[EdgeChoice],
+    **choice: Unpack[PaintKeywords],
 ) -> PaintReport:
     """Paints as `paint` does, in a layer that sublayers the stage.
 
@@ -186,59 +149,24 @@ def paint_to_file(
     return replace(report, check=replace(report.check, stage=str(output)))
 
 
-def _choice(
-    edges: npt.ArrayLike | None,
-    subset: str | None,
-    primvar: str | None,
-    threshold: float,
-    curve: PrimLike | None,
-    distance: float | None,
-    direction: str,
-) -> tuple[str, Callable[[_Surface], np.ndarray]]:
+def _choice(asked: PaintOptions) -> tuple[str, Callable[[_Surface], np.ndarray]]:
     """What chooses edges of a mesh, (n, 2), and how it is called. Raises UsageError."""
-    if not np.isfinite(given_number("threshold", threshold)):
-        raise UsageError(f"threshold {threshold:g} must be finite")
-    near = _near(curve, distance, direction)
-    choices: list[tuple[str, Callable[[_Surface], np.ndarray]]] = []
-    if edges is not None:
-        pairs = given_array("edges", edges, np.int32, (-1, 2))
-        choices.append(("edges", lambda surface: _edges_of_mesh(surface, pairs, "edges")))
-    if subset is not None:
-        given_text("subset", subset)
-        choices.append((subset, partial(_subset_edges, name=subset)))
-    if primvar is not None:
-        given_text("primvar", primvar)
-        choices.append((primvar, partial(_primvar_edges, name=primvar, threshold=threshold)))
-    if near is not None:
-        choices.append((near.curve, partial(_curve_edges, near=near)))
-    if len(choices) != 1:
-        raise UsageError("one of edges, subset, primvar and curve is needed")
-    return choices[0]
+    if asked.subset is not None:
+        return asked.subset, partial(_subset_edges, name=asked.subset)
+    if asked.primvar is not None:
+        return asked.primvar, partial(_primvar_edges, name=asked.primvar, threshold=asked.threshold)
+    if asked.curve is not None and asked.distance is not None:
+        curve = str(asked.curve)
+        return curve, partial(_curve_edges, near=_Near(curve, asked.distance, asked.direction))
+    assert asked.edges is not None  # of several choices one is made
+    pairs = given_array("edges", asked.edges, np.int32, (-1, 2))
+    return "edges", lambda surface: _edges_of_mesh(surface, pairs, "edges")
 
 
 class _Near(NamedTuple):
     curve: str
     distance: float
     direction: str
-
-
-def _near(curve: PrimLike | None, distance: float | None, direction: str) -> _Near | None:
-    if direction not in DIRECTIONS:
-        raise UsageError(not_one_of("direction", direction, DIRECTIONS))
-    if curve is None:
-        if distance is not None or direction != "any":
-            raise UsageError("distance and direction go with a curve")
-        return None
-    if distance is None or not (np.isfinite(distance) and distance >= 0):
-        raise UsageError("a curve needs a distance of 0 or more, in the mesh's units")
-    return _Near(str(given_path("curve", curve)), distance, direction)
-
-
-def _check_value(given: float) -> None:
-    value = given_number("value", given)
-    with np.errstate(over="ignore"):
-        if not (np.isfinite(np.float32(value)) and np.float32(value) > 0):
-            raise UsageError(f"value {value:g} must be finite and above 0")
 
 
 def _rows_in(edges: np.ndarray, others: np.ndarray) -> np.ndarray:

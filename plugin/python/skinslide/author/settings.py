@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Self
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +11,7 @@ from pxr import Usd, UsdGeom
 
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh
+from skinslide.author.options import RULE, SettingOptions
 from skinslide.problems import Fault, in_place_of
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_number, given_primvar
@@ -19,46 +19,29 @@ from skinslide.stage.names import primvar_names, subset_names
 from skinslide.stage.patch import primvar_faces, subset_faces
 from skinslide.stage.values import read_primvar
 
-RULE = "even"  # of new patches
+
+def with_pins_of(prim: Usd.Prim, asked: SettingOptions) -> SettingOptions:
+    """What is asked for, with only those pins that a mesh has."""
+    return replace(asked, pin=[name for name in asked.pin if has_pin(prim, name)])
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Settings to author; those that are None are not authored, except for the rule of a new patch."""
-
-    pins: Sequence[str] = ()
-    weight: npt.ArrayLike | str | None = None
-    rule: str | None = None
-    holes: str | None = None
-    interpolation: str | None = None
-    grow: float | None = None
-
-    def for_mesh(self, prim: Usd.Prim) -> Self:
-        """The settings with only those pins that the mesh has."""
-        return replace(self, pins=[name for name in self.pins if has_pin(prim, name)])
-
-    def author(self, patch: SkinSlideAPI, mesh: EditedMesh, *, is_new: bool) -> None:
-        """Raises UsageError and Fault."""
-        creates: list[tuple[Callable[..., Usd.Attribute], object]] = [
-            (patch.CreateForceDensityRuleAttr, self.rule or (RULE if is_new else None)),
-            (patch.CreateHolesAttr, self.holes),
-            (patch.CreateInterpolationAttr, self.interpolation),
-            (patch.CreateGrowAttr, self.grow),
-        ]
-        for create, value in creates:
-            if value is not None:
-                create(value)
-        if self.weight is not None or self.pins:
-            weight = self._weight(mesh)
-            interpolation = UsdGeom.Tokens.vertex if weight.ndim else UsdGeom.Tokens.constant
-            patch.CreateWeightPrimvar(interpolation, weight.reshape(-1))
-
-    def _weight(self, mesh: EditedMesh) -> np.ndarray:
-        """One for the patch, or one for each point (V,)."""
-        weight = _weight(self.weight, mesh)
-        for name in self.pins:
+def author_settings(asked: SettingOptions, patch: SkinSlideAPI, mesh: EditedMesh, *, is_new: bool) -> None:
+    """Raises UsageError and Fault."""
+    creates: list[tuple[Callable[..., Usd.Attribute], object]] = [
+        (patch.CreateForceDensityRuleAttr, asked.rule or (RULE if is_new else None)),
+        (patch.CreateHolesAttr, asked.holes),
+        (patch.CreateInterpolationAttr, asked.interpolation),
+        (patch.CreateGrowAttr, asked.grow),
+    ]
+    for create, value in creates:
+        if value is not None:
+            create(value)
+    if asked.weight is not None or asked.pin:
+        weight = _weight(asked.weight, mesh)
+        for name in asked.pin:
             weight = np.where(_pinned(name, mesh), np.float32(0), weight)
-        return weight
+        interpolation = UsdGeom.Tokens.vertex if weight.ndim else UsdGeom.Tokens.constant
+        patch.CreateWeightPrimvar(interpolation, weight.reshape(-1))
 
 
 def has_pin(prim: Usd.Prim, name: str) -> bool:
@@ -77,6 +60,7 @@ def _subset(prim: Usd.Prim, name: str) -> UsdGeom.Subset | None:
 
 
 def _weight(given: npt.ArrayLike | str | None, mesh: EditedMesh) -> np.ndarray:
+    """One for the patch, or one for each point (V,)."""
     if isinstance(given, str):
         return _painted(given_primvar(mesh.prim, given), mesh).astype(np.float32)
     if given is None or np.ndim(given) == 0:

@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import TypedDict, Unpack
+from typing import Unpack
 
 import numpy as np
-import numpy.typing as npt
 from pxr import Usd
 
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.author.api import SkinSlideAPI
 from skinslide.author.edit import EditedMesh, checked, edited
-from skinslide.author.joints import REACH, faces_at, read_rig
+from skinslide.author.joints import faces_at, read_rig
 from skinslide.author.layer import author_layer
 from skinslide.author.mirror import other_side
+from skinslide.author.options import (
+    REACH,
+    SKIN,
+    FaceOptions,
+    SettingOptions,
+    SetupKeywords,
+    SetupOptions,
+    parse_faces,
+)
 from skinslide.author.payload import PayloadLayer
-from skinslide.author.settings import Settings, has_pin, pin_names
+from skinslide.author.settings import author_settings, has_pin, pin_names, with_pins_of
 from skinslide.author.whole import left_out, moving_meshes, needed_faces, never
-from skinslide.problems import Fault, Problem, StageProblems, UsageError, in_place_of
+from skinslide.problems import Fault, Problem, StageProblems, in_place_of
 from skinslide.shot.check import CheckReport
-from skinslide.shot.checks import positive, texts
-from skinslide.shot.frames import FramesLike, checked_frames
+from skinslide.shot.checks import takes
+from skinslide.shot.frames import checked_frames
 from skinslide.stage import schema
 from skinslide.stage.given import (
     PrimLike,
@@ -32,7 +39,6 @@ from skinslide.stage.given import (
     StrPath,
     check_face,
     given_faces,
-    given_name,
     given_paths,
     given_primvar,
     given_subset,
@@ -41,47 +47,10 @@ from skinslide.stage.patch import primvar_faces, subset_faces
 from skinslide.write.earlier import without_earlier_bake
 from skinslide.write.target import check_target
 
-_RANGE = re.compile(r"(\d{1,18})(?:[-:](\d{1,18}))?", re.ASCII)
 
-
-class PatchChoice(TypedDict, total=False):
-    """The keywords of `setup`."""
-
-    faces: npt.ArrayLike | str | None
-    subset: str | None
-    primvar: str | None
-    joint: Sequence[str] | str | None
-    reach: float | None
-    mirror: bool
-    whole: bool
-    frames: FramesLike | None
-    pin: Sequence[str] | str
-    weight: npt.ArrayLike | str | None
-    rule: str | None
-    holes: str | None
-    interpolation: str | None
-    grow: float | None
-
-
+@takes(SetupOptions)
 def setup(
-    stage: Usd.Stage,
-    prim: PrimLike | None = None,
-    patch: str | None = None,
-    *,
-    faces: npt.ArrayLike | str | None = None,
-    subset: str | None = None,
-    primvar: str | None = None,
-    joint: Sequence[str] | str | None = None,
-    reach: float | None = None,
-    mirror: bool = False,
-    whole: bool = False,
-    frames: FramesLike | None = None,
-    pin: Sequence[str] | str = (),
-    weight: npt.ArrayLike | str | None = None,
-    rule: str | None = None,
-    holes: str | None = None,
-    interpolation: str | None = None,
-    grow: float | None = None,
+    stage: Usd.Stage, prim: PrimLike | None = None, patch: str | None = None, **choice: Unpack[SetupKeywords]
 ) -> CheckReport:
     """Makes a patch of some faces of a mesh in the stage's edit target, or gives an existing patch other faces.
 
@@ -92,24 +61,7 @@ def setup(
         stage: The stage.
         prim: The mesh. With `whole` any prim, for the meshes at and below it, or None, for all of the stage.
         patch: The patch's name, such as elbow_L; with `whole` it may be None: skin.
-        faces: Indices (n,), a bool for each face of the mesh (F,), or a spec such as "0-120,140".
-        subset: The name of a GeomSubset under the mesh.
-        primvar: The name of a primvar of the mesh, read as the primvar of a patch is.
-        joint: Joints of the Skeleton that the mesh is bound to, by name: faces whose weights mix one of them with its
-            parent or children.
-        reach: How far from a joint, in lengths of the joint: that to its children or, without any, to its parent; None:
-            0.75.
-        mirror: With `joint`, also makes the patch of the other side, found by the names of joints and patch.
-        whole: The faces whose edges ever stretch by over 2 %, and enough around them to give. Each mesh that is
-            rendered, has such edges and can be slid gets one patch.
-        frames: With `whole`, the frames to look at: a spec such as 1001:1024, or numbers; None: every sample.
-        pin: Points that stay, such as lips, lids and nails, by the names of GeomSubsets under the mesh or primvars on
-            it: their weight is 0. With `whole` each mesh has those that it has.
-        weight: How far points slide, 0 to 1: a number, one for each point (V,), or the name of a primvar by point.
-        rule: unit, fast, relaxed or even; None: even for a patch that is new.
-        holes: pinned, free or freeAll.
-        interpolation: auto, linear, meanValue or limit.
-        grow: How far around its faces the patch grows, in the mesh's units.
+        **choice: Its faces and settings.
 
     Returns:
         What `check` says of the meshes; errors of their other patches are warnings.
@@ -119,51 +71,41 @@ def setup(
         UsageError: The arguments cannot be used, or the edit target takes no opinions.
         StageProblems: The patch could not be slid, or nothing that could be stretches. Nothing is authored then.
     """
-    if sum(source is not None for source in (faces, subset, primvar, joint)) + whole != 1:
-        raise UsageError("one of faces, subset, primvar, joint and whole is needed")
-    if joint is None and (reach is not None or mirror):
-        raise UsageError("reach and mirror go with joint")
-    settings = Settings(_names("pin", pin), weight, rule, holes, interpolation, grow)
-    if whole:
-        name, times = "skin" if patch is None else patch, None if frames is None else checked_frames(frames)
-        return _setup_whole(stage, prim, name, times, settings)
-    if prim is None or patch is None or frames is not None:
-        raise UsageError("a prim and a patch are needed, and no frames, where whole is not asked for")
-    if joint is not None:
-        patches = [patch, other_side(patch)] if mirror else [patch]
-        return _setup_joints(stage, prim, patches, _names("joint", joint), reach, settings)
-    with edited(stage, prim, patch) as mesh:
-        own, chosen = SkinSlideAPI(mesh.prim, patch), None
-        if isinstance(faces, str):
-            chosen = _expand(parse_faces(faces), mesh.topology.face_count)
-        elif faces is not None:
-            chosen = given_faces("faces", faces, mesh.topology.face_count)
-        elif subset is not None:
-            chosen = _of_subset(own, subset, mesh.meaning)
-        elif primvar is not None:
-            chosen = _of_primvar(own, primvar, mesh.meaning)
-        _make(mesh, patch, chosen, settings)
+    asked = SetupOptions(prim=prim, patch=patch, **choice)
+    if asked.whole:
+        return _setup_whole(stage, asked)
+    if asked.joint is not None:
+        return _setup_joints(stage, asked)
+    with edited(stage, *asked.place) as mesh:
+        _make(mesh, _faces(mesh, asked), asked)
         return mesh.checked()
 
 
-def _names(argument: str, given: Sequence[str] | str) -> list[str]:
-    return [given_name(f"a {argument}", name) for name in texts(argument, given)]
+def _faces(mesh: EditedMesh, asked: FaceOptions) -> np.ndarray | None:
+    """Those of one mesh that are asked for; None where the patch finds them by itself."""
+    own = SkinSlideAPI(mesh.prim, mesh.patch)
+    if asked.subset is not None:
+        return _of_subset(own, asked.subset, mesh.meaning)
+    if asked.primvar is not None:
+        return _of_primvar(own, asked.primvar, mesh.meaning)
+    assert asked.faces is not None  # of several choices one is made
+    if isinstance(asked.faces, str):
+        return _expand(parse_faces(asked.faces), mesh.topology.face_count)
+    return given_faces("faces", asked.faces, mesh.topology.face_count)
 
 
-def _setup_whole(
-    stage: Usd.Stage, prim: PrimLike | None, patch: str, frames: list[float] | None, settings: Settings
-) -> CheckReport:
+def _setup_whole(stage: Usd.Stage, asked: SetupOptions) -> CheckReport:
     """Makes one patch for each mesh that stretches and can be slid; all of them, or none."""
     check_target(stage)
-    paths = None if prim is None else given_paths("prim", prim)
+    paths = None if asked.prim is None else given_paths("prim", asked.prim)
     with without_earlier_bake(stage, paths):
         moving, barred = moving_meshes(stage, paths)
-        _check_pins([mesh.prim for mesh in moving], settings.pins)
-        faces, said, wrong = needed_faces(moving, frames)
+        _check_pins([mesh.prim for mesh in moving], asked.pin)
+        faces, said, wrong = needed_faces(moving, None if asked.frames is None else checked_frames(asked.frames))
     wrong = [*barred, *wrong]
     while faces:
         try:
-            report = _make_each(stage, faces, patch, settings)
+            report = _make_each(stage, faces, asked)
         except StageProblems as bad:
             own = [each for each in bad.problems if each.prim in faces]
             if not own:
@@ -177,14 +119,15 @@ def _setup_whole(
     raise StageProblems(wrong or [Problem("error", paths[0] if paths else "", None, None, message)])
 
 
-def _make_each(stage: Usd.Stage, faces: dict[str, np.ndarray], patch: str, settings: Settings) -> CheckReport:
+def _make_each(stage: Usd.Stage, faces: dict[str, np.ndarray], asked: SetupOptions) -> CheckReport:
     """Makes the patch of some faces of each mesh, by its path. Raises StageProblems, with those of every mesh."""
     made, wrong = list[EditedMesh](), list[Problem]()
+    patch = SKIN if asked.patch is None else asked.patch
     with ExitStack() as authoring:
         for path, chosen in faces.items():
             try:
                 mesh = authoring.enter_context(edited(stage, path, patch))
-                _make(mesh, patch, chosen, settings.for_mesh(mesh.prim))
+                _make(mesh, chosen, with_pins_of(mesh.prim, asked))
                 made.append(mesh)
             except StageProblems as bad:
                 wrong += bad.problems
@@ -203,34 +146,28 @@ def _check_pins(meshes: Sequence[Usd.Prim], pins: Sequence[str]) -> None:
             raise StageProblems([Problem("error", "", None, None, message)])
 
 
-def _make(mesh: EditedMesh, patch: str, faces: np.ndarray | None, settings: Settings) -> None:
+def _make(mesh: EditedMesh, faces: np.ndarray | None, asked: SettingOptions) -> None:
     """Authors the patch with these faces or, for None, with those that it finds by itself."""
-    is_new = patch not in schema.patch_names(mesh.prim)
-    applied = SkinSlideAPI.Apply(mesh.prim, patch)
+    is_new = mesh.patch not in schema.patch_names(mesh.prim)
+    applied = SkinSlideAPI.Apply(mesh.prim, mesh.patch)
     if faces is not None:
         applied.SetFaces(faces)
-    settings.author(applied, mesh, is_new=is_new)
+    author_settings(asked, applied, mesh, is_new=is_new)
 
 
-def _setup_joints(
-    stage: Usd.Stage,
-    prim: PrimLike,
-    patches: Sequence[str],
-    names: Sequence[str],
-    reach: float | None,
-    settings: Settings,
-) -> CheckReport:
-    """Makes the patch of some joints and, if a second is named, that of their counterparts; both, or none."""
-    far = REACH if reach is None else positive("reach", reach)
+def _setup_joints(stage: Usd.Stage, asked: SetupOptions) -> CheckReport:
+    """Makes the patch of some joints and, if both sides are asked for, that of their counterparts; both, or none."""
+    (prim, patch), reach = asked.place, REACH if asked.reach is None else asked.reach
     with ExitStack() as authoring:
-        for number, patch in enumerate(patches):
-            mesh = authoring.enter_context(edited(stage, prim, patch))
+        for across in (False, True) if asked.mirror else (False,):
+            mesh = authoring.enter_context(edited(stage, prim, other_side(patch) if across else patch))
             rig = read_rig(mesh.prim)
-            joints = [rig.across(rig.find(name)) if number else rig.find(name) for name in names]
-            _make(mesh, patch, faces_at(rig, mesh.topology, joints, far), settings)
+            joints = [rig.across(rig.find(name)) if across else rig.find(name) for name in asked.joint or ()]
+            _make(mesh, faces_at(rig, mesh.topology, joints, reach), asked)
         return mesh.checked()
 
 
+@takes(SetupOptions)
 def setup_to_file(
     stage: StageLike,
     output: StrPath,
@@ -239,7 +176,7 @@ def setup_to_file(
     *,
     force: bool = False,
     payload: StrPath | None = None,
-    **choice: Unpack[PatchChoice],
+    **choice: Unpack[SetupKeywords],
 ) -> CheckReport:
     """Makes a patch as `setup` does, in a layer that sublayers the stage.
 
@@ -268,20 +205,6 @@ def setup_to_file(
     if also:
         also.write()
     return replace(report, stage=str(output))
-
-
-def parse_faces(spec: str) -> list[tuple[int, int]]:
-    """The ranges, first and last face, of a comma-separated list of faces and inclusive ranges: 0-120,140."""
-    ranges = []
-    for part in spec.split(","):
-        match = _RANGE.fullmatch(part.strip())
-        if not match:
-            raise UsageError(f"faces {spec[:40]!r}: {part[:40]!r} is neither a face nor a range such as 0-120")
-        first, last = int(match[1]), int(match[2] or match[1])
-        if last < first:
-            raise UsageError(f"faces {spec!r}: {part!r} runs backwards")
-        ranges.append((first, last))
-    return ranges
 
 
 def _expand(ranges: list[tuple[int, int]], face_count: int) -> np.ndarray:

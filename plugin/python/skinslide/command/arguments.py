@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import Field, fields
 from typing import Any, NoReturn
 
+from skinslide.author.options import EDGES, FACES, MirrorOptions, PaintOptions, SetupOptions
 from skinslide.command.outcome import DONE, EXIT_CODES, say, tell
 from skinslide.problems import UsageError
-from skinslide.shot.checks import Options, count_text, described, number_or_name, positive_text
+from skinslide.shot.checks import Options, count_text, described, positive_text
 from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
 
 _DEVICE_VARIABLE = "SKINSLIDE_EGL_DEVICE"
@@ -114,7 +116,7 @@ def _add_stage(command: argparse.ArgumentParser) -> None:
 def _add_options(command: argparse._ActionsContainer, table: type[Options], *names: str) -> None:
     """Adds options of a table: those named, or all."""
     for each in fields(table):
-        if names and each.name not in names:
+        if (names and each.name not in names) or not each.metadata["flag"]:
             continue
         _add_option(command, each, each.name, *each.metadata["flags"])
         if each.name == "lookup":
@@ -259,11 +261,6 @@ def _add_layer(command: argparse.ArgumentParser) -> None:
     command.add_argument("--force", action="store_true", help="replace whatever exists at the output")
 
 
-def _add_patch(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--prim", required=True, metavar="PATH", help="the mesh")
-    command.add_argument("--patch", required=True, metavar="NAME", help="the patch's name, such as elbow_L")
-
-
 def _add_setup(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
     command.add_argument(
@@ -272,105 +269,25 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
         help="also write FILE, .usda, .usdc or .usd, which payloads the .skinslide and, weaker, STAGE: without "
         "skinslide, where the first cannot be opened, the character shows as its cache has it",
     )
-    command.add_argument("--prim", metavar="PATH", help="the mesh; with --whole any prim (default: the whole stage)")
-    command.add_argument(
-        "--patch", metavar="NAME", help="the patch's name, such as elbow_L (default with --whole: skin)"
-    )
-    faces = command.add_mutually_exclusive_group(required=True)
-    faces.add_argument("--faces", metavar="SPEC", help="faces by index, such as 0-120,140; both ends count")
-    faces.add_argument("--subset", metavar="NAME", help="the faces of the GeomSubset NAME under the mesh")
-    faces.add_argument(
-        "--primvar",
-        metavar="NAME",
-        help="the faces where the primvar NAME is above 0: uniform, of the face; vertex, of all its points",
-    )
-    faces.add_argument(
-        "--joint",
-        type=_names,
-        metavar="NAME[,NAME]",
-        help="the faces of a skinned mesh whose weights mix a joint with its parent or children",
-    )
-    faces.add_argument(
-        "--whole",
-        action="store_true",
-        help="on every mesh that is rendered, the faces whose edges ever stretch by over 2 %%, and enough around them "
-        "to give: nothing need be painted",
-    )
-    command.add_argument(
-        "--reach", type=float, metavar="X", help="for --joint: how far from it, in lengths of the joint (default: 0.75)"
-    )
-    command.add_argument(
-        "--mirror", action="store_true", help="for --joint: also the other side, found by the names of joints and patch"
-    )
-    command.add_argument(
-        "--frames", metavar="SPEC", help="for --whole: frames to look at, such as 1001:1024 (default: every sample)"
-    )
-    command.add_argument(
-        "--pin",
-        action="append",
-        metavar="NAME",
-        help="points that stay, such as lips, lids and nails: a GeomSubset, or a primvar that is above 0 there; may be "
-        "given again",
-    )
-    command.add_argument(
-        "--weight",
-        type=number_or_name,
-        metavar="X",
-        help="how far points slide, 0 to 1, or the name of a primvar of that",
-    )
-    command.add_argument("--rule", metavar="RULE", help="unit, fast, relaxed or even (default of a new patch: even)")
-    command.add_argument("--holes", metavar="HOLES", help="pinned, free or freeAll")
-    command.add_argument("--interpolation", metavar="WAY", help="auto, linear, meanValue or limit")
-    command.add_argument(
-        "--grow", type=float, metavar="D", help="how far around its faces the patch grows, in the mesh's units"
-    )
-
-
-def _names(words: str) -> list[str]:
-    return words.split(",")
+    _add_choice(command, SetupOptions, FACES)
 
 
 def _add_paint(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
-    _add_patch(command)
-    command.add_argument("--value", type=float, required=True, metavar="X", help="the factor, above 0")
-    edges = command.add_mutually_exclusive_group(required=True)
-    edges.add_argument("--subset", metavar="NAME", help="the edges of the GeomSubset NAME, of elementType edge")
-    edges.add_argument("--primvar", metavar="NAME", help="edges with at least --threshold at both ends")
-    edges.add_argument("--curve", metavar="PATH", help="edges near a BasisCurves prim drawn on the mesh at rest")
-    command.add_argument("--threshold", type=float, metavar="X", help="for --primvar (default: 0.5)")
-    command.add_argument(
-        "--within",
-        dest="distance",
-        type=float,
-        metavar="D",
-        help="for --curve: how far from it an edge's middle may be, in the mesh's units",
-    )
-    command.add_argument(
-        "--direction",
-        choices=("any", "along", "across"),
-        help="for --curve: edges at 45 degrees or less to it (along), edges at more (across), or any (default)",
-    )
-    command.add_argument("--clear", action="store_true", help="first remove what was painted by edge before")
+    _add_choice(command, PaintOptions, EDGES)
+
+
+def _add_choice(command: argparse.ArgumentParser, table: type[Options], choices: Sequence[str]) -> None:
+    """Adds options of a table, of which one of some choices must be given."""
+    place = ("prim", "patch")
+    _add_options(command, table, *place)
+    _add_options(command.add_mutually_exclusive_group(required=True), table, *choices)
+    _add_options(command, table, *(each.name for each in fields(table) if each.name not in (*place, *choices)))
 
 
 def _add_mirror(command: argparse.ArgumentParser) -> None:
     _add_layer(command)
-    _add_patch(command)
-    command.add_argument("--to", metavar="NAME", help="the new patch's name (default: elbow_R for elbow_L)")
-    command.add_argument(
-        "--axis",
-        choices=("x", "y", "z"),
-        help="the mesh is symmetric about a plane across it (default: x)",
-    )
-    command.add_argument("--plane", type=float, metavar="X", help="where the plane is (default: 0)")
-    command.add_argument(
-        "--tolerance",
-        type=float,
-        metavar="D",
-        help="how far a mirror image may be from its counterpart or, where faces have none and the nearest are taken, "
-        "from the mesh (default: 1e-4 of the mesh's largest extent)",
-    )
+    _add_options(command, MirrorOptions)
 
 
 def _add_cache(command: argparse.ArgumentParser) -> None:

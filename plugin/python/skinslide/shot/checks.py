@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import inspect
+import math
 import operator
 import re
+import textwrap
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import Field, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from skinslide.problems import SliderError, UsageError, not_one_of
+from skinslide.problems import SliderError, UsageError, listed, not_one_of
 from skinslide.shot.frames import AUTHORED, Chunk, checked_frames
 
 if TYPE_CHECKING:
@@ -21,14 +23,18 @@ if TYPE_CHECKING:
 Check = Callable[[str, Any], Any]  # name and value of an option; gives what it holds, or raises UsageError
 
 T = TypeVar("T", bound=type)
+F = TypeVar("F", bound=Callable[..., Any])
 
 LEAST, MOST = 1e-37, 1e37  # of what is a float in the core
 
 
-def option(default: Any, check: Check, flag: str, *, old: str = "", **words: Any) -> Any:
-    """A field of Options. flag and words are argparse's; an old flag is understood, but not told of."""
-    flags = (flag, old) if old else (flag,)
-    return field(default=default, metadata={"check": check, "flag": flag, "flags": flags, "words": words})
+def option(default: Any, check: Check, flag: str, *, old: str = "", python: str = "", **words: Any) -> Any:
+    """A field of Options. flag and words are argparse's; an old flag is understood, but not told of.
+
+    What has no flag is for Python alone. python is what docstrings say beside the help.
+    """
+    known = {"check": check, "flag": flag, "flags": tuple(filter(None, (flag, old))), "words": words, "python": python}
+    return field(default=default, metadata=known)
 
 
 @dataclass(frozen=True)
@@ -44,10 +50,56 @@ class Options:
                     error.name_option(each.name, each.metadata["flags"])
                     raise
 
+    def _needs_one_of(self, names: Sequence[str]) -> None:
+        """Raises UsageError unless one of some options is given, and no other of these."""
+        if len([name for name in names if self._is_given(name)]) != 1:
+            raise self._fault(f"one of {listed([f'{{{name}}}' for name in names])} is needed")
+
+    def _go_with(self, names: Sequence[str], other: str) -> None:
+        """Raises UsageError where one of some options is given, but not the other with which they have a meaning."""
+        if not self._is_given(other) and any(map(self._is_given, names)):
+            verb = "go" if len(names) > 1 else "goes"
+            raise self._fault(f"{listed([f'{{{name}}}' for name in names])} {verb} with {{{other}}}")
+
+    def _is_given(self, name: str) -> bool:
+        value, default = getattr(self, name), self.__dataclass_fields__[name].default
+        return value is not default and not (isinstance(value, str) and value == default)
+
     @classmethod
     def _fault(cls, template: str) -> UsageError:
         """An error that names several of the options, which are in braces."""
-        return UsageError.of_options(template, {each.name: each.metadata["flags"] for each in fields(cls)})
+        return UsageError.of_options(
+            template, {each.name: each.metadata["flags"] or (each.name,) for each in fields(cls)}
+        )
+
+
+def takes(table: type[Options]) -> Callable[[F], F]:
+    """Gives a function that takes options as keywords their signature, and a line for each of them in its docstring."""
+
+    def told(function: F) -> F:
+        signature = inspect.signature(function)
+        fixed = [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
+        options = [each for each in fields(table) if each.name not in signature.parameters]
+        keywords = [
+            inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, default=each.default, annotation=each.type)
+            for each in options
+        ]
+        vars(function)["__signature__"] = signature.replace(parameters=[*fixed, *keywords])
+        lines = "\n".join(_argument(each, table) for each in options)
+        function.__doc__ = re.sub(r" +\*\*\w+: .*", lambda _: lines, function.__doc__ or "")
+        return function
+
+    return told
+
+
+def _argument(each: Field[Any], table: type[Options]) -> str:
+    """An option in the docstring of a function, which has keywords for flags."""
+    keywords = {flag: other.name for other in fields(table) for flag in other.metadata["flags"]}
+    choices = each.metadata["words"].get("choices", ())
+    more = f"One of {', '.join(choices)}" if choices else each.metadata["python"]
+    text = ". ".join(filter(None, [described(each, each.default), more]))
+    text = re.sub(r"--[a-z-]+", lambda flag: f"`{keywords[flag[0]]}`", f"{text[0].upper()}{text[1:]}.")
+    return textwrap.fill(f"{each.name}: {text}", 120, initial_indent=" " * 8, subsequent_indent=" " * 12)
 
 
 def described(each: Field[Any], default: Any) -> str:
@@ -78,6 +130,45 @@ def or_none(check: Check) -> Check:
 
 def truth(_name: str, value: Any) -> bool:
     return bool(value)
+
+
+def anything(_name: str, value: Any) -> Any:
+    return value
+
+
+def text(name: str, value: Any) -> str:
+    from skinslide.stage.given import given_text
+
+    return given_text(name, value)
+
+
+def name(what: str) -> Check:
+    """Of something on a mesh."""
+
+    def check(name: str, value: Any) -> str:
+        from skinslide.stage.given import given_name
+
+        return given_name(what, text(name, value))
+
+    return check
+
+
+_primvar = name("a primvar")
+
+
+def names(what: str) -> Check:
+    def check(name: str, words: Sequence[str] | str) -> list[str]:
+        from skinslide.stage.given import given_name
+
+        return [given_name(what, word) for word in texts(name, words)]
+
+    return check
+
+
+def path(name: str, given: PrimLike) -> str:
+    from skinslide.stage.given import given_path
+
+    return str(given_path(name, given))
 
 
 def prim(name: str, given: PrimLike) -> str:
@@ -150,12 +241,30 @@ def not_negative(name: str, number: Any) -> float:
     return found
 
 
+def finite(name: str, number: Any) -> float:
+    from skinslide.stage.given import given_number
+
+    found = given_number(name, number)
+    if not math.isfinite(found):
+        raise UsageError(f"{name} is {found:g}; it must be finite")
+    return found
+
+
+def weight(name: str, given: Any) -> Any:
+    """A number, the name of a primvar, or an array."""
+    return _primvar(name, given) if isinstance(given, str) else given
+
+
 def chunk(_name: str, given: object) -> Chunk:
     return Chunk.parse(given)
 
 
-def frames(_name: str, given: FramesLike) -> AskedFrames:
-    return AUTHORED if isinstance(given, str) and given == AUTHORED else checked_frames(given)
+def frames(name: str, given: FramesLike) -> AskedFrames:
+    return AUTHORED if isinstance(given, str) and given == AUTHORED else named_frames(name, given)
+
+
+def named_frames(_name: str, given: FramesLike) -> list[float]:
+    return checked_frames(given)
 
 
 def lookup(_name: str, asked: str | Lookup) -> Lookup:
