@@ -207,8 +207,7 @@ def _chosen(
     fetched: Fetched, name: str, edges: np.ndarray, choose: Callable[[Surface, np.ndarray], np.ndarray]
 ) -> np.ndarray:
     surface = Surface(fetched)
-    patch = next(each for each in fetched.patches if each.name == name)
-    own = surface.topology.edges_of(surface.patch(patch, only=CHOOSING).faces)
+    own = surface.topology.edges_of(surface.patch(fetched.patch(name), only=CHOOSING).faces)
     count = surface.topology.vertex_count
     chosen = choose(surface, edges) & np.isin(edge_keys(edges, count), edge_keys(own, count))
     if not chosen.any():

@@ -17,7 +17,7 @@ from skinslide.arrays.schema import can_name_patch, input_of
 from skinslide.problems import NO_PATCH_NAME, Fault
 
 from . import settings
-from .fetch import EDGES, fetch, group_weights
+from .fetch import EDGES, INTERPOLATIONS, KINDS, fetch, group_weights
 from .reading import Fetched, FetchedPatch, check_one_piece
 from .work import Waiting, asked
 
@@ -179,15 +179,13 @@ def remove_paint(thing: bpy.types.Object, patch: str) -> None:
 
 # ---- Writing paint ----
 
-# Blender's domain, by interpolation; Blender's type and the property that holds an element, by type of element.
-DOMAINS = {"vertex": "POINT", "varying": "POINT", "uniform": "FACE", "faceVarying": "CORNER"}
+# The tables of fetch.py the other way round: Blender's domain, by interpolation; Blender's type and the property that
+# holds an element, by type of element.
+DOMAINS = {"varying": "POINT", **{name: domain for domain, name in INTERPOLATIONS.items() if domain != "EDGE"}}
 _TYPES = {
-    ("b", 1): ("BOOLEAN", "value"),
-    ("i", 1): ("INT", "value"),
-    ("f", 1): ("FLOAT", "value"),
-    ("f", 2): ("FLOAT2", "vector"),
-    ("f", 3): ("FLOAT_VECTOR", "vector"),
-    ("f", 4): ("FLOAT_COLOR", "color"),
+    (np.dtype(dtype).kind, width): (kind, held)
+    for kind, (held, width, dtype, _) in KINDS.items()
+    if kind != "BYTE_COLOR"  # which holds less than a float
 }
 
 

@@ -17,7 +17,7 @@ from skinslide.arrays.schema import DEFAULT_TIME, Input, inputs
 from skinslide.arrays.setups import PatchSetup
 from skinslide.arrays.slider import Slider
 from skinslide.arrays.topology import Topology
-from skinslide.problems import Fault, SliderError
+from skinslide.problems import Fault, SliderError, noting
 
 CHOOSING = ("paintChannel", "patch", "forceDensityRule", "grow")  # what the faces of a patch depend on
 Numbers = Sequence[Sequence[tuple[Input, Value]]]
@@ -51,6 +51,10 @@ class Fetched:
     primvars: dict[str, Value]
     patches: tuple[FetchedPatch, ...]
 
+    def patch(self, name: str) -> FetchedPatch:
+        """The patch of a name."""
+        return next(each for each in self.patches if each.name == name)
+
 
 class Slid(NamedTuple):
     """A frame: points (V, 3) and stretch (V,), and what happened to each patch."""
@@ -67,7 +71,7 @@ class Surface:
         self.fetched, self.meaning, self._painted = fetched, MeshMeaning(), Names(fetched.primvars)
         with joined() as faults:
             _take(self.meaning, ((each, self._value(each)) for each in inputs("mesh")), faults)
-            with _noting(faults):
+            with noting(faults):
                 if self.meaning.has_faces:
                     self.meaning.take_space(fetched.to_world, 0)
         self.topology = Topology.of(self.meaning)
@@ -90,7 +94,7 @@ class Surface:
         wanted = [each for each in inputs("patch") if only is None or each.name in only]
         with joined(fetched.name) as faults:
             _take(meaning, ((each, self.painted(meaning, each, fetched)) for each in wanted), faults)
-            with _noting(faults):
+            with noting(faults):
                 meaning.take_subset(None)
         return meaning
 
@@ -109,7 +113,7 @@ class Surface:
             named = ((each, each.property()) for each in controls.coordinates())
             nothing = ((each, Value(name, NOTHING, each.type_name)) for each, name in named)
             _take(controls, ((each, self.fetched.primvars.get(value.name, value)) for each, value in nothing), faults)
-            with _noting(faults):
+            with noting(faults):
                 give_files(controls, self.fetched.folder)
         return controls
 
@@ -117,9 +121,8 @@ class Surface:
 def check_paint(fetched: Fetched, name: str, source: Input, value: Value) -> None:
     """Raises Fault for what cannot be painted on a patch."""
     surface = Surface(fetched)
-    patch = next(each for each in fetched.patches if each.name == name)
-    with joined(name) as faults, _noting(faults):
-        controls = ControlsMeaning(surface.patch(patch, only=CHOOSING))
+    with joined(name) as faults, noting(faults):
+        controls = ControlsMeaning(surface.patch(fetched.patch(name), only=CHOOSING))
         controls.take(source, value)
         controls.get()
 
@@ -136,7 +139,7 @@ class Sliding:
         self._meanings, self._base = list[PatchMeaning](), list[ControlsMeaning]()
         with joined() as faults:
             for patch in fetched.patches:
-                with _noting(faults):
+                with noting(faults):
                     self._meanings.append(surface.patch(patch))
                     self._base.append(surface.controls(self._meanings[-1], patch))
         if not self._base:
@@ -210,16 +213,8 @@ def give_files(controls: ControlsMeaning, folder: str) -> None:
 
 def _take(taker: Taker, values: Iterable[tuple[Input, Value]], faults: list[str]) -> None:
     for source, value in values:
-        with _noting(faults):
+        with noting(faults):
             taker.take(source, value)
-
-
-@contextmanager
-def _noting(faults: list[str]) -> Iterator[None]:
-    try:
-        yield
-    except Fault as fault:
-        faults.append(str(fault))
 
 
 @contextmanager

@@ -65,11 +65,9 @@ def read_setup(path: str, prim_path: str, counts: np.ndarray, indices: np.ndarra
     from skinslide.stage.schema import patch_names
     from skinslide.stage.taking import take_mesh
 
-    try:
+    with as_fault():
         stage = open_stage(path)
         text = read_text_layer(Path(path)) if path.endswith(".skinslide") else stage.GetRootLayer()
-    except StageError as error:
-        raise Fault(str(error)) from error
     found = [each for each in patched_prims(stage) if prim_path in ("", str(each.GetPath()))]
     matching = [(prim, mesh) for prim in found if (mesh := _with_faces(take_mesh(prim), counts, indices))]
     if len(matching) != 1:

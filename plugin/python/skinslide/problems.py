@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING, Any, Self
@@ -147,6 +148,15 @@ class SliderError(RuntimeError):
 
 class Fault(Exception):
     """What is wrong with a value, said by code that need not know the prim, patch and frame it is read for."""
+
+
+@contextmanager
+def noting(faults: list[str]) -> Iterator[None]:
+    """Adds a Fault that the block raises to the faults."""
+    try:
+        yield
+    except Fault as fault:
+        faults.append(str(fault))
 
 
 def one_line(text: str) -> str:

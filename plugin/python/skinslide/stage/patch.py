@@ -14,11 +14,11 @@ from skinslide.arrays.meaning import ControlsMeaning, MeshMeaning, Names, PatchM
 from skinslide.arrays.schema import Input, input_of, inputs
 from skinslide.arrays.setups import Controls, PatchSetup
 from skinslide.arrays.values import integers
-from skinslide.problems import Fault
+from skinslide.problems import Fault, noting
 from skinslide.stage import schema
 from skinslide.stage.neighbours import Neighbours
 from skinslide.stage.textures import give_files
-from skinslide.stage.values import FIRST, Source, Span, noting, read_primvar, read_value, take
+from skinslide.stage.values import FIRST, Source, Span, read_primvar, read_value, take
 
 _CHOOSING = ("paintChannel", "patch")  # what the chosen faces depend on
 

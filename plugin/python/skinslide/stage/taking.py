@@ -9,9 +9,9 @@ from pxr import Usd, UsdGeom
 
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.arrays.schema import Input, inputs
-from skinslide.problems import Fault
+from skinslide.problems import Fault, noting
 from skinslide.stage.skinning import SkinnedPoints, Skinning
-from skinslide.stage.values import FIRST, Source, noting, take
+from skinslide.stage.values import FIRST, Source, take
 
 
 def take_mesh(prim: Usd.Prim, skinning: Skinning | None = None) -> tuple[MeshMeaning, list[str]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom
@@ -12,7 +11,7 @@ from pxr import Sdf, Tf, Usd, UsdGeom
 from skinslide.arrays.fetched import NOTHING, Asset, Other, Value
 from skinslide.arrays.meaning import Taker
 from skinslide.arrays.schema import DEFAULT_TIME, STILL, Input, say
-from skinslide.problems import MOST_FRAMES, Fault, UsageError, usd_message
+from skinslide.problems import MOST_FRAMES, Fault, UsageError, noting, usd_message
 
 Span = tuple[float, float]  # first and last moment
 FIRST = Usd.TimeCode.EarliestTime()
@@ -182,12 +181,3 @@ def take(taker: Taker, sources: Iterable[Source]) -> list[str]:
             for frame, value in source.later() if source.wanted.when == STILL else ():
                 taker.check(source.wanted, value, frame)
     return faults
-
-
-@contextmanager
-def noting(faults: list[str]) -> Iterator[None]:
-    """Adds a Fault that the block raises to the faults."""
-    try:
-        yield
-    except Fault as fault:
-        faults.append(str(fault))
