@@ -28,7 +28,7 @@ Times = dict[str, list[tuple[float, float]]]  # of each step, by the clock and o
 
 
 def timed(call: Callable[[], Any], times: Times, name: str) -> Any:
-    """What a call gives; and notes how long it took."""
+    """Returns what a call gives, and notes how long it took."""
     start = time.perf_counter(), time.thread_time()
     try:
         return call()

@@ -26,7 +26,7 @@ _BETWEEN = 0.01  # seconds between looks at the memory
 
 
 class Shot(NamedTuple):
-    """A square sheet with square patches, of a square number, side by side."""
+    """A square sheet with square patches side by side, whose number is a square."""
 
     points: int
     patches: int
@@ -76,13 +76,13 @@ def make(shot: Shot, rule: str, path: Path) -> None:
 
 
 def anonymous() -> int:
-    """Bytes of this process."""
+    """The bytes of memory of this process."""
     status = Path("/proc/self/status").read_text()
     return 1024 * int(status.partition("RssAnon:")[2].split()[0])
 
 
 def measure(stage: Path, jobs: int) -> dict[str, float]:
-    """Bakes it, in this process."""
+    """Bakes the shot in this process."""
     most, ended, first = anonymous(), threading.Event(), 0.0
 
     def watch() -> None:

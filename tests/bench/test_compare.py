@@ -35,7 +35,7 @@ def test_patches_of_the_paper_have_its_counts():
 
 
 def test_points_lie_as_said():
-    """From one point to the next it is far where they are shuffled, and near along a curve."""
+    """Consecutive points are far apart if they are shuffled, and near if they follow a curve."""
     far = {}
     for kind in patches.KINDS:
         steps = np.diff(patches.patch_of(kind, 2500).rest, axis=0)

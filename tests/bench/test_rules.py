@@ -15,7 +15,7 @@ def rules():
 
 
 def test_shares_are_of_what_can_be_removed(rules, example_stage):
-    """No rule beats a search that begins where the rule ends, and one that is near it removes nearly all."""
+    """No rule beats a search that starts where the rule ends, and one that comes near removes nearly all."""
     rows = {row[1]: dict(zip(rules.HEADINGS, row, strict=True)) for row in rules.rows(example_stage("finger"))}
     assert list(rows) == ["unit", "even", "relaxed"]
     for row in rows.values():
@@ -34,6 +34,6 @@ def test_the_core_measures_the_same_roughness(rules, example_stage):
 
 
 def test_rules_that_cannot_slide_a_patch_are_left_out(rules):
-    """The paper's on a closed surface."""
+    """As those of the paper cannot, on a closed surface."""
     mesh = read_meshes(stages.patched_stage(stages.box())[0])[0][0]
     assert list(rules.sliders_of(mesh, rules.RULES)) == ["even", "relaxed"]

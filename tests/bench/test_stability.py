@@ -18,7 +18,7 @@ def sphere(stability):
 
 
 def test_a_spread_is_of_directions(stability):
-    """Alone, and of those displacements that are long enough."""
+    """A spread depends on directions alone, and only on displacements that are long enough."""
     towards = np.array([[1.0, 0.0], [2.0, 0.0], [0.0, 0.01]])
     assert stability.spread(towards) == 0
     assert stability.spread(np.array([[1.0, 0.0], [-1.0, 1e-9]])) == pytest.approx(180)
@@ -27,7 +27,7 @@ def test_a_spread_is_of_directions(stability):
 
 @pytest.mark.parametrize("weights", ["harmonic", "mean_value"])
 def test_weights_leave_a_flat_net_where_it_is(stability, sphere, weights):
-    """Both reproduce the plane: each vertex of any flat net is in the mean of its neighbours."""
+    """Both weights reproduce the plane: in any flat net each vertex is the mean of its neighbours."""
     chance = np.random.default_rng(0)
     flat = sphere.rest + np.where(np.isnan(sphere._border), chance.normal(0, 0.005, sphere.rest.shape), 0)
     found = getattr(stability, weights)(np.column_stack([flat, np.zeros(len(flat))]), sphere.faces)
@@ -46,7 +46,7 @@ def test_unit_is_the_rule_of_the_core(stability, sphere):
 
 
 def test_only_harmonic_weights_turn_triangles_over(stability, sphere):
-    """The others are positive."""
+    """All other weights are positive."""
     found = stability.curves(sphere)
     assert {kind: curve.folds > 0 for kind, curve in found.items()} == {
         "unit": False,

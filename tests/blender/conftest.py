@@ -34,7 +34,7 @@ SIDE = 12  # of the sheet inside
 
 @dataclass(frozen=True)
 class Blender:
-    """The environment, the folder that stands for a user's, and the one for what tests leave."""
+    """Blender's Python, a folder in place of a user's, and a folder for what tests leave."""
 
     python: Path
     user: Path
@@ -70,7 +70,7 @@ def find_python(wanted: tuple[int, int]) -> Path | None:
 
 
 def make_environment(home: Path, python: Path, packages: Sequence[str]) -> str | None:
-    """Has an environment with these packages and no other, made once. Gives why one of them cannot be had."""
+    """Makes an environment with these packages alone, once. Returns why one cannot be had, or nothing."""
     stamp, wanted = home / "packages", f"{python} {packages}"
     if stamp.is_file() and stamp.read_text() == wanted:
         return None
@@ -99,7 +99,7 @@ _missing: dict[str, str] = {}  # why a version is not tested
 
 @pytest.fixture(scope="session", params=VERSIONS)
 def environment(request) -> Environment:
-    """Of a version. Skips where it cannot be had; where it is had and does not load, that is an error."""
+    """Blender of one version. Skips if it cannot be had; if it can and does not load, that is an error."""
     version, wanted = request.param, python_of(request.param)
     base, home = find_python(wanted), HOME / version
     if base is None:
@@ -119,13 +119,13 @@ def environment(request) -> Environment:
 
 
 def pytest_terminal_summary(terminalreporter) -> None:
-    """Says it where nobody overlooks it."""
+    """Says which versions were not tested, where nobody overlooks it."""
     for version, why in _missing.items():
         terminalreporter.write_line(f"Blender {version} was not tested: {why}", yellow=True, bold=True)
 
 
 def _sources() -> str:
-    """What goes into the extension."""
+    """A digest of all that goes into the extension."""
     folders = ("core", "plugin", "schema")
     files = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.is_file()]
     files = sorted(path for path in files if "__pycache__" not in path.parts)
@@ -134,7 +134,7 @@ def _sources() -> str:
 
 @pytest.fixture(scope="session")
 def extension(environment) -> Path:
-    """The zip, built by its one command with the Python of Blender, where its sources have changed."""
+    """The zip, built by its one command with Blender's Python if sources have changed."""
     home = HOME / "python{}.{}".format(*environment.number)
     archive, stamp, sources = home / "skinslide.zip", home / "sources", _sources()
     if not (archive.is_file() and stamp.is_file() and stamp.read_text() == sources):
@@ -157,7 +157,7 @@ def blender(environment, extension, tmp_path_factory) -> Blender:
 
 @pytest.fixture(scope="session")
 def results(blender) -> dict[str, str]:
-    """Of each test inside what went wrong, or nothing."""
+    """What went wrong in each test inside Blender: empty for nothing."""
     _give(blender.out / "given.skinslide")
     report = blender.out / "report.xml"
     done = blender.run(
@@ -175,7 +175,7 @@ def _cases(report: Path) -> Iterator[tuple[str, str]]:
 
 
 def _give(path: Path) -> None:
-    """A set-up of the tool's, of the faces of the sheet inside."""
+    """Writes a set-up by the tool, for the faces of the sheet inside."""
     shape = stages.grid(SIDE, SIDE)
     stage, mesh = stages.patched_stage(shape)
     for prop in mesh.GetPrim().GetAuthoredPropertiesInNamespace("primvars"):

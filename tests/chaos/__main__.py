@@ -18,7 +18,7 @@ from chaos.attacks import KINDS, Attack, Ground
 def attacks(
     seed: int, ground: Ground, numbers: Iterator[int], kinds: list[str]
 ) -> Iterator[tuple[int, str, list[str]]]:
-    """The number, the kind and the faults of each, kind by kind."""
+    """The number, the kind and the faults of each attack, kind by kind."""
     for number in numbers:
         kind = kinds[number % len(kinds)]
         yield number, kind, KINDS[kind](Attack(ground, f"{number}", random.Random(f"{seed} {number}")))

@@ -139,12 +139,12 @@ def kill(attack: Attack) -> list[str]:
 
 
 def kill_at_a_call(attack: Attack) -> list[str]:
-    """A signal where something is about to be opened, written, synced, renamed, closed or made."""
+    """Sends a signal when something is about to be opened, written, synced, renamed, closed or made."""
     return _strike(attack, _file_calls(attack), [-number for number in _SIGNALS])
 
 
 def killed_job(attack: Attack) -> list[str]:
-    """Tasks of a job, killed and tried again until each has ended: then there is the bake of one machine."""
+    """Kills the tasks of a job and tries them again until each has ended: the result is the bake of one machine."""
     with attack.ground.folder(attack.name) as folder:
         return races.killed_job(folder, attack.chance)
 
@@ -157,12 +157,12 @@ def failing_call(attack: Attack) -> list[str]:
 
 
 def failing_allocation(attack: Attack) -> list[str]:
-    """Of skinslide's own libraries, or those that they compute with."""
+    """Fails an allocation of skinslide's own libraries, or of those that they compute with."""
     return _strike(attack, ["ours"] if attack.unhurt.calls["ours"] else _file_calls(attack), [errno.ENOMEM])
 
 
 def failing_allocation_of_anybody(attack: Attack) -> list[str]:
-    """Of Python or USD for the most part, once skinslide has computed."""
+    """Fails an allocation, mostly Python's or USD's, once skinslide has computed."""
     return _strike(attack, ["any"] if attack.unhurt.calls["any"] else _file_calls(attack), [errno.ENOMEM], others=True)
 
 
@@ -192,7 +192,7 @@ def limited_open_files(attack: Attack) -> list[str]:
 
 
 def limited_memory(attack: Attack) -> list[str]:
-    """A little less than it takes, or a little more: with much less, USD and Python do not load."""
+    """Allows a little less memory than it takes, or a little more: with much less, USD and Python do not load."""
     most = round(attack.unhurt.calls["memory"] * 1024 * attack.chance.uniform(0.8, 1.05))
     return _limited(attack, resource.RLIMIT_AS, most, others=True)
 
@@ -205,7 +205,7 @@ def _limited(attack: Attack, kind: int, most: int, others: bool = False) -> list
 
 
 def full_disk(attack: Attack) -> list[str]:
-    """A small disk; where none can be mounted, a limit on the size of files stands in for it."""
+    """Writes to a small disk or, if none can be mounted, under a limit on the size of files."""
     if not attack.ground.mounts:
         return limited_file_size(attack)
     disk = attack.ground.work / attack.name

@@ -22,7 +22,7 @@ _ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tests" 
 
 
 def two_bakes(folder: Path, chance: random.Random) -> list[str]:
-    """The one that ends last is there, whole."""
+    """The output is that of the bake that ends last, whole."""
     ranges = ("1001-1004", "1003-1008")
     whole = [_baked(folder, frames) for frames in ranges]
     before = set(snapshot(folder))
@@ -60,7 +60,7 @@ def killed_job(folder: Path, chance: random.Random) -> list[str]:
 
 
 def _killed(folder: Path, task: tuple[str, ...], moment: float | None) -> Ended:
-    """A task that is killed at a moment; None: it is left alone."""
+    """Runs a task that is killed after a moment; None: it is not killed."""
 
     def strike(process: subprocess.Popen[str]) -> None:
         if moment is not None:
@@ -71,7 +71,7 @@ def _killed(folder: Path, task: tuple[str, ...], moment: float | None) -> Ended:
 
 
 def three_edits(folder: Path) -> list[str]:
-    """Each of them is in the file."""
+    """Each of the edits is in the file."""
     words = ("shot.usda", "-o", "patches.skinslide", "--prim", MESH, "--patch")
     edits = [
         ("setup", *words, "more", "--faces", "100-120"),

@@ -29,17 +29,17 @@ class Field:
         self.options, self.folder = options, folder
 
     def ours(self, *arguments: str, name: str = "skinslide") -> list[Entry]:
-        """This tree's, and the other revision's."""
+        """The entries of this tree, and of the other revision."""
         words = ("ours", "Ours", *arguments)
         other = [Entry(f"{name}, {self.options.revision}", self.options.python, words, self.options.against)]
         return [Entry(name, self.options.python, words), *(other if self.options.against else [])]
 
     def points_alone(self) -> Entry:
-        """This tree's, as far as peers go: they measure no stretch."""
+        """The entry of this tree that does as much as peers do: they measure no stretch."""
         return Entry("skinslide, points alone", self.options.python, ("ours", "PointsAlone"))
 
     def rounds(self, size: int) -> int:
-        """Fewer where frames of the slowest take seconds."""
+        """How many rounds: fewer if frames of the slowest contestant take seconds."""
         return self.options.rounds if size < 50_000 else max(2, self.options.rounds // 2)
 
     def peers(self) -> list[Entry]:
@@ -81,7 +81,7 @@ def compare_peers(field: Field, kind: str, size: int) -> None:
 
 
 def compare_rules(field: Field, size: int) -> None:
-    """Each beside the other revision's; frames of both may differ where a rule has changed."""
+    """Compares each rule with the other revision's; frames of both may differ if the rule has changed."""
     patch = quads(size)
     costs = {}
     for rule in RULES:
@@ -92,7 +92,7 @@ def compare_rules(field: Field, size: int) -> None:
 
 
 def compare_lookups(field: Field) -> None:
-    """As the paper's table: patches of as many vertices and edges, by both lookups, of which one waits for a device."""
+    """Compares both lookups, one of which waits for a device, on patches of the sizes in the paper's table."""
     for patch in papers():
         entries = [entry for lookup in ("exact", "egl") for entry in field.ours("unit", "linear", lookup, name=lookup)]
         costs = contest(entries, patch, field.folder, field.options.rounds)
@@ -101,7 +101,7 @@ def compare_lookups(field: Field) -> None:
 
 
 def show(title: str, costs: Mapping[str, Cost], stages: Sequence[str]) -> None:
-    """Milliseconds of a thread, the median frame's; how many times those of the first; memory."""
+    """Prints milliseconds of a thread for the median frame, their ratio to the first contestant's, and memory."""
     first = next(iter(costs.values()))
     two = any(cost.two for cost in costs.values())
     print(f"\n### {title}\n")

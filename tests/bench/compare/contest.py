@@ -55,7 +55,7 @@ class Cost:
     two: float = 0
 
     def stage(self, name: str) -> float:
-        """The median frame's."""
+        """The seconds of a stage in the median frame."""
         return median(frame.get(name, 0) for frame in self.frames)
 
 
@@ -71,7 +71,7 @@ class Worker:
         )
 
     def ask(self, *request: Any) -> dict[str, float]:
-        """Raises RuntimeError where it ended."""
+        """Asks the worker, and returns its answer. Raises RuntimeError if it has ended."""
         assert self._process.stdin and self._process.stdout
         self._process.stdin.write(json.dumps(request) + "\n")
         self._process.stdin.flush()
@@ -88,7 +88,7 @@ class Worker:
 def contest(
     entries: Sequence[Entry], patch: Patch, folder: Path, rounds: int, *, two: bool = False, agree: bool = True
 ) -> dict[str, Cost]:
-    """Costs by name. All take the border of the first entry, and must agree with it, or SystemExit is raised."""
+    """Returns costs by name. All take the border of the first entry and must agree with it, else raises SystemExit."""
     with _workers(entries) as workers:
         costs = _begun(workers, patch, folder)
         times = {worker.name: _times(worker) for worker in workers}
@@ -105,7 +105,7 @@ def contest(
 
 
 def _times(worker: Worker) -> int:
-    """How often to slide a pose at a time: for a moment, and once at least."""
+    """How often to slide a pose in a row: for a moment, and at least once."""
     worker.ask("frame", 0, 1)  # warms caches
     return max(1, round(_MOMENT / worker.ask("frame", 0, 1)["frame"]))
 

@@ -23,7 +23,7 @@ class Ours:
 
     @property
     def rest_embedding(self) -> np.ndarray | None:
-        """Vertices of the patch are those of the mesh."""
+        """The embedding at rest: vertices of the patch are those of the mesh."""
         return self._slider.embedding(0) if self._embeds else None
 
     def frame(self, points: np.ndarray) -> Slid:
@@ -40,7 +40,7 @@ class Ours:
 
 
 class PointsAlone(Ours):
-    """The same work as peers do: nothing is measured, and no embedding is copied out."""
+    """Does the same work as peers do: nothing is measured, and no embedding is copied out."""
 
     def frame(self, points: np.ndarray) -> Slid:
         return Slid({}, None, self._slider.slide(points, measures=False).points)

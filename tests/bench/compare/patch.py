@@ -37,7 +37,7 @@ class Patch:
             return cls(**{**file, "name": str(file["name"])})
 
     def with_border(self, embedding: np.ndarray) -> Patch:
-        """With the border where an embedding has it."""
+        """The same patch, with the border where an embedding has it."""
         sides, uses = np.unique(np.sort(self.sides(), axis=1), axis=0, return_counts=True)
         on_it = np.unique(sides[uses == 1])
         border = np.full((len(self.rest), 2), np.nan)
@@ -45,7 +45,7 @@ class Patch:
         return replace(self, border=border)
 
     def sides(self) -> np.ndarray:
-        """Of all faces (sum of counts, 2): an edge within is there twice."""
+        """The sides of all faces (sum of counts, 2); an inner edge is there twice."""
         starts = np.cumsum(self.counts) - self.counts
         following = np.arange(1, len(self.indices) + 1)
         following[starts + self.counts - 1] = starts

@@ -17,7 +17,7 @@ PAPER = ((51, 90), (163, 299), (316, 593), (431, 1218), (538, 1060))
 
 
 def patch_of(kind: str, size: int) -> Patch:
-    """About as many vertices as size says."""
+    """A patch of about as many vertices as size says."""
     side = round(size**0.5)
     if kind == "regular":
         flat, faces = _lattice(side)
@@ -38,7 +38,7 @@ def quads(size: int) -> Patch:
 
 
 def papers() -> Iterator[Patch]:
-    """Patches of as many vertices and edges as the paper's."""
+    """Patches with as many vertices and edges as those of the paper."""
     for vertices, edges in PAPER:
         yield _counted(vertices, edges)
 
@@ -60,7 +60,7 @@ def _scattered(side: int, chance: np.random.Generator) -> tuple[np.ndarray, np.n
 
 
 def _turned_left(flat: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Counter-clockwise all, without those of no area on the border."""
+    """Turns all triangles counter-clockwise, and drops those without area on the border."""
     a, b, c = (flat[faces[:, k]] for k in range(3))
     area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     faces = np.where((area < 0)[:, None], faces[:, ::-1], faces)
@@ -75,7 +75,7 @@ def _along_a_curve(flat: np.ndarray) -> np.ndarray:
 
 
 def _renumbered(flat: np.ndarray, faces: np.ndarray, order: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Point order[i] becomes point i, and faces go by their first."""
+    """The patch in which point order[i] has become point i; faces are sorted by their first point."""
     place = np.empty(len(order), int)
     place[order] = np.arange(len(order))
     faces = place[faces]
@@ -89,7 +89,7 @@ def _posed(name: str, flat: np.ndarray, counts: np.ndarray, indices: np.ndarray)
 
 
 def _bump(flat: np.ndarray, at: float | None) -> np.ndarray:
-    """A sheet in relief, with a bump under it that drags what is above."""
+    """The poses of a sheet in relief: a bump passes under it and drags along what is above."""
     points = np.column_stack([flat, 0.05 * np.sin(5 * flat[:, 0]) * np.cos(4 * flat[:, 1])])
     if at is not None:
         swell = np.exp(-((flat - (at, 0.5)) ** 2).sum(axis=1) / (2 * 0.12**2))
@@ -98,7 +98,7 @@ def _bump(flat: np.ndarray, at: float | None) -> np.ndarray:
 
 
 def _counted(vertices: int, edges: int) -> Patch:
-    """A disk of exactly so many vertices and edges: triangles, joined in pairs until no edge is too many."""
+    """A disk with exactly so many vertices and edges: triangles are joined in pairs until no edge is too many."""
     for border in range(round(2.6 * vertices**0.5), vertices):
         flat = np.concatenate([_rim(border), _sunflower(vertices - border)])
         faces = [list(face) for face in _turned_left(flat, Delaunay(flat).simplices)]
@@ -115,14 +115,14 @@ def _rim(count: int) -> np.ndarray:
 
 
 def _sunflower(count: int) -> np.ndarray:
-    """Points spread evenly in a disk, well within its border."""
+    """Points that are spread evenly in a disk, well inside its border."""
     k = np.arange(count)
     radius, angle = 0.44 * np.sqrt((k + 0.5) / count), k * np.pi * (3 - 5**0.5)
     return 0.5 + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _joined(flat: np.ndarray, triangles: list[list[int]], wanted: int) -> list[list[int]]:
-    """Pairs of triangles joined to quads, across the longest sides first, each vertex left with three edges."""
+    """Joins pairs of triangles to quads, across the longest sides first; each vertex keeps three edges."""
     side_of = {(face[k], face[k - 2]): index for index, face in enumerate(triangles) for k in range(3)}
     shared = [(a, b) for a, b in side_of if a < b and (b, a) in side_of]
     shared.sort(key=lambda side: -np.linalg.norm(flat[side[0]] - flat[side[1]]))

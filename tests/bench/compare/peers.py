@@ -45,7 +45,7 @@ class Net:
         return sparse.csr_matrix((known, (rows, np.concatenate([edge[to_b], edge[to_a]]))), (size, len(edge)))
 
     def equations(self, points: np.ndarray) -> tuple[sparse.csc_matrix, np.ndarray]:
-        """The matrix, and both right-hand sides, of a pose by the rule unit."""
+        """The matrix and both right-hand sides of a pose under the rule unit."""
         density = 1 / np.linalg.norm(points[self.edges[:, 0]] - points[self.edges[:, 1]], axis=1)
         self.matrix.data[:] = self._values @ density
         return self.matrix, np.column_stack([side @ density for side in self._right])
@@ -68,7 +68,7 @@ class Spsolve:
 
 
 class Splu(Spsolve):
-    """Told that the matrix is symmetric and positive."""
+    """SuperLU, which is told that the matrix is symmetric and positive."""
 
     def solve(self, matrix: sparse.csc_matrix, right: np.ndarray) -> np.ndarray:
         options = {"SymmetricMode": True}
@@ -150,7 +150,7 @@ class Peer:
         return self._net.whole(self._system.solve(*self._net.equations(points.astype(np.float64))))
 
     def _found(self, uv: np.ndarray) -> np.ndarray:
-        """Of a few that fell between triangles, by rounding, that which is least outside of one."""
+        """Places a few points that rounding put between triangles: each in the one that it is least outside of."""
         faces = self._locate(uv, self._triangles, self._asked)
         for missed in np.flatnonzero(faces < 0):
             everywhere = np.broadcast_to(self._asked[missed], (len(self._triangles), 2))

@@ -41,7 +41,7 @@ class Served:
         return {"setup": time.process_time() - start}
 
     def frame(self, pose: int, times: int) -> dict[str, float]:
-        """The quickest of so many; stages of the quickest that hardly had to wait, or had to least."""
+        """Slides a frame several times. Returns the quickest that hardly had to wait, or that had to wait least."""
         taken = [self._timed(self._given.poses[pose]) for _ in range(times)]
         steadiest = max(taken, key=lambda one: (min(one["share"], UNDISTURBED), -one["frame"]))
         quickest = {name: min(one[name] for one in taken) for name in ("frame", "by the clock")}
@@ -62,7 +62,7 @@ class Served:
         return {}
 
     def threads(self, count: int, frames: int) -> dict[str, float]:
-        """Seconds by the clock a frame, in so many threads."""
+        """Returns seconds by the clock for each frame, slid in so many threads."""
         several = [self._one, *(self._another() for _ in range(count - 1))]
         poses = self._given.poses
         start = time.perf_counter()
@@ -77,7 +77,7 @@ class Served:
 
 
 def _peak() -> float:
-    """Of memory, in MB."""
+    """The most memory that this process has had, in MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 

@@ -68,7 +68,7 @@ def line(*through: tuple[float, float, float]) -> bpy.types.Object:
 
 
 def inner(thing: bpy.types.Object, margin: int = 1) -> np.ndarray:
-    """The faces of a sheet but for those at its border."""
+    """The faces of a sheet except those at its border."""
     side = round(len(thing.data.polygons) ** 0.5)
     row, column = np.divmod(np.arange(side * side), side)
     return np.all([(each >= margin) & (each < side - margin) for each in (row, column)], axis=0)

@@ -37,7 +37,7 @@ def painted(thing, rule: str = "even") -> None:
 
 
 def held(thing) -> dict:
-    """All that there is to slide an object by, to the bit."""
+    """All that an object is slid by, to the bit."""
     fetched = fetch(thing, bpy.context.evaluated_depsgraph_get())
     found = {
         name: (value.type_name, value.interpolation, value.value.tobytes()) for name, value in fetched.primvars.items()
@@ -65,7 +65,7 @@ def test_a_round_trip(tmp_path):
 
 
 def test_export_again_changes_what_is_blenders_alone(tmp_path):
-    """What else is in the file stays: a map, another prim; a patch that was removed goes."""
+    """Everything else in the file stays, such as a map or another prim; a patch that was removed goes."""
     thing = sheet()
     make_patch(thing, "a")
     make_patch(thing, "b")
@@ -95,7 +95,7 @@ def sampled(path) -> dict:
 
 
 def test_the_cache_is_that_of_blenders_exporter(scene, tmp_path):
-    """Joined of frames, it says at each what one export of all of them says: points, normals, a parent that moves."""
+    """Joined from frames, it has at each what one export of all has: points, normals, a parent that moves."""
     thing = sheet()
     make_patch(thing)
     thing.data.uv_layers.new(name="st")
@@ -123,7 +123,7 @@ def test_the_cache_is_that_of_blenders_exporter(scene, tmp_path):
 
 
 def test_a_cache_is_exported_again(tmp_path):
-    """Of other faces, under the same name, in the same session."""
+    """With other faces, under the same name, in the same session."""
     path = tmp_path / "x.skinslide"
     for side in (6, 12):
         thing = sheet(side, "thing")
@@ -192,7 +192,7 @@ def test_what_cannot_be_exported(tmp_path):
 
 @pytest.mark.parametrize("rule", ["unit", "even", "relaxed", "world"])
 def test_for_the_bake(rule, scene, out):
-    """What is shown live, for the test outside to compare with a bake of what is exported."""
+    """Writes what is shown live, for the test outside to compare with a bake of what is exported."""
     thing = sheet()
     if rule == "world":
         above = bpy.data.objects.new("above", None)
@@ -209,7 +209,7 @@ def test_for_the_bake(rule, scene, out):
 
 
 def test_a_file_of_the_tool(out):
-    """What the tool wrote outside, of kinds that Blender has none of: a GeomSubset, a constant, indices."""
+    """Imports what the tool wrote, of kinds that Blender does not have: a GeomSubset, a constant, indices."""
     thing = sheet()
     path = out / "given.skinslide"
     assert bpy.ops.skinslide.import_setup(filepath=str(path)) == {"FINISHED"}

@@ -12,7 +12,7 @@ from sheets import make_patch, points, sheet
 
 
 def slid_now(thing) -> np.ndarray:
-    """The frame slid from scratch."""
+    """The frame, slid from scratch."""
     fetched = fetch(thing, bpy.context.evaluated_depsgraph_get())
     return Sliding(fetched).slide(fetched.points, numbers(thing)).points
 
@@ -70,7 +70,7 @@ def test_it_follows_paint_and_settings(scene):
 
 
 def test_it_makes_way_for_brushes(scene):
-    """Drawn as wires over what is painted; strokes are followed there."""
+    """The slid skin is drawn as wires over what is painted, and follows strokes."""
     thing = sheet()
     make_patch(thing)
     bpy.ops.skinslide.paint(what="weight", value=1.0, store="GROUP")
@@ -91,7 +91,7 @@ def test_it_makes_way_for_brushes(scene):
 
 
 def test_it_follows_patches(scene):
-    """Those that are made, and those that are taken away; without any nothing can be slid, which is said."""
+    """Patches that are made and removed; without any nothing can be slid, which is reported."""
     thing = sheet()
     make_patch(thing, "a")
     bpy.ops.skinslide.live()
@@ -120,7 +120,7 @@ def test_an_animated_envelope(scene):
 
 
 def test_what_goes_wrong_is_said_and_mends(scene):
-    """The skin stays as it was shown last; once it can slide again, it does."""
+    """The skin stays as it was last shown, and slides again as soon as it can."""
     thing = sheet()
     make_patch(thing)
     bpy.ops.skinslide.live()
@@ -180,7 +180,7 @@ def test_a_picture(scene, out):
 
 
 def test_an_animation(scene, tmp_path):
-    """Each frame of a render has what that frame slides to, as a picture of it alone has."""
+    """Each frame of a rendered animation is the picture of that frame alone."""
     thing = sheet()
     make_patch(thing)
     bpy.ops.skinslide.live()

@@ -18,7 +18,7 @@ from skinslide.problems import Fault
 
 
 class Properties:
-    """Those of an operator's button, which notes what is painted by it."""
+    """The properties of an operator's button; notes what the button would paint."""
 
     def __init__(self, names: set[str], shown: list[str]):
         self.__dict__.update(names=names, shown=shown)
@@ -97,7 +97,7 @@ def test_it_is_of_meshes_alone():
 
 @pytest.fixture
 def impatient(monkeypatch):
-    """Blender goes on at once, as with an interface whose frames come fast."""
+    """Blender goes on at once, as in an interface whose frames come fast."""
     monkeypatch.setattr(work, "patience", lambda: 0)
 
 
@@ -121,7 +121,7 @@ def test_frames_are_shown_once_they_are_there(scene, impatient):
 
 
 def test_a_change_is_not_lost_with_its_frame(scene, impatient):
-    """A set-up that a later frame overtakes counts all the same."""
+    """A set-up whose frame is overtaken by a later one still counts."""
     thing = sheet(40)
     patch = make_patch(thing, rule="relaxed")
     bpy.ops.skinslide.live()
@@ -142,7 +142,7 @@ def test_a_change_is_not_lost_with_its_frame(scene, impatient):
 
 
 class Operator:
-    """What Waiting does, on an object of ours: Blender makes operators itself, of events, of which there are none."""
+    """What Waiting does, on an object of ours: Blender makes operators itself, of events, which are not there."""
 
     bl_label = "Some Operator"
     for _name in ("execute", "modal", "cancel", "tell", "_may_wait", "_go_on", "_check", "_end", "_steps"):
@@ -165,7 +165,7 @@ class Operator:
 
 
 class Window:
-    """A context that notes timers and who waits for them, and is Blender's else."""
+    """A context that notes timers and operators that wait; everything else is Blender's."""
 
     workspace = None
 
@@ -189,7 +189,7 @@ class Window:
 
 @pytest.fixture
 def window(scene, monkeypatch) -> Window:
-    """As where there is an interface."""
+    """Pretends that there is an interface."""
     monkeypatch.setattr(work, "interactive", lambda: True)
     return Window()
 
@@ -225,7 +225,7 @@ def test_an_operator_leaves_blender_in_use(window):
 
 @pytest.mark.parametrize("how", ["is_repeat", "is_repeat_last"])
 def test_what_blender_repeats_is_done_at_once(how, window):
-    """Adjusted after it was done, an operator that went on would be gone by then."""
+    """Blender repeats an operator to adjust it, and expects it to be done when it returns."""
     operator = Operator(lambda: "found")
     setattr(operator.options, how, True)
     assert operator.execute(window) == {"FINISHED"}
@@ -244,7 +244,7 @@ def test_what_fails_apart_is_reported(window):
 
 
 def test_esc_ends_it(window):
-    """Once the work that was begun is done; but not while files are put in place."""
+    """Once the work that has begun is done, and not while files are put in place."""
     go = threading.Event()
     operator = Operator(lambda: go.wait(20))
     assert operator.execute(window) == RUNNING
@@ -262,7 +262,7 @@ def test_esc_ends_it(window):
 
 
 def test_it_waits_for_what_is_edited(window):
-    """To leave edit mode while points are moved ends Blender."""
+    """If edit mode is left while points are being moved, Blender crashes."""
     thing = sheet()
     bpy.ops.object.mode_set(mode="EDIT")
     operator = Operator(lambda: "found")
@@ -275,7 +275,7 @@ def test_it_waits_for_what_is_edited(window):
 
 
 def test_blender_ends_it(window):
-    """It quits or loads a file; or a file was not chosen."""
+    """When it quits, loads a file, or when no file was chosen."""
     operator = Operator(lambda: "found")
     operator.cancel(window)
     assert operator.execute(window) == RUNNING
@@ -292,7 +292,7 @@ def test_what_is_wrong_with_the_program_is_not_hidden(window):
 
 
 def test_another_object_is_not_written_to(window):
-    """Whoever waits may choose another meanwhile."""
+    """While an operator waits, another object may become active."""
     first, second = sheet(), sheet()
     bpy.context.view_layer.objects.active = first
     operator = Operator(lambda: "found")
@@ -349,7 +349,7 @@ def test_an_export_leaves_blender_in_use(window, tmp_path):
 
 @pytest.mark.parametrize("after", range(6))
 def test_an_export_that_is_ended_leaves_what_was_there(after, window, tmp_path):
-    """By Esc at any time, until it is too late and all is written."""
+    """By Esc at any time until it is too late, when all is written."""
     thing = sheet()
     make_patch(thing)
     path = tmp_path / "x.skinslide"
@@ -442,7 +442,7 @@ def operators_that_wait(kind: type = work.Waiting) -> list[type]:
 
 
 def test_no_frame_blocks_the_interface(scene, impatient):
-    """As it is begun, and as it is shown, after a change of paint too."""
+    """Neither when it is begun nor when it is shown, also after a change of paint."""
     thing = sheet(SIDE)
     make_patch(thing)
     bpy.ops.skinslide.paint(what="weight", value=0.5, store="GROUP")

@@ -51,7 +51,7 @@ def test_a_patch_of_selected_faces():
 
 
 def test_a_patch_of_a_vertex_group():
-    """Faces whose points are all in it, as the core has it."""
+    """Its faces are those whose points are all in the group, as the core has it."""
     thing = sheet()
     group = thing.vertex_groups.new(name="arm")
     group.add(list(range(5 * (SIDE + 1))), 0.7, "REPLACE")
@@ -134,7 +134,7 @@ def test_paint_in_edit_mode_is_of_the_selection():
 
 
 def test_paint_from_what_is_there():
-    """From another group or attribute, by point and by face; what there is none of is refused."""
+    """From another group or attribute, by point and by face; one that does not exist is refused."""
     thing = sheet()
     make_patch(thing)
     ramp = np.linspace(0, 1, len(thing.data.vertices), dtype=np.float32)
@@ -155,7 +155,7 @@ def test_paint_from_what_is_there():
 
 
 def test_edges():
-    """Those of the patch, by Blender's own domain; the others that are selected are left out."""
+    """The patch's edges, in Blender's own domain; other edges that are selected are left out."""
     thing = sheet()
     make_patch(thing)
     select(thing, "edges", np.ones(len(thing.data.edges), bool))
@@ -277,7 +277,7 @@ def test_a_scale_that_is_not_applied():
 
 
 def test_a_delta_scale():
-    """Which Blender keeps apart, and applies apart."""
+    """Blender keeps the delta scale apart from the scale, and applies it apart."""
     thing = sheet()
     thing.delta_scale, thing.rotation_euler = (2, 2, 2), (1, 2, 3)
     select(thing, "faces", inner(thing))
@@ -332,7 +332,7 @@ def test_paint_of_another_type():
 
 
 def test_what_cannot_be_painted_is_not():
-    """Paint that the core would refuse, though what else is painted is wrong already; a value of none is left alone."""
+    """Paint that the core would refuse is refused; other paint that is wrong already does not matter."""
     thing = sheet()
     make_patch(thing)
     thing.data.attributes.new("skinSlide:patch:weight", "FLOAT", "EDGE")
