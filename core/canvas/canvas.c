@@ -1,4 +1,4 @@
-/* What pictures are drawn on: two framebuffers of a context of our own. One has four samples a pixel and all layers, and is
+/* What pictures are drawn on: two framebuffers of a context of our own. One has four samples a pixel and all targets, and is
  * drawn to; one has a single sample, and is read. Bytes hold sRGB, into which the shaders encode linear light: the device would
  * encode each sample, which is slow on software rasterisers. */
 #include "canvas.h"
@@ -30,9 +30,9 @@ static skinslide_status check_options(const skinslide_canvas_options *options, s
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT,
                        "a picture of %d by %d pixels; each side is 1 to %d, and all are at most %d", width, height, MOST_SIDE,
                        MOST_PIXELS);
-    if (options->layers < 0 || options->layers > SKINSLIDE_MOST_LAYERS)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a canvas of %d layers; it may have 0 to %d", options->layers,
-                       SKINSLIDE_MOST_LAYERS);
+    if (options->targets < 0 || options->targets > SKINSLIDE_MOST_TARGETS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "a canvas of %d targets; it may have 0 to %d", options->targets,
+                       SKINSLIDE_MOST_TARGETS);
     if ((unsigned)options->pixels > SKINSLIDE_PIXELS_FLOATS)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such pixels: %d", (int)options->pixels);
     return ss_egl_check_device(options->device, error);
@@ -71,8 +71,8 @@ static skinslide_status make_framebuffers(skinslide_canvas *canvas, skinslide_er
     GLenum state = gl->glCheckFramebufferStatus(GL_FRAMEBUFFER);
     gl->glGenFramebuffers(1, &canvas->drawn);
     gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
-    for (int32_t layer = 0; layer < canvas->layers; layer++)
-        attach(canvas, GL_COLOR_ATTACHMENT0 + (GLenum)layer, colour, SAMPLES);
+    for (int32_t target = 0; target < canvas->targets; target++)
+        attach(canvas, GL_COLOR_ATTACHMENT0 + (GLenum)target, colour, SAMPLES);
     attach(canvas, GL_DEPTH_STENCIL_ATTACHMENT, GL_DEPTH24_STENCIL8, SAMPLES);
     if (state == GL_FRAMEBUFFER_COMPLETE)
         state = gl->glCheckFramebufferStatus(GL_FRAMEBUFFER);
@@ -113,7 +113,7 @@ skinslide_status ss_canvas_create(const skinslide_canvas_options *options, ss_eg
     if (!canvas)
         return ss_out_of_memory(error);
     canvas->width = own.width, canvas->height = own.height, canvas->pixels = own.pixels;
-    canvas->layers = own.layers > 0 ? own.layers : 1;
+    canvas->targets = own.targets > 0 ? own.targets : 1;
     const ss_device_request request = {load, own.device, false};
     canvas->rows = ss_new(&canvas->memory, canvas->height, row_size(canvas));
     status = canvas->rows ? ss_egl_open(&request, &canvas->egl, error) : ss_out_of_memory(error);
@@ -150,11 +150,11 @@ skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinsli
 
 /* ---- Clearing and reading ---- */
 
-void ss_draw_on_layers(const skinslide_canvas *canvas, int32_t first, int32_t end) {
-    GLenum buffers[SKINSLIDE_MOST_LAYERS];
-    for (int32_t layer = 0; layer < canvas->layers; layer++)
-        buffers[layer] = layer >= first && layer < end ? GL_COLOR_ATTACHMENT0 + (GLenum)layer : GL_NONE;
-    canvas->egl->api.glDrawBuffers(canvas->layers, buffers);
+void ss_draw_on_targets(const skinslide_canvas *canvas, int32_t first, int32_t end) {
+    GLenum buffers[SKINSLIDE_MOST_TARGETS];
+    for (int32_t target = 0; target < canvas->targets; target++)
+        buffers[target] = target >= first && target < end ? GL_COLOR_ATTACHMENT0 + (GLenum)target : GL_NONE;
+    canvas->egl->api.glDrawBuffers(canvas->targets, buffers);
 }
 
 skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float colour[3], skinslide_error *error) {
@@ -171,9 +171,9 @@ skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float co
     float all[4] = {0, 0, 0, 1};
     ss_canvas_colour(canvas, colour, all);
     gl->glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
-    ss_draw_on_layers(canvas, 0, canvas->layers);
-    for (int32_t layer = 0; layer < canvas->layers; layer++)
-        gl->glClearBufferfv(GL_COLOR, layer, all);
+    ss_draw_on_targets(canvas, 0, canvas->targets);
+    for (int32_t target = 0; target < canvas->targets; target++)
+        gl->glClearBufferfv(GL_COLOR, target, all);
     gl->glClearBufferfi(GL_DEPTH_STENCIL, 0, 1, 0); /* both at once: one alone is slow */
     canvas->marks = 0;
     return ss_gl_leave(canvas->egl, &before, "clearing a canvas", error);
@@ -185,12 +185,12 @@ static void turn_over(const uint8_t *rows, int32_t height, size_t row_size, uint
         memcpy(out + (size_t)y * row_size, rows + (size_t)(height - 1 - y) * row_size, row_size);
 }
 
-skinslide_status skinslide_canvas_read_layer(skinslide_canvas *canvas, int32_t layer, void *pixels, skinslide_error *error) {
+skinslide_status skinslide_canvas_read_target(skinslide_canvas *canvas, int32_t target, void *pixels, skinslide_error *error) {
     ss_egl_before before;
     if (!canvas || !pixels)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no canvas, or no place for its pixels");
-    if (layer < 0 || layer >= canvas->layers)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no layer %d; the canvas has %d", layer, canvas->layers);
+    if (target < 0 || target >= canvas->targets)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no target %d; the canvas has %d", target, canvas->targets);
     int32_t width = canvas->width, height = canvas->height;
     skinslide_status status = ss_gl_enter(canvas->egl, &before, error);
     if (status)
@@ -198,7 +198,7 @@ skinslide_status skinslide_canvas_read_layer(skinslide_canvas *canvas, int32_t l
     const ss_egl_api *gl = &canvas->egl->api;
     GLenum type = canvas->pixels == SKINSLIDE_PIXELS_FLOATS ? GL_FLOAT : GL_UNSIGNED_BYTE;
     gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->drawn);
-    gl->glReadBuffer(GL_COLOR_ATTACHMENT0 + (GLenum)layer);
+    gl->glReadBuffer(GL_COLOR_ATTACHMENT0 + (GLenum)target);
     gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->resolved);
     gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, canvas->resolved);
@@ -210,5 +210,5 @@ skinslide_status skinslide_canvas_read_layer(skinslide_canvas *canvas, int32_t l
 }
 
 skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error) {
-    return skinslide_canvas_read_layer(canvas, 0, pixels, error);
+    return skinslide_canvas_read_target(canvas, 0, pixels, error);
 }

@@ -2,8 +2,8 @@
  *
  *     canvas.c   makes, clears and reads it
  *     figure.c   draws a figure: checks it, and calls these in order
- *     paints.c   takes what its surface is painted with on each layer
- *     edges.c    takes the edges that it has painted
+ *     looks.c    takes its look on each target
+ *     edges.c    takes the edges that are drawn in colours
  *     sight.c    finds the triangles that are seen
  *     strokes.c  lists and draws lines and dots
  *     surface.c  draws the surface
@@ -22,7 +22,7 @@ typedef struct ss_surface_program {
 
 /* The objects of the context that draw figures. */
 typedef struct ss_figure_objects {
-    ss_surface_program painted[2 << SKINSLIDE_MOST_LAYERS]; /* see ss_painted_program */
+    ss_surface_program looks[2 << SKINSLIDE_MOST_TARGETS]; /* see ss_look_program */
     ss_surface_program tile;
     GLuint stroke_program;
     GLint stroke_to_clip, pen; /* its uniforms */
@@ -33,7 +33,7 @@ typedef struct ss_figure_objects {
 struct skinslide_canvas {
     ss_memory memory;
     ss_egl *egl;
-    int32_t width, height, layers, largest_texture;
+    int32_t width, height, targets, largest_texture;
     skinslide_pixels pixels;
     uint8_t *rows;          /* scratch for all pixels, kept since fresh memory at each read is slow */
     GLint marks;            /* how many marks figures have left in the stencil */
@@ -45,15 +45,15 @@ struct skinslide_canvas {
 typedef struct ss_shown_vertex {
     float coordinates[3], place[3], normal[3];
     float inside; /* 1 in the patch, 0 outside */
-    float values[SKINSLIDE_MOST_LAYERS];
+    float values[SKINSLIDE_MOST_TARGETS];
 } ss_shown_vertex;
 
-/* What a figure is painted with on one layer. */
-typedef struct ss_layer_paint {
-    skinslide_paint own;
+/* A figure's look on one target, checked. */
+typedef struct ss_target_look {
+    skinslide_look own;
     skinslide_colour_tile *tiles; /* [own.tile_count] */
     GLuint *textures;             /* [own.tile_count] */
-} ss_layer_paint;
+} ss_target_look;
 
 /* A line as the program reads it. */
 typedef struct ss_segment {
@@ -81,9 +81,9 @@ typedef struct ss_drawing {
     const skinslide_figure *figure;
     const skinslide_tessellation *mesh;
     const skinslide_outline *outline;
-    ss_layer_paint paints[SKINSLIDE_MOST_LAYERS]; /* [paint_count] */
-    int32_t paint_count;
-    const ss_surface_program *painted, *plain; /* the programs that draw it in its paints, and plain */
+    ss_target_look looks[SKINSLIDE_MOST_TARGETS]; /* [look_count] */
+    int32_t look_count;
+    const ss_surface_program *look, *plain; /* the programs that draw it in its looks, and plain */
     ss_view view;
     ss_tessellation_work work;
     double origin[3];
@@ -92,16 +92,16 @@ typedef struct ss_drawing {
     uint32_t (*triangles)[3];  /* [triangle_count] that are seen: first the patch's, then those that hide none of it, then
                                   those that may */
     int32_t vertex_count, triangle_count, inside_count, hiding_first;
-    float *edge_value;             /* [edge_count] of the mesh's skin: NaN where no edge is painted; NULL: none is */
+    float *edge_value;             /* [edge_count] of the mesh's skin: NaN where the edge has no colour; NULL: none has one */
     ss_stroke strokes[SS_STROKES]; /* drawn in order */
     float line;                    /* pixels that the outline is wide */
 } ss_drawing;
 
-/* Checks the figure's paints and fills drawn->paints. */
-skinslide_status ss_take_paints(ss_drawing *drawn, skinslide_error *error);
+/* Checks the figure's looks and fills drawn->looks. */
+skinslide_status ss_take_looks(ss_drawing *drawn, skinslide_error *error);
 /* Fails with BAD_ARGUMENT unless lowest < highest, and not by too little or too much for float. */
 skinslide_status ss_check_scale(float lowest, float highest, skinslide_error *error);
-/* Checks the painted edges and fills drawn->edge_value. */
+/* Checks the edges that are drawn in colours, and fills drawn->edge_value. */
 skinslide_status ss_take_edges(ss_drawing *drawn, skinslide_error *error);
 /* Finds the triangles that are seen and their vertices, once the mesh is posed. False if memory is short. */
 bool ss_list_seen(ss_drawing *drawn);
@@ -111,14 +111,14 @@ void ss_draw_strokes(const ss_drawing *drawn);
 /* Draws the surface, and the strokes: before the shadows of what hides the patch, if there are any. */
 void ss_draw_surface(const ss_drawing *drawn);
 
-/* Makes only layers [first, end) be drawn on. */
-void ss_draw_on_layers(const skinslide_canvas *canvas, int32_t first, int32_t end);
+/* Makes only targets [first, end) be drawn on. */
+void ss_draw_on_targets(const skinslide_canvas *canvas, int32_t first, int32_t end);
 /* Makes the programs and buffers. The context is current. */
 skinslide_status ss_figure_objects_create(const ss_egl_api *gl, ss_figure_objects *objects, skinslide_error *error);
-/* The program that draws on a number of layers: false colours on those whose bit is set, chequers on the others. It is made
+/* The program that draws on a number of targets: false colours on those whose bit is set, chequers on the others. It is made
  * when it is first asked for. The context is current. */
-skinslide_status ss_painted_program(skinslide_canvas *canvas, int32_t layers, unsigned false_colours,
-                                    const ss_surface_program **out, skinslide_error *error);
+skinslide_status ss_look_program(skinslide_canvas *canvas, int32_t targets, unsigned false_colours,
+                                 const ss_surface_program **out, skinslide_error *error);
 
 /* A colour of linear light in the canvas's pixels: encoded as sRGB where these are bytes. */
 void ss_canvas_colour(const skinslide_canvas *canvas, const float light[3], float out[3]);

@@ -1,4 +1,4 @@
-/* Edges that are painted: finds the edge of the mesh that each pair of vertices is, and its value. */
+/* Edges that are drawn in colours: finds the edge of the mesh that each pair of vertices is, and its value. */
 #include "canvas.h"
 
 #include <math.h>

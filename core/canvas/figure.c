@@ -106,9 +106,9 @@ static skinslide_status prepare(ss_drawing *drawn, const skinslide_camera *camer
         return ss_out_of_memory(error);
     skip_out_of_sight(drawn, sides);
     ss_tessellate(mesh, figure->points, drawn->origin, work);
-    for (int32_t i = 0; i < drawn->paint_count; i++)
-        if (drawn->paints[i].own.values)
-            ss_tessellate_values(mesh, drawn->paints[i].own.values, i, work);
+    for (int32_t i = 0; i < drawn->look_count; i++)
+        if (drawn->looks[i].own.values)
+            ss_tessellate_values(mesh, drawn->looks[i].own.values, i, work);
     drawn->line = fmaxf(THINNEST, (float)drawn->viewport->height / LINES_UP) * (figure->line > 0 ? figure->line : 1);
     return ss_list_seen(drawn) && ss_list_strokes(drawn) ? SKINSLIDE_OK : ss_out_of_memory(error);
 }
@@ -126,18 +126,18 @@ static GLint new_mark(skinslide_canvas *canvas) {
 /* The context is current. */
 static skinslide_status draw(skinslide_canvas *canvas, ss_drawing *drawn, skinslide_error *error) {
     const skinslide_viewport *place = drawn->viewport;
-    unsigned all = (1u << drawn->paint_count) - 1, with_values = 0;
-    for (int32_t i = 0; i < drawn->paint_count; i++)
-        with_values |= (unsigned)(drawn->paints[i].own.values != NULL) << i;
-    skinslide_status status = ss_painted_program(canvas, drawn->paint_count, with_values, &drawn->painted, error);
+    unsigned all = (1u << drawn->look_count) - 1, with_values = 0;
+    for (int32_t i = 0; i < drawn->look_count; i++)
+        with_values |= (unsigned)(drawn->looks[i].own.values != NULL) << i;
+    skinslide_status status = ss_look_program(canvas, drawn->look_count, with_values, &drawn->look, error);
     if (!status)
-        status = ss_painted_program(canvas, drawn->paint_count, all, &drawn->plain, error);
+        status = ss_look_program(canvas, drawn->look_count, all, &drawn->plain, error);
     if (status)
         return status;
     canvas->egl->api.glBindFramebuffer(GL_FRAMEBUFFER, canvas->drawn);
     canvas->egl->api.glViewport(place->x, place->y, place->width, place->height);
     drawn->mark = new_mark(canvas);
-    ss_draw_on_layers(canvas, 0, drawn->paint_count);
+    ss_draw_on_targets(canvas, 0, drawn->look_count);
     ss_draw_surface(drawn);
     return SKINSLIDE_OK;
 }
@@ -153,7 +153,7 @@ skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide
         return status;
     ss_drawing drawn = {.canvas = canvas, .figure = &own, .mesh = own.tessellation, .viewport = viewport};
     drawn.outline = own.outline ? own.outline : drawn.mesh->outline;
-    status = ss_take_paints(&drawn, error);
+    status = ss_take_looks(&drawn, error);
     if (!status)
         status = ss_take_edges(&drawn, error);
     if (!status)

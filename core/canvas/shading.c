@@ -89,7 +89,7 @@ static const char surface_fragment[] =
     "    return found;\n"
     "}\n";
 
-/* One output for each layer that there may be; outputs for layers that are not drawn on are dropped. */
+/* One output for each target that there may be; outputs for targets that are not drawn on are dropped. */
 static const char tile_main[] = "layout(location = 0) out vec4 colour[4];\n"
                                 "void main() {\n"
                                 "    vec4 found = lit(tile(scale[0]));\n"
@@ -154,7 +154,7 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     point_to(gl, 1, 1, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, inside));
     point_to(gl, 2, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, place));
     point_to(gl, 3, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, normal));
-    point_to(gl, 4, SKINSLIDE_MOST_LAYERS, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, values));
+    point_to(gl, 4, SKINSLIDE_MOST_TARGETS, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, values));
     gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
     gl->glGenVertexArrays(1, &objects->stroke_array);
     gl->glBindVertexArray(objects->stroke_array);
@@ -185,23 +185,23 @@ static skinslide_status make_surface_program(const ss_egl_api *gl, const char *r
     return SKINSLIDE_OK;
 }
 
-/* The fragment shader's main for a number of layers, each as its bit says. */
-static void write_painted_main(int32_t layers, unsigned false_colours, char text[MOST_TEXT]) {
-    int length = snprintf(text, MOST_TEXT, "layout(location = 0) out vec4 colour[%d];\nvoid main() {\n", layers);
-    for (int32_t k = 0; k < layers; k++)
+/* The fragment shader's main for a number of targets, each as its bit says. */
+static void write_look_main(int32_t targets, unsigned false_colours, char text[MOST_TEXT]) {
+    int length = snprintf(text, MOST_TEXT, "layout(location = 0) out vec4 colour[%d];\nvoid main() {\n", targets);
+    for (int32_t k = 0; k < targets; k++)
         length += snprintf(text + length, (size_t)(MOST_TEXT - length), "    colour[%d] = lit(%s(values[%d], scale[%d]));\n", k,
                            false_colours >> k & 1 ? "false_colour" : "chequer", k, k);
     snprintf(text + length, (size_t)(MOST_TEXT - length), "}\n");
 }
 
-skinslide_status ss_painted_program(skinslide_canvas *canvas, int32_t layers, unsigned false_colours,
-                                    const ss_surface_program **out, skinslide_error *error) {
-    ss_surface_program *own = &canvas->objects.painted[1u << layers | false_colours];
+skinslide_status ss_look_program(skinslide_canvas *canvas, int32_t targets, unsigned false_colours,
+                                 const ss_surface_program **out, skinslide_error *error) {
+    ss_surface_program *own = &canvas->objects.looks[1u << targets | false_colours];
     char text[MOST_TEXT];
     *out = own;
     if (own->program)
         return SKINSLIDE_OK;
-    write_painted_main(layers, false_colours, text);
+    write_look_main(targets, false_colours, text);
     return make_surface_program(&canvas->egl->api, text, own, error);
 }
 

@@ -1,4 +1,4 @@
-/* Lines and dots on a surface: the sides of a patch's faces, its outline, painted edges, the ways that its vertices slid, and
+/* Lines and dots on a surface: the sides of a patch's faces, its outline, edges in colours, the ways that its vertices slid, and
  * pins. What is nearer hides them. */
 #include "canvas.h"
 

@@ -34,37 +34,37 @@ static void draw_range(const ss_drawing *drawn, int32_t first, int32_t count) {
     drawn->canvas->egl->api.glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, offset);
 }
 
-static void draw_tiles(const ss_drawing *drawn, const ss_layer_paint *paint, int32_t first, int32_t count) {
+static void draw_tiles(const ss_drawing *drawn, const ss_target_look *look, int32_t first, int32_t count) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
     const ss_surface_program *own = &drawn->canvas->objects.tile;
-    for (int32_t i = 0; i < paint->own.tile_count; i++) {
-        int32_t tile = paint->tiles[i].number - SS_FIRST_TILE;
+    for (int32_t i = 0; i < look->own.tile_count; i++) {
+        int32_t tile = look->tiles[i].number - SS_FIRST_TILE;
         const float corner[3] = {(float)(tile % SS_TILE_COLUMNS), (float)(tile / SS_TILE_COLUMNS), 0};
         use(drawn, own);
         gl->glUniform3fv(own->scale, 1, corner);
-        gl->glBindTexture(GL_TEXTURE_2D, paint->textures[i]);
+        gl->glBindTexture(GL_TEXTURE_2D, look->textures[i]);
         draw_range(drawn, first, count);
     }
 }
 
-/* Triangles [first, first + count), in the figure's paints. */
-static void draw_painted(const ss_drawing *drawn, int32_t first, int32_t count) {
-    float scales[SKINSLIDE_MOST_LAYERS][3] = {{0}};
-    for (int32_t i = 0; i < drawn->paint_count; i++) {
-        const skinslide_paint *paint = &drawn->paints[i].own;
-        scales[i][0] = paint->values ? paint->lowest : drawn->figure->squares;
-        scales[i][1] = paint->values ? 1 / (paint->highest - paint->lowest) : drawn->mesh->in_space;
+/* Triangles [first, first + count), in the figure's looks. */
+static void draw_looks(const ss_drawing *drawn, int32_t first, int32_t count) {
+    float scales[SKINSLIDE_MOST_TARGETS][3] = {{0}};
+    for (int32_t i = 0; i < drawn->look_count; i++) {
+        const skinslide_look *look = &drawn->looks[i].own;
+        scales[i][0] = look->values ? look->lowest : drawn->figure->squares;
+        scales[i][1] = look->values ? 1 / (look->highest - look->lowest) : drawn->mesh->in_space;
     }
-    use(drawn, drawn->painted);
-    drawn->canvas->egl->api.glUniform3fv(drawn->painted->scale, drawn->paint_count, scales[0]);
+    use(drawn, drawn->look);
+    drawn->canvas->egl->api.glUniform3fv(drawn->look->scale, drawn->look_count, scales[0]);
     draw_range(drawn, first, count);
-    for (int32_t i = 0; i < drawn->paint_count; i++) {
-        const ss_layer_paint *paint = &drawn->paints[i];
-        if (paint->own.values || paint->own.tile_count == 0)
+    for (int32_t i = 0; i < drawn->look_count; i++) {
+        const ss_target_look *look = &drawn->looks[i];
+        if (look->own.values || look->own.tile_count == 0)
             continue;
-        ss_draw_on_layers(drawn->canvas, i, i + 1);
-        draw_tiles(drawn, paint, first, count);
-        ss_draw_on_layers(drawn->canvas, 0, drawn->paint_count);
+        ss_draw_on_targets(drawn->canvas, i, i + 1);
+        draw_tiles(drawn, look, first, count);
+        ss_draw_on_targets(drawn->canvas, 0, drawn->look_count);
     }
 }
 
@@ -77,12 +77,12 @@ static GLsizei levels_of(const skinslide_colour_tile *tile) {
     return levels;
 }
 
-static void load_textures(const ss_drawing *drawn, const ss_layer_paint *paint) {
+static void load_textures(const ss_drawing *drawn, const ss_target_look *look) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
-    gl->glGenTextures(paint->own.tile_count, paint->textures);
-    for (int32_t i = 0; i < paint->own.tile_count; i++) {
-        const skinslide_colour_tile *tile = &paint->tiles[i];
-        gl->glBindTexture(GL_TEXTURE_2D, paint->textures[i]);
+    gl->glGenTextures(look->own.tile_count, look->textures);
+    for (int32_t i = 0; i < look->own.tile_count; i++) {
+        const skinslide_colour_tile *tile = &look->tiles[i];
+        gl->glBindTexture(GL_TEXTURE_2D, look->textures[i]);
         gl->glTexStorage2D(GL_TEXTURE_2D, levels_of(tile), GL_SRGB8_ALPHA8, tile->width, tile->height);
         gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, tile->width, tile->height, GL_RGBA, GL_UNSIGNED_BYTE, tile->pixels);
         gl->glGenerateMipmap(GL_TEXTURE_2D);
@@ -133,10 +133,10 @@ static void draw_with_ghosts(const ss_drawing *drawn) {
     gl->glEnable(GL_STENCIL_TEST);
     gl->glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
     gl->glStencilFunc(GL_ALWAYS, drawn->mark, ~0u);
-    draw_painted(drawn, 0, drawn->inside_count);
+    draw_looks(drawn, 0, drawn->inside_count);
     gl->glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     gl->glStencilFunc(GL_NOTEQUAL, drawn->mark, ~0u);
-    draw_painted(drawn, drawn->inside_count, drawn->triangle_count - drawn->inside_count);
+    draw_looks(drawn, drawn->inside_count, drawn->triangle_count - drawn->inside_count);
     end(drawn);
     gl->glDisable(GL_STENCIL_TEST);
     ss_draw_strokes(drawn);
@@ -151,8 +151,8 @@ static void draw_with_ghosts(const ss_drawing *drawn) {
 void ss_draw_surface(const ss_drawing *drawn) {
     const ss_egl_api *gl = &drawn->canvas->egl->api;
     const ss_figure_objects *objects = &drawn->canvas->objects;
-    for (int32_t i = 0; i < drawn->paint_count; i++)
-        load_textures(drawn, &drawn->paints[i]);
+    for (int32_t i = 0; i < drawn->look_count; i++)
+        load_textures(drawn, &drawn->looks[i]);
     begin(drawn);
     fill(gl, GL_ARRAY_BUFFER, objects->vertex_buffer, drawn->vertices, drawn->vertex_count, sizeof *drawn->vertices);
     fill(gl, GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer, drawn->triangles, drawn->triangle_count,
@@ -160,10 +160,10 @@ void ss_draw_surface(const ss_drawing *drawn) {
     if (drawn->figure->ghosts)
         draw_with_ghosts(drawn);
     else
-        draw_painted(drawn, 0, drawn->triangle_count);
+        draw_looks(drawn, 0, drawn->triangle_count);
     end(drawn);
     if (!drawn->figure->ghosts)
         ss_draw_strokes(drawn);
-    for (int32_t i = 0; i < drawn->paint_count; i++)
-        gl->glDeleteTextures(drawn->paints[i].own.tile_count, drawn->paints[i].textures);
+    for (int32_t i = 0; i < drawn->look_count; i++)
+        gl->glDeleteTextures(drawn->looks[i].own.tile_count, drawn->looks[i].textures);
 }

@@ -30,7 +30,7 @@ typedef struct ss_fixed_vertex {
 typedef struct ss_posed_vertex {
     float place[3]; /* relative to the origin */
     float normal[3];
-    float values[SKINSLIDE_MOST_LAYERS];
+    float values[SKINSLIDE_MOST_TARGETS];
 } ss_posed_vertex;
 
 struct skinslide_outline {

@@ -171,15 +171,15 @@ static void draw(skinslide_tessellation *tessellation, const skinslide_camera *c
     figure.tessellation = tessellation, figure.points = rest, figure.double_sided = 1;
     figure.tiles = &tile, figure.tile_count = 1;
 #if !defined WITHOUT_skinslide_canvas_options && !defined WITHOUT_skinslide_figure
-    skinslide_paint other = SKINSLIDE_PAINT_DEFAULT;
-    options.layers = 2, figure.others = &other, figure.other_count = 1;
+    skinslide_look other = SKINSLIDE_LOOK_DEFAULT;
+    options.targets = 2, figure.others = &other, figure.other_count = 1;
 #endif
     if (!said("canvas", skinslide_canvas_create(&options, &canvas, &error)))
         return;
     if (said("device", skinslide_canvas_device(canvas, &device, &error)) &&
         said("clear", skinslide_canvas_clear(canvas, black, &error)) &&
         said("figure", skinslide_canvas_draw(canvas, &all, camera, &figure, &error)) &&
-        said("layer", skinslide_canvas_read_layer(canvas, 0, pixels, &error)) &&
+        said("target", skinslide_canvas_read_target(canvas, 0, pixels, &error)) &&
         said("read", skinslide_canvas_read(canvas, pixels, &error)))
         printf("drawn %d, largest %d\n", pixels[4 * (8 * 4 + 4)] > 0, device.largest_resolution > 0);
     UNKNOWN(device);

@@ -328,7 +328,7 @@ static skinslide_status run_pictures(void *own, skinslide_error *error) {
     skinslide_figure figure = SKINSLIDE_FIGURE_DEFAULT;
     figure.tessellation = tessellation, figure.outline = outline, figure.points = figure.ways = s->points;
     figure.wire = figure.ghosts = 1;
-    const skinslide_paint other = SKINSLIDE_PAINT_DEFAULT;
+    const skinslide_look other = SKINSLIDE_LOOK_DEFAULT;
     figure.others = &other, figure.other_count = 1;
     if (!status)
         status = skinslide_frame_faces(&subject, up, 1, &camera, error);

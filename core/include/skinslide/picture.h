@@ -75,20 +75,20 @@ typedef struct skinslide_colour_tile {
 #define SKINSLIDE_COLOUR_TILE_DEFAULT                                                                                          \
     { sizeof(skinslide_colour_tile), 0, 0, 0, 1001 }
 
-/* What a figure is painted with on one layer; members mean what they mean in skinslide_figure. Start from
- * SKINSLIDE_PAINT_DEFAULT. */
-typedef struct skinslide_paint {
-    size_t size; /* sizeof(skinslide_paint) */
+/* How the surface of a figure is coloured on one target of a canvas; members mean what they mean in skinslide_figure. Start
+ * from SKINSLIDE_LOOK_DEFAULT. */
+typedef struct skinslide_look {
+    size_t size; /* sizeof(skinslide_look) */
     const float *values;
     float lowest, highest;
     const skinslide_colour_tile *tiles;
     int32_t tile_count;
-} skinslide_paint;
+} skinslide_look;
 
-#define SKINSLIDE_PAINT_DEFAULT                                                                                                \
-    { sizeof(skinslide_paint), 0, 0, 1.0f, 0, 0 }
+#define SKINSLIDE_LOOK_DEFAULT                                                                                                 \
+    { sizeof(skinslide_look), 0, 0, 1.0f, 0, 0 }
 
-/* A mesh in one pose, and what it is painted with. Start from SKINSLIDE_FIGURE_DEFAULT. */
+/* A mesh in one pose, and its look. Start from SKINSLIDE_FIGURE_DEFAULT. */
 typedef struct skinslide_figure {
     size_t size; /* sizeof(skinslide_figure) */
     const skinslide_tessellation *tessellation;
@@ -108,8 +108,8 @@ typedef struct skinslide_figure {
     skinslide_bool wire;   /* the sides of the patch's faces are drawn */
     skinslide_bool ghosts; /* what is nearer than the patch, and not of it, is drawn as a mere shadow */
     float line;            /* the width of lines and dots, times the usual; 0: 1 */
-    const skinslide_paint *others; /* [other_count] what it is painted with on further layers of the canvas */
-    int32_t other_count;           /* fewer than the canvas has layers */
+    const skinslide_look *others; /* [other_count] its looks on further targets of the canvas */
+    int32_t other_count;          /* fewer than the canvas has targets */
     int32_t edge_count;
     const int32_t *edges;     /* [edge_count][2] mesh vertices: lines are drawn along those that are edges of the patch */
     const float *edge_values; /* [edge_count] drawn as the colours of these lines, from lowest to highest */
@@ -166,15 +166,16 @@ typedef enum skinslide_pixels {
     SKINSLIDE_PIXELS_FLOATS /* linear light, half floats: read as float */
 } skinslide_pixels;
 
-enum { SKINSLIDE_MOST_LAYERS = 4 };
+enum { SKINSLIDE_MOST_TARGETS = 4 };
 
 /* What a canvas is to be. Start from SKINSLIDE_CANVAS_OPTIONS_DEFAULT. */
 typedef struct skinslide_canvas_options {
     size_t size;           /* sizeof(skinslide_canvas_options) */
     int32_t width, height; /* pixels, each 1 to 16384 and within the device's limit; 67,108,864 in all */
     skinslide_pixels pixels;
-    int32_t device; /* as in skinslide_workspace_options */
-    int32_t layers; /* pictures that figures are drawn on at once, each in its own paint; 0: 1; SKINSLIDE_MOST_LAYERS at most */
+    int32_t device;  /* as in skinslide_workspace_options */
+    int32_t targets; /* render targets: pictures that figures are drawn on at once, each in a look of its own; 0: 1;
+                        SKINSLIDE_MOST_TARGETS at most */
 } skinslide_canvas_options;
 
 #define SKINSLIDE_CANVAS_OPTIONS_DEFAULT                                                                                       \
@@ -184,7 +185,7 @@ typedef struct skinslide_canvas skinslide_canvas;
 
 /* Makes a canvas. Its context is current only within calls, as a workspace's is (see skinslide_workspace_create).
  *   options  in, or NULL: the default
- * Fails with BAD_ARGUMENT (sizes, layers, no such pixels or device, above the device's limit), NO_DEVICE (names all that was
+ * Fails with BAD_ARGUMENT (sizes, targets, no such pixels or device, above the device's limit), NO_DEVICE (names all that was
  * tried), DEVICE_FAILED, UNSUPPORTED (the device draws no floats), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_create(const skinslide_canvas_options *options, skinslide_canvas **out,
                                                        skinslide_error *error);
@@ -196,7 +197,7 @@ SKINSLIDE_API void skinslide_canvas_destroy(skinslide_canvas *canvas);
 SKINSLIDE_API skinslide_status skinslide_canvas_device(const skinslide_canvas *canvas, skinslide_device_info *info,
                                                        skinslide_error *error);
 
-/* Fills all layers of a canvas with a colour, linear light, and forgets what was drawn and how near it was.
+/* Fills all targets of a canvas with a colour, linear light, and forgets what was drawn and how near it was.
  * Fails with BAD_ARGUMENT, DEVICE_FAILED. */
 SKINSLIDE_API skinslide_status skinslide_canvas_clear(skinslide_canvas *canvas, const float colour[3], skinslide_error *error);
 
@@ -206,22 +207,22 @@ typedef struct skinslide_viewport {
 } skinslide_viewport;
 
 /* Draws a figure, four samples a pixel, hidden by what is nearer of what was drawn before. It is shaded by a light beside the
- * camera, in which a surface that faces the camera has its own colour. The first layer has the figure's own paint, the layers
- * that follow have its others, all with the same lines and dots: layers cost much less than as many drawings.
+ * camera, in which a surface that faces the camera has its own colour. The first target has the figure's own look, the targets
+ * that follow have its others, all with the same lines and dots: targets cost much less than as many drawings.
  * Fails with BAD_ARGUMENT (no such viewport; sizes of the chequer, of the scale or of a tile; tiles on a mesh without st; edges
  * without values), BAD_POINTS (points, values, ways or matrices not finite), DEVICE_FAILED, OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_canvas_draw(skinslide_canvas *canvas, const skinslide_viewport *viewport,
                                                      const skinslide_camera *camera, const skinslide_figure *figure,
                                                      skinslide_error *error);
 
-/* Reads the picture on the first layer.
+/* Reads the picture on the first target.
  *   pixels  out [height][width][4] red, green, blue, and 1, from the top row on; uint8_t or float, as the canvas has them
  * Fails with BAD_ARGUMENT, DEVICE_FAILED. */
 SKINSLIDE_API skinslide_status skinslide_canvas_read(skinslide_canvas *canvas, void *pixels, skinslide_error *error);
 
-/* The same for any layer, numbered from 0. */
-SKINSLIDE_API skinslide_status skinslide_canvas_read_layer(skinslide_canvas *canvas, int32_t layer, void *pixels,
-                                                           skinslide_error *error);
+/* The same for any target, numbered from 0. */
+SKINSLIDE_API skinslide_status skinslide_canvas_read_target(skinslide_canvas *canvas, int32_t target, void *pixels,
+                                                            skinslide_error *error);
 
 /* ---- Maps: values drawn in a mesh's texture coordinates ----------------------------------------------------------------- */
 

@@ -100,7 +100,7 @@ static const double everywhere[4] = {0, 0, WIDTH, HEIGHT};
 static const double beyond[4] = {-WIDTH, -HEIGHT, 2 * WIDTH, 2 * HEIGHT};
 
 /* In one false colour: a share of the scale. */
-static void paint(sheet *s, float share) {
+static void fill(sheet *s, float share) {
     for (int32_t v = 0; v < s->mesh.vertex_count; v++)
         s->values[v] = share;
     s->figure.values = s->values, s->figure.lowest = 0, s->figure.highest = 1;
@@ -276,7 +276,7 @@ static void paler_outside_the_patch(void **state) {
     assert_colour(pixels[HEIGHT / 2][WIDTH / 4], dark);
     for (int k = 0; k < 3; k++)
         assert_near(pixels[HEIGHT / 2][3 * WIDTH / 4][k], 0.3 * dark[k] + 0.7 * plain[k], 1e-3);
-    paint(&s, 1);
+    fill(&s, 1);
     canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
     draw(canvas, &s.figure);
     read_all(canvas, pixels);
@@ -347,7 +347,7 @@ static void slopes_are_shaded(void **state) {
         float colour[3];
         sheet s = sheet_of(2, 2, beyond, 4, true);
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
-        paint(&s, 0.4f);
+        fill(&s, 0.4f);
         s.figure.double_sided = 1, s.figure.left_handed = i / 10 & 1;
         for (int32_t v = 0; v < s.mesh.vertex_count; v++)
             s.mesh.points[3 * v + 2] = (float)(slope * s.mesh.points[3 * v + (in_y ? 1 : 0)] * (i >= 20 && !in_y ? -1 : 1));
@@ -398,7 +398,7 @@ static void the_nearer_hides_the_farther(void **state) {
     for (int order = 0; order < 2; order++) {
         sheet s[2] = {sheet_of(2, 2, beyond, 4, true), sheet_of(3, 1, beyond, 3, true)};
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
-        paint(&s[0], 0.1f), paint(&s[1], 0.9f);
+        fill(&s[0], 0.1f), fill(&s[1], 0.9f);
         for (int32_t v = 0; v < s[0].mesh.vertex_count; v++)
             s[0].mesh.points[3 * v + 2] = s[0].mesh.points[3 * v] - WIDTH / 2.0f;
         draw(canvas, &s[order].figure), draw(canvas, &s[1 - order].figure);
@@ -529,7 +529,7 @@ static void sides_of_the_patch_are_drawn(void **state) {
     (void)state;
     static pixel pixels[HEIGHT][WIDTH];
     sheet s = sheet_of(4, 2, everywhere, 4, true);
-    paint(&s, 0.5f);
+    fill(&s, 0.5f);
     for (int wire = 0; wire < 2; wire++) {
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
         s.figure.wire = wire;
@@ -553,7 +553,7 @@ static void edges_have_the_colour_of_their_value(void **state) {
     const int32_t edges[][2] = {{1, 6}, {8, 3}, {6, 11}, {1, 7}, {0, 99}, {-1, 0}}; /* at x = 24, 72; above; across; none */
     const float values[] = {0.9f, 0.1f, 0.9f, 0.9f, 0.9f, 0.9f};
     sheet s = sheet_of(4, 2, everywhere, 4, true);
-    paint(&s, 0.5f);
+    fill(&s, 0.5f);
     for (int some = 0; some < 2; some++) {
         skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
         s.figure.edges = edges[0], s.figure.edge_values = values, s.figure.edge_count = some ? 6 : 0, s.figure.line = 2;
@@ -579,7 +579,7 @@ static void hidden_edges_are_not_drawn(void **state) {
     const int32_t edge[2] = {1, 4};
     const float value = 0.9f;
     sheet s = sheet_of(2, 1, everywhere, 2, true), front = sheet_of(2, 1, everywhere, 2, true);
-    paint(&s, 0.5f), paint(&front, 0.5f);
+    fill(&s, 0.5f), fill(&front, 0.5f);
     for (int32_t v = 0; v < 6; v++)
         front.mesh.points[3 * v + 2] = 50;
     for (int some = 0; some < 2; some++) {
@@ -601,7 +601,7 @@ static void pins_and_ways_are_drawn(void **state) {
     float ways[45] = {0};
     sheet s = sheet_of(4, 2, everywhere, 4, true); /* vertices 5 to 9 are at y = 32, x = 0, 24, .. */
     skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
-    paint(&s, 0.5f);
+    fill(&s, 0.5f);
     pins[2] = pins[12] = 1, ways[3 * 7] = ways[3 * 12] = 20;
     s.figure.pins = pins, s.figure.ways = ways;
     draw(canvas, &s.figure);
@@ -737,7 +737,7 @@ static void tiles_that_cannot_be(void **state) {
     end_sheet(&s), end_sheet(&space);
 }
 
-/* ---- Layers ---- */
+/* ---- Targets ---- */
 
 /* The left half is the patch; a sheet of the same mesh, two faces farther on, lies before its upper quarter. */
 static sheet folded_sheet(void) {
@@ -753,15 +753,14 @@ static sheet folded_sheet(void) {
     return s;
 }
 
-/* Four layers at once are the four pictures, byte for byte: values, a texture over a chequer, other values, a chequer. */
-static void layers_are_pictures(void **state) {
+/* Four targets at once are the four pictures, byte for byte: values, a texture over a chequer, other values, a chequer. */
+static void targets_are_pictures(void **state) {
     (void)state;
-    static uint8_t alone[HEIGHT][WIDTH][4], layer[HEIGHT][WIDTH][4];
+    static uint8_t alone[HEIGHT][WIDTH][4], target[HEIGHT][WIDTH][4];
     static const uint8_t texels[2][4] = {{255, 40, 0, 0}, {0, 255, 90, 0}};
     const skinslide_canvas_options options = {sizeof options, WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES, SKINSLIDE_ANY_DEVICE, 4};
     skinslide_colour_tile tile = SKINSLIDE_COLOUR_TILE_DEFAULT;
-    skinslide_paint paints[4] = {SKINSLIDE_PAINT_DEFAULT, SKINSLIDE_PAINT_DEFAULT, SKINSLIDE_PAINT_DEFAULT,
-                                 SKINSLIDE_PAINT_DEFAULT};
+    skinslide_look looks[4] = {SKINSLIDE_LOOK_DEFAULT, SKINSLIDE_LOOK_DEFAULT, SKINSLIDE_LOOK_DEFAULT, SKINSLIDE_LOOK_DEFAULT};
     skinslide_canvas *canvas = NULL;
     skinslide_error error;
     sheet s = folded_sheet();
@@ -769,52 +768,52 @@ static void layers_are_pictures(void **state) {
     for (int32_t v = 0; v < 12; v++)
         others[v] = 1 - s.values[v];
     tile.pixels = texels[0], tile.width = 1, tile.height = 2;
-    paints[0].values = s.values, paints[1].tiles = &tile, paints[1].tile_count = 1;
-    paints[2].values = others, paints[2].lowest = -1;
+    looks[0].values = s.values, looks[1].tiles = &tile, looks[1].tile_count = 1;
+    looks[2].values = others, looks[2].lowest = -1;
     assert_ok(skinslide_canvas_create(&options, &canvas, &error), &error);
     for (int32_t count = 1; count <= 4; count++) {
         skinslide_figure all = s.figure;
-        all.values = paints[0].values, all.lowest = 0, all.highest = 1, all.others = paints + 1, all.other_count = count - 1;
+        all.values = looks[0].values, all.lowest = 0, all.highest = 1, all.others = looks + 1, all.other_count = count - 1;
         assert_ok(skinslide_canvas_clear(canvas, blue, &error), &error);
         draw(canvas, &all);
         for (int32_t i = 0; i < 4; i++) {
             skinslide_canvas *single = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
-            s.figure.values = paints[i].values, s.figure.lowest = paints[i].lowest, s.figure.highest = paints[i].highest;
-            s.figure.tiles = paints[i].tiles, s.figure.tile_count = paints[i].tile_count;
+            s.figure.values = looks[i].values, s.figure.lowest = looks[i].lowest, s.figure.highest = looks[i].highest;
+            s.figure.tiles = looks[i].tiles, s.figure.tile_count = looks[i].tile_count;
             if (i < count)
                 draw(single, &s.figure);
             read_all(single, alone);
-            assert_ok(skinslide_canvas_read_layer(canvas, i, layer, &error), &error);
-            assert_same_bytes(layer, alone, sizeof alone);
+            assert_ok(skinslide_canvas_read_target(canvas, i, target, &error), &error);
+            assert_same_bytes(target, alone, sizeof alone);
         }
     }
     skinslide_canvas_destroy(canvas);
     end_sheet(&s);
 }
 
-static void layers_that_cannot_be(void **state) {
+static void targets_that_cannot_be(void **state) {
     (void)state;
     static uint8_t pixels[HEIGHT][WIDTH][4];
     skinslide_canvas_options options = SKINSLIDE_CANVAS_OPTIONS_DEFAULT;
     skinslide_canvas *made = NULL, *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_BYTES);
     const skinslide_camera camera = in_pixels(WIDTH, HEIGHT);
-    skinslide_paint paint = SKINSLIDE_PAINT_DEFAULT;
+    skinslide_look look = SKINSLIDE_LOOK_DEFAULT;
     skinslide_error error;
     sheet s = sheet_of(1, 1, everywhere, 1, true);
     for (int32_t i = 0; i < 2; i++) {
-        options.layers = (const int32_t[]){5, -1}[i];
+        options.targets = (const int32_t[]){5, -1}[i];
         assert_fails(skinslide_canvas_create(&options, &made, &error), &error, SKINSLIDE_BAD_ARGUMENT, "a canvas of ...");
     }
-    s.figure.others = &paint, s.figure.other_count = 1;
+    s.figure.others = &look, s.figure.other_count = 1;
     assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "1 other paints; the canvas has layers for 0");
+                 "1 other looks; the canvas has targets for 0");
     s.figure.other_count = -1;
     assert_fails(skinslide_canvas_draw(canvas, &whole, &camera, &s.figure, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "-1 other paints; the canvas has layers for 0");
-    assert_fails(skinslide_canvas_read_layer(canvas, 1, pixels, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "there is no layer 1; the canvas has 1");
-    assert_fails(skinslide_canvas_read_layer(canvas, -1, pixels, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "there is no layer -1; the canvas has 1");
+                 "-1 other looks; the canvas has targets for 0");
+    assert_fails(skinslide_canvas_read_target(canvas, 1, pixels, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "there is no target 1; the canvas has 1");
+    assert_fails(skinslide_canvas_read_target(canvas, -1, pixels, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "there is no target -1; the canvas has 1");
     end_sheet(&s);
 }
 
@@ -1029,7 +1028,7 @@ static void a_million_faces(void **state) {
     static pixel pixels[HEIGHT][WIDTH];
     sheet s = sheet_of(1000, 1000, beyond, 1000000, true);
     skinslide_canvas *canvas = canvas_of(WIDTH, HEIGHT, SKINSLIDE_PIXELS_FLOATS);
-    paint(&s, 0.5f);
+    fill(&s, 0.5f);
     draw(canvas, &s.figure);
     read_all(canvas, pixels);
     assert_true(is_share(pixels[HEIGHT / 2][WIDTH / 2], 0.5f));
@@ -1058,8 +1057,8 @@ int main(void) {
         cmocka_unit_test(hidden_edges_are_not_drawn),
         cmocka_unit_test(pins_and_ways_are_drawn),
         cmocka_unit_test(what_hides_the_patch_is_a_shadow),
-        cmocka_unit_test(layers_are_pictures),
-        cmocka_unit_test(layers_that_cannot_be),
+        cmocka_unit_test(targets_are_pictures),
+        cmocka_unit_test(targets_that_cannot_be),
         cmocka_unit_test(many_figures_leave_marks),
         cmocka_unit_test(tiles_are_drawn_where_st_is),
         cmocka_unit_test(tiles_that_cannot_be),

@@ -104,30 +104,30 @@ class Marks(NamedTuple):
 NO_MARKS = Marks()
 
 
-class Paint(NamedTuple):
-    """What a mesh is painted with on a layer: a chequer, false colours, or a texture in place of the chequer."""
+class Look(NamedTuple):
+    """How the surface of a mesh is coloured on a target: chequered, in false colours, or by a texture."""
 
     scale: Scale | None = None
     texture: Mapping[int, np.ndarray] | None = None  # uint8 (height, width, 4) by the number of its tile
 
 
-MOST_LAYERS: int = lib.SKINSLIDE_MOST_LAYERS
+MOST_TARGETS: int = lib.SKINSLIDE_MOST_TARGETS
 
 
 class Canvas:
     """What pictures are drawn on, for one thread at a time. `pixels` is bytes (sRGB) or floats (linear light).
 
-    It has several `layers`, at most MOST_LAYERS: pictures that a mesh is drawn on at once, each in a paint of its own.
+    It has several `targets`, at most MOST_TARGETS: pictures that a mesh is drawn on at once, each in a look of its own.
     """
 
-    def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None, layers: int = 1):
+    def __init__(self, width: int, height: int, pixels: str = "bytes", device: int | None = None, targets: int = 1):
         out = ffi.new("skinslide_canvas **")
         options = new("canvas_options")
         options.pixels, options.device = enum_value("pixels", pixels, ""), device_number(device)
-        _set(options, "canvas options", width=width, height=height, layers=layers)
+        _set(options, "canvas options", width=width, height=height, targets=targets)
         call(lib.skinslide_canvas_create, options, out)
         self._handle = Handle(out[0], lib.skinslide_canvas_destroy)
-        self.width, self.height, self.layers = width, height, layers
+        self.width, self.height, self.targets = width, height, targets
         self._dtype: Any = np.uint8 if pixels == "bytes" else np.float32
 
     @property
@@ -138,7 +138,7 @@ class Canvas:
         return read(DeviceInfo, info[0])
 
     def clear(self, colour: Sequence[float]) -> None:
-        """Fills all layers with a colour, linear light."""
+        """Fills all targets with a colour, linear light."""
         native = Arguments()
         call(lib.skinslide_canvas_clear, self._handle.pointer, native.pointer(colour, np.float32, (3,), "colour"))
 
@@ -159,13 +159,13 @@ class Canvas:
         marks: Marks = NO_MARKS,
         texture: Mapping[int, np.ndarray] | None = None,
         line: float = 1.0,
-        others: Sequence[Paint] = (),
+        others: Sequence[Look] = (),
     ) -> None:
         """Draws a mesh in a pose, chequered (`squares` a unit of st or of length) or in the false colours of scale.
 
         A texture takes the place of the chequer: tiles of uint8 (height, width, 4) by their numbers. With ghosts, what
-        hides the patch is drawn as a mere shadow. Lines are `line` times as wide as usual. The layers after the first
-        show the mesh in the paint of `others`.
+        hides the patch is drawn as a mere shadow. Lines are `line` times as wide as usual. The targets after the first
+        show the mesh in the looks of `others`.
         """
         native, figure = Arguments(), new("figure")
         world = None if to_world is None else _doubles(to_world, (4, 4), "to_world")
@@ -174,7 +174,7 @@ class Canvas:
         figure.points = native.points(points, tessellation.vertex_count, "points")
         figure.to_world = ffi.NULL if world is None else world
         figure.squares, figure.double_sided, figure.left_handed = squares, double_sided, left_handed
-        kept = [_paint(native, figure, scale, texture, tessellation.vertex_count)]
+        kept = [_look(native, figure, scale, texture, tessellation.vertex_count)]
         figure.ghosts, figure.wire, figure.line = ghosts, marks.wire, line
         if marks.pins is not None:
             figure.pins = native.pointer(marks.pins, np.bool_, (tessellation.vertex_count,), "pins")
@@ -184,16 +184,16 @@ class Canvas:
             figure.edges = native.pointer(marks.edges, np.int32, (-1, 2), "edges")
             figure.edge_values = native.pointer(marks.edge_values, np.float32, (len(marks.edges),), "edge_values")
             figure.edge_count = len(marks.edges)
-        paints = new_array("paint", len(others))
-        for paint, own in zip(paints, others, strict=True):
-            kept.append(_paint(native, paint, *own, tessellation.vertex_count))
-        figure.others, figure.other_count = paints, len(others)
+        looks = new_array("look", len(others))
+        for look, own in zip(looks, others, strict=True):
+            kept.append(_look(native, look, *own, tessellation.vertex_count))
+        figure.others, figure.other_count = looks, len(others)
         call(lib.skinslide_canvas_draw, self._handle.pointer, _viewport(viewport), _camera(camera), figure)
 
-    def read(self, layer: int = 0) -> np.ndarray:
-        """The picture on a layer, (height, width, 4), uint8 or float32, from the top row on."""
+    def read(self, target: int = 0) -> np.ndarray:
+        """The picture on a target, (height, width, 4), uint8 or float32, from the top row on."""
         pixels = np.empty((self.height, self.width, 4), self._dtype)
-        call(lib.skinslide_canvas_read_layer, self._handle.pointer, layer, writable("char[]", pixels))
+        call(lib.skinslide_canvas_read_target, self._handle.pointer, target, writable("char[]", pixels))
         return pixels
 
 
@@ -239,10 +239,10 @@ def _camera(camera: Camera) -> Any:
     return made
 
 
-def _paint(
+def _look(
     native: Arguments, out: Any, scale: Scale | None, texture: Mapping[int, np.ndarray] | None, vertex_count: int
 ) -> Any:
-    """Fills a skinslide_paint, or the same members of a figure. Returns what must be kept alive for as long."""
+    """Fills a skinslide_look, or the same members of a figure. Returns what must be kept alive for as long."""
     if scale:
         out.values = native.pointer(scale.values, np.float32, (vertex_count,), "values")
         out.lowest, out.highest = scale.lowest, scale.highest

@@ -28,7 +28,7 @@ from skinslide.picture.drawing import Budget, DrawnPictures, Easel, MeshPictures
 from skinslide.picture.encoders import Encoders
 from skinslide.picture.lettering import contact_sheets
 from skinslide.picture.page import bytes_of_each, page
-from skinslide.picture.series import layers_of
+from skinslide.picture.series import targets_of
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
 from skinslide.shot.checks import documented
 from skinslide.shot.loop import slide
@@ -171,13 +171,13 @@ def _check_clock(stage: Usd.Stage) -> None:
 def _canvases(options: PictureOptions, lookup: Lookup) -> Canvases:
     width, height = options.size
     pixels = "floats" if options.form == "exr" else "bytes"
-    layers = layers_of(options.views)
-    return Canvases(lambda: Canvas(width, height, pixels, lookup.device, layers), _most_at_once(options))
+    targets = targets_of(options.views)
+    return Canvases(lambda: Canvas(width, height, pixels, lookup.device, targets), _most_at_once(options))
 
 
 def _most_at_once(options: PictureOptions) -> int:
     width, height = options.size
-    return max(1, _MOST_PIXELS // (width * height * layers_of(options.views)))
+    return max(1, _MOST_PIXELS // (width * height * targets_of(options.views)))
 
 
 class _Previewing(Making):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.canvas import MOST_LAYERS, Camera, Canvas, Marks, Outline, Paint, Scale, Shape, Tessellation
+from skinslide.arrays.canvas import MOST_TARGETS, Camera, Canvas, Look, Marks, Outline, Scale, Shape, Tessellation
 from skinslide.arrays.slider import Slider
 from skinslide.picture import lettering
 from skinslide.picture.cameras import Eye, FollowingCamera, ShotCamera, StageCamera, to_world
@@ -149,21 +149,21 @@ class Series:
     def draw_all(
         self, canvas: Canvas, views: Sequence[str], at: Moment, columns: Sequence[Column], most_stretch: float
     ) -> Iterator[np.ndarray]:
-        """A picture of each view: those with the same marks at once, as many as the canvas has layers."""
+        """A picture of each view: those with the same marks at once, as many as the canvas has targets."""
         drawn: dict[str, np.ndarray] = {}
         for view in views:
             if view not in drawn:
                 alike = [other for other in views if other not in drawn and _marked(other) == _marked(view)]
-                drawn.update(self._draw_layers(canvas, alike[: canvas.layers], at, columns, most_stretch))
+                drawn.update(self._draw_targets(canvas, alike[: canvas.targets], at, columns, most_stretch))
             yield drawn[view]
 
-    def _draw_layers(
+    def _draw_targets(
         self, canvas: Canvas, views: Sequence[str], at: Moment, columns: Sequence[Column], most_stretch: float
     ) -> Iterator[tuple[str, np.ndarray]]:
         canvas.clear(lettering.BACKGROUND)
         places = lettering.columns(canvas.width, canvas.height, len(columns))
         for column, place in zip(columns, places, strict=True):
-            first, *others = (self._paint(view, column, most_stretch) for view in views)
+            first, *others = (self._look(view, column, most_stretch) for view in views)
             canvas.draw(
                 self.skin.tessellation,
                 column.points,
@@ -180,8 +180,8 @@ class Series:
                 texture=first.texture,
                 others=others,
             )
-        for layer, view in enumerate(views):
-            yield view, self._lettered(canvas.read(layer), view, at, columns, most_stretch)
+        for target, view in enumerate(views):
+            yield view, self._lettered(canvas.read(target), view, at, columns, most_stretch)
 
     def _lettered(
         self, pixels: np.ndarray, view: str, at: Moment, columns: Sequence[Column], most_stretch: float
@@ -195,8 +195,8 @@ class Series:
             lettering.write_scale(pixels, *ticks, places[0])
         return pixels
 
-    def _paint(self, view: str, column: Column, most_stretch: float) -> Paint:
-        return Paint(self._scale(view, column, most_stretch), self.skin.texture if view == "texture" else None)
+    def _look(self, view: str, column: Column, most_stretch: float) -> Look:
+        return Look(self._scale(view, column, most_stretch), self.skin.texture if view == "texture" else None)
 
     def _scale(self, view: str, column: Column, most_stretch: float) -> Scale | None:
         if view == "stretch":
@@ -222,9 +222,9 @@ def _marked(view: str) -> tuple[bool, bool, bool]:
     return view in ("density", "slide"), view == "density", view == "slide"
 
 
-def layers_of(views: Sequence[str]) -> int:
-    """How many layers a canvas needs so that all views that can be drawn at once are."""
-    return min(MOST_LAYERS, max(Counter(_marked(view) for view in dict.fromkeys(views)).values(), default=1))
+def targets_of(views: Sequence[str]) -> int:
+    """How many targets a canvas needs so that all views that can be drawn at once are."""
+    return min(MOST_TARGETS, max(Counter(_marked(view) for view in dict.fromkeys(views)).values(), default=1))
 
 
 def _st_of(mesh: PatchedMesh, asked: str | None) -> np.ndarray | None:
