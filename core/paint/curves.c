@@ -142,13 +142,13 @@ static double distance_to_piece(const piece *p, const double at[3]) {
     return ss_length(off);
 }
 
-/* The first of the nearest pieces within a distance; NULL where none is. */
-static const piece *nearest_piece(const pieces *all, const double at[3], double distance) {
+/* The first of the nearest pieces; NULL if none is at a finite distance. */
+static const piece *nearest_piece(const pieces *all, const double at[3]) {
     const piece *nearest = NULL;
-    double least = distance;
+    double least = INFINITY;
     for (int64_t i = 0; i < all->count; i++) {
         double found = distance_to_piece(&all->list[i], at);
-        if (found < least || (!nearest && found <= distance))
+        if (found < least)
             least = found, nearest = &all->list[i];
     }
     return nearest;
@@ -175,29 +175,22 @@ static void flatten(const skinslide_curves *curves, pieces *out) {
     out->count = kept;
 }
 
-/* The distance of an edge's middle from the curves, if that is within a limit and the edge runs in that direction; else
- * INFINITY. */
-static double distance_of(const float *a, const float *b, const pieces *all, double limit, skinslide_direction direction) {
+/* The distance of an edge's middle from the curves, if the edge runs in that direction; else INFINITY. */
+static double distance_of(const float *a, const float *b, const pieces *all, skinslide_direction direction) {
     double middle[3], edge[3];
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * ((double)a[k] + b[k]), edge[k] = (double)b[k] - a[k];
-    const piece *nearest = nearest_piece(all, middle, limit);
+    const piece *nearest = nearest_piece(all, middle);
     bool counts = direction == SKINSLIDE_DIRECTION_ANY ||
                   (nearest && is_along(nearest, edge) == (direction == SKINSLIDE_DIRECTION_ALONG));
     return nearest && counts ? distance_to_piece(nearest, middle) : INFINITY;
 }
 
-/* Checks all arguments but the distance, and makes the pieces of the curves. */
-static skinslide_status prepare(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
-                                const skinslide_curves *curves, skinslide_direction direction, ss_memory *memory, pieces *out,
-                                skinslide_error *error) {
+/* Checks curves, and makes their pieces. */
+static skinslide_status take_pieces(const skinslide_curves *curves, ss_memory *memory, pieces *out, skinslide_error *error) {
     int64_t segments = 0;
     skinslide_curves own = SKINSLIDE_CURVES_DEFAULT;
-    if ((unsigned)direction > SKINSLIDE_DIRECTION_ACROSS)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no direction %d", (int)direction);
-    skinslide_status status = check_edges(points, vertex_count, edges, edge_count, error);
-    if (!status)
-        status = ss_take(curves, "skinslide_curves", &own, sizeof own, error);
+    skinslide_status status = ss_take(curves, "skinslide_curves", &own, sizeof own, error);
     if (!status)
         status = check_curves(&own, &segments, error);
     if (status)
@@ -209,35 +202,20 @@ static skinslide_status prepare(const float *points, int32_t vertex_count, const
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_nearest_edge(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
-                                        const skinslide_curves *curves, skinslide_direction direction, double *distance,
-                                        skinslide_error *error) {
+skinslide_status skinslide_edge_distances(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
+                                          const skinslide_curves *curves, skinslide_direction direction, double *distances,
+                                          skinslide_error *error) {
+    if ((unsigned)direction > SKINSLIDE_DIRECTION_ACROSS)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "there is no direction %d", (int)direction);
+    if (edge_count > 0 && !distances)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the distances");
     ss_memory memory = {0};
     pieces all;
-    skinslide_status status = distance
-                                  ? prepare(points, vertex_count, edges, edge_count, curves, direction, &memory, &all, error)
-                                  : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the distance");
-    double least = INFINITY;
-    for (int32_t e = 0; e < edge_count && !status; e++)
-        least = fmin(least, distance_of(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all,
-                                        INFINITY, direction));
+    skinslide_status status = check_edges(points, vertex_count, edges, edge_count, error);
     if (!status)
-        *distance = least;
-    ss_free(&memory);
-    return status;
-}
-
-skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count, const int32_t *edges, int32_t edge_count,
-                                      const skinslide_curves *curves, double distance, skinslide_direction direction,
-                                      uint8_t *near, skinslide_error *error) {
-    if (!near || !(distance >= 0) || isinf(distance))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "distance %g, or no place for the edges", distance);
-    ss_memory memory = {0};
-    pieces all;
-    skinslide_status status = prepare(points, vertex_count, edges, edge_count, curves, direction, &memory, &all, error);
+        status = take_pieces(curves, &memory, &all, error);
     for (int32_t e = 0; e < edge_count && !status; e++)
-        near[e] = distance_of(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all, distance,
-                              direction) <= distance;
+        distances[e] = distance_of(points + 3 * (int64_t)edges[2 * e], points + 3 * (int64_t)edges[2 * e + 1], &all, direction);
     ss_free(&memory);
     return status;
 }

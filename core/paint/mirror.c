@@ -205,13 +205,15 @@ static skinslide_status allocate(mirror *m, ss_memory *memory, uint8_t **lost, s
     return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
 }
 
-skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
-                                 int32_t face_count, skinslide_error *error) {
+skinslide_status ss_take_mirror(const skinslide_mesh *mesh, const skinslide_mirror_options *options, const int32_t *faces,
+                                int32_t face_count, skinslide_mirror_options *own, skinslide_error *error) {
     skinslide_status status = ss_check_used(mesh, mesh->rest_points, "rest points", error);
+    if (!status)
+        status = ss_take(options, "skinslide_mirror_options", own, sizeof *own, error);
     if (status)
         return status;
-    if (axis < 0 || axis > 2 || !isfinite(plane) || !isfinite(tolerance))
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "axis %d, plane %g, tolerance %g", axis, plane, tolerance);
+    if (own->axis < 0 || own->axis > 2 || !isfinite(own->plane) || !isfinite(own->tolerance))
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "axis %d, plane %g, tolerance %g", own->axis, own->plane, own->tolerance);
     return ss_check_faces(mesh->face_count, faces, face_count, error);
 }
 
@@ -232,18 +234,18 @@ static skinslide_status mirror_faces_of(mirror *m, const int32_t *faces, int32_t
     return SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
-                                  const int32_t *faces, int32_t face_count, int32_t *mirror_faces, int32_t *mirror_vertices,
-                                  skinslide_error *error) {
+skinslide_status skinslide_mirror(const skinslide_mesh *mesh, const skinslide_mirror_options *options, const int32_t *faces,
+                                  int32_t face_count, int32_t *mirror_faces, int32_t *mirror_vertices, skinslide_error *error) {
     ss_taken_mesh taken;
+    skinslide_mirror_options own = SKINSLIDE_MIRROR_OPTIONS_DEFAULT;
     skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (!status)
-        status = ss_check_mirror(mesh, axis, plane, tolerance, faces, face_count, error);
+        status = ss_take_mirror(mesh, options, faces, face_count, &own, error);
     if (status || !mirror_faces || !mirror_vertices)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for what is found");
     ss_memory memory = {0};
-    mirror m = {.mesh = mesh, .axis = axis, .plane = plane, .tolerance = tolerance};
-    m.along = ss_sort_along(mesh, axis, &m.tolerance);
+    mirror m = {.mesh = mesh, .axis = own.axis, .plane = own.plane, .tolerance = own.tolerance};
+    m.along = ss_sort_along(mesh, m.axis, &m.tolerance);
     uint8_t *lost;
     status = allocate(&m, &memory, &lost, error);
     int32_t *found = SS_NEW(&memory, int32_t, face_count);

@@ -214,17 +214,18 @@ static skinslide_status run(search *s, const int32_t *faces, int32_t face_count,
     return status ? status : find_points(s, s->is_found, sources, error);
 }
 
-skinslide_status skinslide_mirror_nearest(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
+skinslide_status skinslide_mirror_nearest(const skinslide_mesh *mesh, const skinslide_mirror_options *options,
                                           const int32_t *faces, int32_t face_count, int32_t *face_sources,
                                           int32_t *vertex_sources, double *worst, skinslide_error *error) {
     ss_taken_mesh taken;
+    skinslide_mirror_options about = SKINSLIDE_MIRROR_OPTIONS_DEFAULT;
     skinslide_status status = ss_take_mesh(&mesh, &taken, error);
     if (!status)
-        status = ss_check_mirror(mesh, axis, plane, tolerance, faces, face_count, error);
+        status = ss_take_mirror(mesh, options, faces, face_count, &about, error);
     if (status || !face_sources || !vertex_sources || !worst)
         return status ? status : ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for what is nearest");
     ss_memory memory = {0};
-    search s = {.mesh = mesh, .axis = axis, .plane = plane, .tolerance = tolerance};
+    search s = {.mesh = mesh, .axis = about.axis, .plane = about.plane, .tolerance = about.tolerance};
     int32_t *own_faces = SS_NEW(&memory, int32_t, mesh->face_count), *own = SS_NEW(&memory, int32_t, mesh->vertex_count);
     status = allocate(&s, &memory) ? run(&s, faces, face_count, own_faces, own, error) : ss_out_of_memory(error);
     for (int32_t f = 0; !status && f < mesh->face_count; f++)

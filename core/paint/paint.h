@@ -13,9 +13,9 @@ enum { SS_LARGEST_IMAGE = 16384 };
 
 /* ---- mirror.c ---- */
 
-/* Checks the arguments that skinslide_mirror and skinslide_mirror_nearest share. */
-skinslide_status ss_check_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance, const int32_t *faces,
-                                 int32_t face_count, skinslide_error *error);
+/* Takes the caller's options, and checks what skinslide_mirror and skinslide_mirror_nearest share; own holds the default. */
+skinslide_status ss_take_mirror(const skinslide_mesh *mesh, const skinslide_mirror_options *options, const int32_t *faces,
+                                int32_t face_count, skinslide_mirror_options *own, skinslide_error *error);
 /* The axis in the plane across `axis` along which a mesh at rest is longest: sorted along it, the fewest vertices and faces
  * share a coordinate. A tolerance below 0 becomes the default. */
 int ss_sort_along(const skinslide_mesh *mesh, int axis, double *tolerance);

@@ -81,21 +81,24 @@ static skinslide_status count_met(const ss_patch *patch, const float *points, co
 }
 
 skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int32_t patch, const float *points,
-                                             const float *others, int32_t other_count, double tolerance, int32_t *held,
-                                             int32_t *loose, skinslide_error *error) {
-    const ss_part *part = find_part(slider, patch, held, error);
+                                             const float *others, int32_t other_count, double tolerance,
+                                             skinslide_neighbours *found, skinslide_error *error) {
+    const ss_part *part = find_part(slider, patch, found, error);
     if (!part)
         return SKINSLIDE_BAD_ARGUMENT;
-    if (!loose || other_count < 0 || !(tolerance >= 0) || part->patch->vertex_count > INT32_MAX - other_count)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the count, or a tolerance or a count that cannot be");
-    skinslide_status status = ss_check_reads(slider, points, "points", error);
+    if (other_count < 0 || !(tolerance >= 0) || part->patch->vertex_count > INT32_MAX - other_count)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "tolerance %g, and %d points of the other mesh", tolerance, other_count);
+    skinslide_status status = ss_check_size(found, "skinslide_neighbours", error);
+    if (!status)
+        status = ss_check_reads(slider, points, "points", error);
     if (!status)
         status = ss_check_points(others, other_count, "points of the other mesh", error);
     int32_t counts[2] = {0, 0};
     if (!status)
         status = count_met(part->patch, points, others, other_count, tolerance, counts, error);
+    const skinslide_neighbours answer = {.size = sizeof answer, .held = counts[1], .loose = counts[0]};
     if (!status)
-        *held = counts[1], *loose = counts[0];
+        ss_give(&answer, sizeof answer, found);
     return status;
 }
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from skinslide.arrays.fetched import Value
-from skinslide.arrays.geometry import Curves, edges_near
+from skinslide.arrays.geometry import Curves, edge_distances
 from skinslide.arrays.schema import inputs
 from skinslide.problems import NO_EDGE, Fault
 
@@ -258,7 +258,9 @@ class SKINSLIDE_OT_paint_curve(_PaintEdges):
         """What is near the curve."""
         curves = fetch_curves(context, bpy.data.objects.get(self.curve))
         distance, direction = self.distance, self.direction
-        return lambda surface, edges: edges_near(surface.meaning.rest_points(), edges, curves, distance, direction)
+        return lambda surface, edges: (
+            edge_distances(surface.meaning.rest_points(), edges, curves, direction) <= distance
+        )
 
 
 def fetch_curves(context: bpy.types.Context, drawn: bpy.types.Object | None) -> Curves:

@@ -49,6 +49,7 @@ static void slide(skinslide_workspace *workspace) {
 
 static void measure(const skinslide_slider *slider) {
     float after[VERTICES] = {0};
+    skinslide_neighbours met = SKINSLIDE_NEIGHBOURS_DEFAULT;
     skinslide_diagnostics diagnostics = SKINSLIDE_DIAGNOSTICS_DEFAULT;
     skinslide_patch_info info = SKINSLIDE_PATCH_INFO_DEFAULT;
     diagnostics.stretch_after = after;
@@ -56,7 +57,9 @@ static void measure(const skinslide_slider *slider) {
         printf("stretch at the middle %g\n", after[4]);
     if (said("patch info", skinslide_slider_patch_info(slider, 1, &info, &error)))
         printf("%s: %d faces, %d free\n", info.name, info.face_count, info.free_count);
-    UNKNOWN(info);
+    if (said("neighbours", skinslide_slider_neighbours(slider, 1, points, points, VERTICES, 0, &met, &error)))
+        printf("neighbours %d and %d\n", met.held, met.loose);
+    UNKNOWN(info), UNKNOWN(met);
 }
 
 static void measure_motion(const skinslide_slider *slider) {
@@ -148,10 +151,18 @@ static void find_edges(void) {
     skinslide_curves curves = SKINSLIDE_CURVES_DEFAULT;
     const int32_t count[1] = {2}, edges[4] = {0, 1, 4, 5};
     const float line[6] = {0, 0, 0, 1, 0, 0};
-    uint8_t near[2] = {9, 9};
+    double distances[2] = {9, 9};
     curves.curve_count = 1, curves.vertex_counts = count, curves.point_count = 2, curves.points = line;
-    if (said("curves", skinslide_edges_near(rest, VERTICES, edges, 2, &curves, 0.5, SKINSLIDE_DIRECTION_ANY, near, &error)))
-        printf("near %d and %d\n", near[0], near[1]);
+    if (said("curves", skinslide_edge_distances(rest, VERTICES, edges, 2, &curves, SKINSLIDE_DIRECTION_ANY, distances, &error)))
+        printf("distances %g and %g\n", distances[0], distances[1]);
+}
+
+static void mirror_faces(void) {
+    skinslide_mirror_options options = SKINSLIDE_MIRROR_OPTIONS_DEFAULT;
+    int32_t across[FACES], vertices[VERTICES];
+    options.plane = 1;
+    if (said("mirror", skinslide_mirror(&mesh, &options, faces, FACES, across, vertices, &error)))
+        printf("across %d is %d\n", across[0], vertices[0]);
 }
 
 /* ---- Pictures ---- */
@@ -274,6 +285,7 @@ int main(void) {
     sample_texture();
     write_image();
     find_edges();
+    mirror_faces();
     picture();
     strain();
     find_patches();

@@ -117,7 +117,9 @@ static void isolated_vertices_say_nothing(void **state) {
     skinslide_weld_destroy(weld);
     assert_fails(skinslide_weld_create(&view, &setup, 1, 1, &weld, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "weld: the tolerance is 1; it must be 0 to 0.005...");
-    assert_ok(skinslide_mirror(&view, 0, 2, -1, all, nowhere.face_count, faces, mirrored, &error), &error);
+    skinslide_mirror_options middle = SKINSLIDE_MIRROR_OPTIONS_DEFAULT;
+    middle.plane = 2;
+    assert_ok(skinslide_mirror(&view, &middle, all, nowhere.face_count, faces, mirrored, &error), &error);
     for (int32_t v = 0; v < 50; v++)
         assert_int_equal(mirrored[v], v % 2 ? v / 10 * 10 + 10 - v % 10 : -1);
     pose[3 * 25] += 0.5f; /* vertex 12 of the grid, in its middle */

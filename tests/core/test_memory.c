@@ -248,15 +248,13 @@ static skinslide_status run_geometry(void *subject, skinslide_error *error) {
         .size = sizeof curves, .curve_count = 1, .vertex_counts = &two, .point_count = 2, .points = line};
     skinslide_mesh view = view_of(grid);
     int32_t across[4], vertices[9];
-    uint8_t near;
+    const skinslide_mirror_options options = {sizeof options, 0, 1, -1};
     double distance;
-    skinslide_status status = skinslide_mirror(&view, 0, 1, -1, faces, 2, across, vertices, error);
+    skinslide_status status = skinslide_mirror(&view, &options, faces, 2, across, vertices, error);
     if (!status)
-        status = skinslide_mirror_nearest(&view, 0, 1, -1, faces, 2, across, vertices, &distance, error);
-    if (!status)
-        status = skinslide_edges_near(grid->points, 9, edges, 1, &curves, 1, SKINSLIDE_DIRECTION_ANY, &near, error);
+        status = skinslide_mirror_nearest(&view, &options, faces, 2, across, vertices, &distance, error);
     return status ? status
-                  : skinslide_nearest_edge(grid->points, 9, edges, 1, &curves, SKINSLIDE_DIRECTION_ANY, &distance, error);
+                  : skinslide_edge_distances(grid->points, 9, edges, 1, &curves, SKINSLIDE_DIRECTION_ANY, &distance, error);
 }
 
 static void each_allocation_for_geometry_fails_in_turn(void **state) {

@@ -1,4 +1,4 @@
-/* Curves of any bytes over a grid: edges near them, or a refusal in one line. */
+/* Curves of any bytes over a grid: how far its edges are from them, or a refusal in one line. */
 #include "skinslide/paint.h"
 #include "stream.h"
 
@@ -22,8 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static int32_t edges[EDGES][2];
     stream s = {data, size};
     int32_t counts[MOST_CURVES];
-    double to_mesh[16], distance;
-    uint8_t near[EDGES];
+    double to_mesh[16], distances[EDGES];
     skinslide_curves curves = SKINSLIDE_CURVES_DEFAULT;
     skinslide_error error;
     make_grid(points, edges);
@@ -34,17 +33,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     curves.basis = (skinslide_curve_basis)take_below(&s, 5), curves.wrap = (skinslide_curve_wrap)take_below(&s, 4);
     skinslide_direction direction = (skinslide_direction)take_below(&s, 4);
     bool placed = take_below(&s, 2);
-    take(&s, &distance, sizeof distance);
     if (placed)
         take(&s, to_mesh, sizeof to_mesh);
     curves.to_mesh = placed ? to_mesh : NULL;
     float *own = take_new(&s, curves.point_count > 0 ? (size_t)curves.point_count * sizeof(float[3]) : 0);
     curves.points = own;
     skinslide_status status =
-        skinslide_edges_near(points[0], VERTICES, edges[0], EDGES, &curves, distance, direction, near, &error);
+        skinslide_edge_distances(points[0], VERTICES, edges[0], EDGES, &curves, direction, distances, &error);
     require(!status || (error.message[0] && !strchr(error.message, '\n')));
     for (int32_t e = 0; !status && e < EDGES; e++)
-        require(near[e] <= 1);
+        require(distances[e] >= 0);
     free(own);
     return 0;
 }

@@ -168,50 +168,55 @@ typedef enum skinslide_direction {
     SKINSLIDE_DIRECTION_ACROSS /* more */
 } skinslide_direction;
 
-/* Finds the edges whose middle is within a distance of a curve. Each cubic segment is taken as 16 straight pieces.
- *   points    in  [vertex_count][3]
- *   edges     in  [edge_count][2] vertices
- *   distance  in  >= 0
- *   near      out [edge_count] 1 for those found, else 0
- * Fails with BAD_ARGUMENT (curves whose counts do not fit: names the curve; an edge's vertex out of range; a distance that is
- * negative or not finite), BAD_POINTS (not finite), OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_edges_near(const float *points, int32_t vertex_count, const int32_t *edges,
-                                                    int32_t edge_count, const skinslide_curves *curves, double distance,
-                                                    skinslide_direction direction, uint8_t *near, skinslide_error *error);
+/* Measures how far edges are from curves. Each cubic segment is taken as 16 straight pieces.
+ *   points     in  [vertex_count][3]
+ *   edges      in  [edge_count][2] vertices
+ *   distances  out [edge_count] of each edge's middle from the nearest curve; infinite if the edge does not run in that
+ *              direction, or no curve has a length
+ * Fails with BAD_ARGUMENT (curves whose counts do not fit: names the curve; an edge's vertex out of range), BAD_POINTS (not
+ * finite), OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_edge_distances(const float *points, int32_t vertex_count, const int32_t *edges,
+                                                        int32_t edge_count, const skinslide_curves *curves,
+                                                        skinslide_direction direction, double *distances,
+                                                        skinslide_error *error);
 
-/* How far the nearest of some edges is from a curve, for callers whose skinslide_edges_near found none.
- *   distance  out to the middle of that edge; infinite where no edge runs in that direction
- * Fails as skinslide_edges_near. */
-SKINSLIDE_API skinslide_status skinslide_nearest_edge(const float *points, int32_t vertex_count, const int32_t *edges,
-                                                      int32_t edge_count, const skinslide_curves *curves,
-                                                      skinslide_direction direction, double *distance, skinslide_error *error);
+/* What a mesh at rest is symmetric about: the plane where coordinate `axis` is `plane`. Start from
+ * SKINSLIDE_MIRROR_OPTIONS_DEFAULT. */
+typedef struct skinslide_mirror_options {
+    size_t size;  /* sizeof(skinslide_mirror_options) */
+    int32_t axis; /* 0 x, 1 y, 2 z */
+    double plane;
+    double tolerance; /* how far a mirror image may be from what it is of; below 0: 1e-4 of the largest extent at rest */
+} skinslide_mirror_options;
 
-/* Finds the faces on the other side of a mesh that is symmetric at rest about the plane where coordinate `axis` (0 x, 1 y, 2 z)
- * is `plane`, and the vertices that correspond. Vertices correspond where one's mirror image is within tolerance of the other
- * and both are at the same place in faces that do; so vertices in one place are told apart by their faces.
- *   tolerance        in  below 0: 1e-4 of the mesh's largest extent at rest
+#define SKINSLIDE_MIRROR_OPTIONS_DEFAULT                                                                                       \
+    { sizeof(skinslide_mirror_options), 0, 0, -1.0 }
+
+/* Finds the faces on the other side of a symmetric mesh, and the vertices that correspond. Vertices correspond where one's
+ * mirror image is within tolerance of the other and both are at the same place in faces that do; so vertices in one place are
+ * told apart by their faces.
+ *   options          in, or NULL: the default
  *   faces            in  [face_count] mesh faces
  *   mirror_faces     out [face_count]
  *   mirror_vertices  out [vertex_count]; -1 for vertices of none of the faces
  * Fails with BAD_MESH (vertices or a face without a counterpart: names them), BAD_POINTS, BAD_ARGUMENT, OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_mirror(const skinslide_mesh *mesh, int32_t axis, double plane, double tolerance,
+SKINSLIDE_API skinslide_status skinslide_mirror(const skinslide_mesh *mesh, const skinslide_mirror_options *options,
                                                 const int32_t *faces, int32_t face_count, int32_t *mirror_faces,
                                                 int32_t *mirror_vertices, skinslide_error *error);
 
 /* The same by nearest place, for a mesh whose surface is symmetric, but whose faces have no counterparts, such as quads
  * cut along the other diagonal. A face is found if the mirror image of its middle is nearer to one of `faces` than to any
  * other.
- *   tolerance       in  how far a mirror image may be from the mesh; below 0: 1e-4 of the mesh's largest extent at rest
+ *   options         in, or NULL: the default; tolerance is how far a mirror image may be from the mesh
  *   faces           in  [face_count] mesh faces
  *   face_sources    out [mesh face_count] for each face found, the one of `faces` that it is nearest to; -1 for others
  *   vertex_sources  out [vertex_count] for each vertex of a face found, the vertex nearest to its mirror image; -1 for others
  *   worst           out the largest distance of a mirror image from the mesh
  * Fails with BAD_MESH (a vertex of either side whose mirror image is too far from the mesh: names it; no face found),
  * BAD_POINTS, BAD_ARGUMENT, OUT_OF_MEMORY. */
-SKINSLIDE_API skinslide_status skinslide_mirror_nearest(const skinslide_mesh *mesh, int32_t axis, double plane,
-                                                        double tolerance, const int32_t *faces, int32_t face_count,
-                                                        int32_t *face_sources, int32_t *vertex_sources, double *worst,
-                                                        skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_mirror_nearest(const skinslide_mesh *mesh, const skinslide_mirror_options *options,
+                                                        const int32_t *faces, int32_t face_count, int32_t *face_sources,
+                                                        int32_t *vertex_sources, double *worst, skinslide_error *error);
 
 /* ---- A set-up that nobody painted: where skin stretches ----------------------------------------------------------------- */
 

@@ -408,16 +408,25 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slid
 SKINSLIDE_API skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, const float *points,
                                                              int32_t *passed, skinslide_error *told, skinslide_error *error);
 
-/* How many vertices of a patch have a point of another mesh in their place, as where a head and a body meet at the neck.
+/* How many vertices of a patch have a point of another mesh in their place. Start from SKINSLIDE_NEIGHBOURS_DEFAULT. */
+typedef struct skinslide_neighbours {
+    size_t size;   /* sizeof(skinslide_neighbours) */
+    int32_t held;  /* how many of them stay */
+    int32_t loose; /* how many may slide, away from the other mesh */
+} skinslide_neighbours;
+
+#define SKINSLIDE_NEIGHBOURS_DEFAULT                                                                                           \
+    { sizeof(skinslide_neighbours), 0, 0 }
+
+/* Counts the vertices of a patch at which another mesh meets it, as where a head and a body meet at the neck.
  *   points     in  [vertex_count][3] the slider's mesh in some pose
  *   others     in  [other_count][3] the other mesh in that pose, in the same space
  *   tolerance  in  as for skinslide_weld_create, but with no upper bound; 0 is fast
- *   held       out how many of them stay
- *   loose      out how many may slide, away from the other mesh
+ *   found      out
  * Fails with BAD_ARGUMENT (there is no such patch; NULL), BAD_POINTS (not finite), OUT_OF_MEMORY. */
 SKINSLIDE_API skinslide_status skinslide_slider_neighbours(const skinslide_slider *slider, int32_t patch, const float *points,
                                                            const float *others, int32_t other_count, double tolerance,
-                                                           int32_t *held, int32_t *loose, skinslide_error *error);
+                                                           skinslide_neighbours *found, skinslide_error *error);
 
 /* The rest embedding U0 of a patch.
  *   uv  out [vertex_count of the patch][2], in [0,1]^2 up to rounding

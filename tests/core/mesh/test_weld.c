@@ -410,18 +410,18 @@ static void points_of_other_meshes_are_counted(void **state) {
         skinslide_patch_setup choices = {.rule = SKINSLIDE_RULE_EVEN,
                                          .holes = all ? SKINSLIDE_HOLES_FREE_ALL : SKINSLIDE_HOLES_PINNED};
         rig r = rig_of(&sheet, choices);
-        int32_t held = -1, loose = -1;
-        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 25, 0, &held, &loose, &error), &error);
-        assert_int_equal(held, all ? 0 : 5);
-        assert_int_equal(loose, all ? 5 : 0);
-        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, sheet.points, 25, 0, &held, &loose, &error), &error);
-        assert_int_equal(held + loose, 25);
-        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 0, 0, &held, &loose, &error), &error);
-        assert_int_equal(held + loose, 0);
-        assert_fails(skinslide_slider_neighbours(r.slider, 0, sheet.points, NULL, 25, 0, &held, &loose, &error), &error,
+        skinslide_neighbours met = SKINSLIDE_NEIGHBOURS_DEFAULT;
+        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 25, 0, &met, &error), &error);
+        assert_int_equal(met.held, all ? 0 : 5);
+        assert_int_equal(met.loose, all ? 5 : 0);
+        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, sheet.points, 25, 0, &met, &error), &error);
+        assert_int_equal(met.held + met.loose, 25);
+        assert_ok(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 0, 0, &met, &error), &error);
+        assert_int_equal(met.held + met.loose, 0);
+        assert_fails(skinslide_slider_neighbours(r.slider, 0, sheet.points, NULL, 25, 0, &met, &error), &error,
                      SKINSLIDE_BAD_ARGUMENT, "no points of the other mesh");
-        assert_fails(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 25, -1, &held, &loose, &error),
-                     &error, SKINSLIDE_BAD_ARGUMENT, "no place for the count, or a tolerance or a count that cannot be");
+        assert_fails(skinslide_slider_neighbours(r.slider, 0, sheet.points, beside.points, 25, -1, &met, &error), &error,
+                     SKINSLIDE_BAD_ARGUMENT, "tolerance -1, and 25 points of the other mesh");
         free_rig(&r);
     }
     free_mesh(&sheet), free_mesh(&beside);

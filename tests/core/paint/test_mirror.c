@@ -37,15 +37,19 @@ typedef struct found {
     int32_t *faces, *vertices;
 } found;
 
+static skinslide_mirror_options about(int32_t axis, double plane, double tolerance) {
+    return (skinslide_mirror_options){sizeof(skinslide_mirror_options), axis, plane, tolerance};
+}
+
 static skinslide_status mirror(const test_mesh *mesh, int32_t axis, double plane, double tolerance, found *out) {
     skinslide_mesh view = view_of(mesh);
+    const skinslide_mirror_options options = about(axis, plane, tolerance);
     int32_t *faces = malloc((size_t)mesh->face_count * sizeof *faces);
     for (int32_t f = 0; f < mesh->face_count; f++)
         faces[f] = f;
     out->faces = malloc((size_t)mesh->face_count * sizeof *out->faces);
     out->vertices = malloc((size_t)mesh->vertex_count * sizeof *out->vertices);
-    skinslide_status status =
-        skinslide_mirror(&view, axis, plane, tolerance, faces, mesh->face_count, out->faces, out->vertices, &error);
+    skinslide_status status = skinslide_mirror(&view, &options, faces, mesh->face_count, out->faces, out->vertices, &error);
     free(faces);
     return status;
 }
@@ -136,7 +140,7 @@ static void some_faces_only(void **state) {
     skinslide_mesh view = view_of(&mesh);
     const int32_t faces[2] = {0, 1};
     int32_t mirrored[2], vertices[10];
-    assert_ok(skinslide_mirror(&view, 0, 0, 0, faces, 2, mirrored, vertices, &error), &error);
+    assert_ok(skinslide_mirror(&view, NULL, faces, 2, mirrored, vertices, &error), &error);
     assert_int_equal(mirrored[0], 3);
     assert_int_equal(mirrored[1], 2);
     const int32_t expected[10] = {4, 3, 2, -1, -1, 9, 8, 7, -1, -1};
@@ -188,18 +192,22 @@ static void bad_arguments(void **state) {
     test_mesh mesh = symmetric(2, 1, 0, 0);
     skinslide_mesh view = view_of(&mesh);
     const int32_t faces[1] = {0}, outside[1] = {2};
+    const skinslide_mirror_options good = about(0, 0, 0), no_axis = about(3, 0, 0), no_plane = about(0, NAN, 0),
+                                   no_tolerance = about(0, 0, NAN), none = {0};
     int32_t mirrored[1], vertices[6];
-    assert_int_equal(skinslide_mirror(&view, 3, 0, 0, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(&view, 0, NAN, 0, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(&view, 0, 0, NAN, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(&view, 0, 0, 0, outside, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(&view, 0, 0, 0, NULL, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(&view, 0, 0, 0, faces, 1, NULL, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(&view, 0, 0, 0, faces, -1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_int_equal(skinslide_mirror(NULL, 0, 0, 0, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
-    assert_ok(skinslide_mirror(&view, 0, 0, 0, NULL, 0, mirrored, vertices, &error), &error);
+    assert_int_equal(skinslide_mirror(&view, &no_axis, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(&view, &no_plane, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(&view, &no_tolerance, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(&view, &good, outside, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(&view, &good, NULL, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(&view, &good, faces, 1, NULL, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(&view, &good, faces, -1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(skinslide_mirror(NULL, &good, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_fails(skinslide_mirror(&view, &none, faces, 1, mirrored, vertices, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+                 "skinslide_mirror_options: its size is 0; start from its default");
+    assert_ok(skinslide_mirror(&view, &good, NULL, 0, mirrored, vertices, &error), &error);
     mesh.points[0] = NAN;
-    assert_int_equal(skinslide_mirror(&view, 0, 0, 0, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_POINTS);
+    assert_int_equal(skinslide_mirror(&view, &good, faces, 1, mirrored, vertices, &error), SKINSLIDE_BAD_POINTS);
     free_mesh(&mesh);
 }
 

@@ -55,12 +55,16 @@ typedef struct nearest {
     double worst;
 } nearest;
 
+static skinslide_mirror_options about(int32_t axis, double plane, double tolerance) {
+    return (skinslide_mirror_options){sizeof(skinslide_mirror_options), axis, plane, tolerance};
+}
+
 static skinslide_status find(const test_mesh *mesh, double tolerance, const int32_t *faces, int32_t count, nearest *out) {
     skinslide_mesh view = view_of(mesh);
+    const skinslide_mirror_options options = about(0, COLUMNS / 2, tolerance);
     *out =
         (nearest){malloc((size_t)mesh->face_count * sizeof(int32_t)), malloc((size_t)mesh->vertex_count * sizeof(int32_t)), -1};
-    return skinslide_mirror_nearest(&view, 0, COLUMNS / 2, tolerance, faces, count, out->faces, out->vertices, &out->worst,
-                                    &error);
+    return skinslide_mirror_nearest(&view, &options, faces, count, out->faces, out->vertices, &out->worst, &error);
 }
 
 static void free_nearest(nearest *n) {
@@ -71,9 +75,10 @@ static void as_by_faces_where_these_are_symmetric(void **state) {
     (void)state;
     test_mesh mesh = symmetric(false);
     skinslide_mesh view = view_of(&mesh);
+    const skinslide_mirror_options middle = about(0, COLUMNS / 2, -1);
     int32_t *faces = all_faces(&mesh), *across = all_faces(&mesh), *image = malloc(sizeof(int32_t) * (size_t)mesh.vertex_count);
     int32_t count = left_faces(&mesh, faces), found = 0;
-    assert_ok(skinslide_mirror(&view, 0, COLUMNS / 2, -1, faces, count, across, image, &error), &error);
+    assert_ok(skinslide_mirror(&view, &middle, faces, count, across, image, &error), &error);
     nearest n;
     assert_ok(find(&mesh, -1, faces, count, &n), &error);
     for (int32_t i = 0; i < count; i++)
@@ -95,10 +100,10 @@ static void faces_cut_otherwise(void **state) {
     (void)state;
     test_mesh mesh = symmetric(true);
     skinslide_mesh view = view_of(&mesh);
+    const skinslide_mirror_options middle = about(0, COLUMNS / 2, -1);
     int32_t *faces = all_faces(&mesh), *across = all_faces(&mesh), *image = malloc(sizeof(int32_t) * (size_t)mesh.vertex_count);
     int32_t count = left_faces(&mesh, faces), found = 0;
-    assert_fails(skinslide_mirror(&view, 0, COLUMNS / 2, -1, faces, count, across, image, &error), &error, SKINSLIDE_BAD_MESH,
-                 "face ...");
+    assert_fails(skinslide_mirror(&view, &middle, faces, count, across, image, &error), &error, SKINSLIDE_BAD_MESH, "face ...");
     nearest n;
     assert_ok(find(&mesh, -1, faces, count, &n), &error);
     for (int32_t f = 0; f < mesh.face_count; f++)
@@ -131,14 +136,15 @@ static void what_is_too_far_is_named(void **state) {
     assert_true(n.worst > 0.05 && n.worst <= 0.125);
     free_nearest(&n);
     skinslide_mesh view = view_of(&mesh);
+    const skinslide_mirror_options no_axis = about(3, 0, -1), middle = about(0, 4, -1), beyond = about(0, 100, 1e6);
     int32_t none[200];
     double worst;
-    assert_fails(skinslide_mirror_nearest(&view, 3, 0, -1, faces, count, none, none, &worst, &error), &error,
+    assert_fails(skinslide_mirror_nearest(&view, &no_axis, faces, count, none, none, &worst, &error), &error,
                  SKINSLIDE_BAD_ARGUMENT, "axis 3, plane 0, tolerance -1");
-    assert_fails(skinslide_mirror_nearest(&view, 0, 4, -1, faces, count, NULL, none, &worst, &error), &error,
+    assert_fails(skinslide_mirror_nearest(&view, &middle, faces, count, NULL, none, &worst, &error), &error,
                  SKINSLIDE_BAD_ARGUMENT, "no place for what is nearest");
-    assert_fails(skinslide_mirror_nearest(&view, 0, 100, 1e6, faces, count, none, none, &worst, &error), &error,
-                 SKINSLIDE_BAD_MESH, "no face is beyond x = 100 where these are");
+    assert_fails(skinslide_mirror_nearest(&view, &beyond, faces, count, none, none, &worst, &error), &error, SKINSLIDE_BAD_MESH,
+                 "no face is beyond x = 100 where these are");
     free(faces);
     free_mesh(&mesh);
 }

@@ -23,34 +23,13 @@ class Curves(NamedTuple):
     to_mesh: np.ndarray | None = None  # (4, 4), takes points, as rows, to the mesh's object space
 
 
-def edges_near(
-    points: np.ndarray, edges: np.ndarray, curves: Curves, distance: float, direction: str = "any"
-) -> np.ndarray:
-    """Which edges (n, 2) of a mesh with points (V, 3) have their middle within a distance of a curve: bool (n,).
+def edge_distances(points: np.ndarray, edges: np.ndarray, curves: Curves, direction: str = "any") -> np.ndarray:
+    """How far the middle of each edge (n, 2) of a mesh with points (V, 3) is from the nearest curve: float64 (n,).
 
-    direction  "along": at 45 degrees or less to the curve; "across": at more; or "any"
+    direction  "along": at 45 degrees or less to the curve; "across": at more; or "any". Edges that do not run in it are
+               infinitely far
     """
-    native, near = Arguments(), np.zeros(len(edges), np.uint8)
-    call(
-        lib.skinslide_edges_near,
-        *_edges_and_curves(native, points, edges, curves),
-        distance,
-        enum_value("direction", direction, ""),
-        writable("uint8_t[]", near),
-    )
-    return near.astype(bool)
-
-
-def nearest_edge(points: np.ndarray, edges: np.ndarray, curves: Curves, direction: str = "any") -> float:
-    """How far the middle of the nearest edge is from a curve; infinite where none runs in that direction."""
-    native, distance = Arguments(), ffi.new("double *")
-    given = _edges_and_curves(native, points, edges, curves)
-    call(lib.skinslide_nearest_edge, *given, enum_value("direction", direction, ""), distance)
-    return float(distance[0])
-
-
-def _edges_and_curves(native: Arguments, points: np.ndarray, edges: np.ndarray, curves: Curves) -> tuple[Any, ...]:
-    given = new("curves")
+    native, given, distances = Arguments(), new("curves"), np.empty(len(edges))
     given.curve_count, given.point_count = len(curves.vertex_counts), len(curves.points)
     given.vertex_counts = native.pointer(curves.vertex_counts, np.int32, (-1,), "curve vertex counts")
     given.points = native.points(curves.points, -1, "curve points")
@@ -59,7 +38,9 @@ def _edges_and_curves(native: Arguments, points: np.ndarray, edges: np.ndarray, 
     if curves.to_mesh is not None:
         given.to_mesh = native.pointer(curves.to_mesh, np.float64, (4, 4), "curves' matrix")
     own, pairs = native.points(points, -1, "points"), native.pointer(edges, np.int32, (-1, 2), "edges")
-    return own, len(points), pairs, len(edges), given
+    way, out = enum_value("direction", direction, ""), writable("double[]", distances)
+    call(lib.skinslide_edge_distances, own, len(points), pairs, len(edges), given, way, out)
+    return distances
 
 
 class Mirrored(NamedTuple):
@@ -70,8 +51,11 @@ class Mirrored(NamedTuple):
 def _across(native: Arguments, mesh: Any, faces: np.ndarray, plane: tuple[str, float, float | None]) -> tuple[Any, ...]:
     """What mirroring of either kind is given: the mesh, the plane and how near, and the faces."""
     axis, place, tolerance = plane
-    pointed = native.pointer(faces, np.int32, (-1,), "faces")
-    return ffi.addressof(mesh), AXES.index(axis), place, -1.0 if tolerance is None else tolerance, pointed, len(faces)
+    options = new("mirror_options")
+    options.axis, options.plane = AXES.index(axis), place
+    if tolerance is not None:
+        options.tolerance = tolerance
+    return ffi.addressof(mesh), options, native.pointer(faces, np.int32, (-1,), "faces"), len(faces)
 
 
 def mirror_faces(

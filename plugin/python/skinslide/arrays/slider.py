@@ -283,11 +283,11 @@ class Slider:
             SliderError: There is no such patch, or points are not finite.
         """
         self._check_patch(patch)
-        native, held, loose = Arguments(), ffi.new("int32_t *"), ffi.new("int32_t *")
+        native, found = Arguments(), new("neighbours")
         own, other = native.points(points, self._sizes.vertices, "points"), native.points(others, -1, "others")
         count, within = len(np.asarray(others)), real(tolerance, "tolerance")
-        call(lib.skinslide_slider_neighbours, self._slider.pointer, patch, own, other, count, within, held, loose)
-        return held[0], loose[0]
+        call(lib.skinslide_slider_neighbours, self._slider.pointer, patch, own, other, count, within, found)
+        return found.held, found.loose
 
     def embedding(self, patch: int) -> np.ndarray:
         """The rest embedding of a patch in the unit square.

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Unpack
 import numpy as np
 from pxr import Gf, Usd, UsdGeom
 
-from skinslide.arrays.geometry import Curves, edges_near, nearest_edge
+from skinslide.arrays.geometry import Curves, edge_distances
 from skinslide.arrays.meaning import MeshMeaning, PatchMeaning
 from skinslide.arrays.topology import Topology
 from skinslide.arrays.values import integers, positions
@@ -214,12 +214,12 @@ def _curve_edges(surface: _Surface, near: _Near) -> np.ndarray:
     rest = surface.meaning.rest_points()
     curves = _read_curves(surface.prim, near.curve)
     try:
-        found = surface.edges[edges_near(rest, surface.edges, curves, near.distance, near.direction)]
-        nearest = nearest_edge(rest, surface.edges, curves, near.direction)
+        distances = edge_distances(rest, surface.edges, curves, near.direction)
     except SliderError as error:
         raise Fault(f"{near.curve}: {error}") from error
+    found = surface.edges[distances <= near.distance]
     if not len(found):
-        raise Fault(f"{near.curve} {NO_EDGE}: {_how_far(nearest, near)}")
+        raise Fault(f"{near.curve} {NO_EDGE}: {_how_far(distances.min(initial=np.inf), near)}")
     return found
 
 
