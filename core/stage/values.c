@@ -240,16 +240,6 @@ skinslide_status skinslide_value_integers(const skinslide_value *value, int32_t 
     return status;
 }
 
-skinslide_status skinslide_value_floats(const skinslide_value *value, float *out, skinslide_error *error) {
-    ss_record record;
-    skinslide_status status = ss_open(value, &record, error);
-    if (!status)
-        status = ss_check_floats(&record, SKINSLIDE_BAD_CONTROL, error);
-    if (!status && out)
-        ss_copy_floats(&record, out);
-    return status;
-}
-
 skinslide_status skinslide_value_positions(const skinslide_value *value, float *out, skinslide_error *error) {
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);

@@ -82,6 +82,12 @@ def test_auto_is_predictable():
     assert skinslide.choose_lookup("exact").lookup == "exact"
 
 
+@pytest.mark.parametrize("lookup", ["auto", "egl", "exact"])
+def test_a_slider_says_what_it_chose(lookup, tool, example_stage):
+    slider = tool.open_mesh(example_stage("chequer")).slider(Lookup(lookup))
+    assert slider.lookup() == skinslide.choose_lookup(lookup)
+
+
 @pytest.mark.parametrize("lookup", [Lookup("egl", resolution=-1), Lookup("egl", device=-2), Lookup("guess")])
 def test_lookups_that_cannot_be(lookup):
     with pytest.raises(SliderError) as error:

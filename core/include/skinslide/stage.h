@@ -90,11 +90,6 @@ SKINSLIDE_API int64_t skinslide_value_length(const skinslide_value *value);
  * it), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_value_integers(const skinslide_value *value, int32_t *out, skinslide_error *error);
 
-/* The elements of an array of halves, floats or doubles, likewise.
- *   out  out [skinslide_value_length]; NULL: the record is only checked
- * Fails with BAD_CONTROL ("NAME is not an array of float"; an index that is out of range: names it), BAD_ARGUMENT. */
-SKINSLIDE_API skinslide_status skinslide_value_floats(const skinslide_value *value, float *out, skinslide_error *error);
-
 /* The elements of an array of three halves, floats or doubles each, likewise.
  *   out  out [skinslide_value_length][3]; NULL: the record is only checked
  * Fails with BAD_CONTROL ("NAME is not an array of points"; an index that is out of range: names it), BAD_ARGUMENT. */

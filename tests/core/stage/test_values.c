@@ -1,11 +1,23 @@
 /* Records: every type of number comes to the same arrays, indices are applied, and what cannot be used is named. */
 #include "records.h"
+#include "stage.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 static skinslide_error error;
+
+/* As settings take an array of floats. */
+static skinslide_status take_floats(const skinslide_value *value, float *out, skinslide_error *into) {
+    ss_record record;
+    skinslide_status status = ss_open(value, &record, into);
+    if (!status)
+        status = ss_check_floats(&record, SKINSLIDE_BAD_CONTROL, into);
+    if (!status && out)
+        ss_copy_floats(&record, out);
+    return status;
+}
 
 static void whole_numbers_of_every_type(void **state) {
     (void)state;
@@ -21,7 +33,7 @@ static void whole_numbers_of_every_type(void **state) {
         assert_ok(skinslide_value_integers(&value, out, &error), &error);
         assert_same_bytes(out, ints, sizeof ints);
         value.type_name = "what[]";
-        assert_fails(skinslide_value_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of float");
+        assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of float");
     }
 }
 
@@ -37,7 +49,7 @@ static void halves_floats_and_doubles(void **state) {
     const void *data[] = {halves, floats, doubles};
     for (int k = 0; k < 3; k++) {
         skinslide_value value = array_of("x", (skinslide_value_type)(SKINSLIDE_VALUE_HALF + k), 1, 6, data[k]);
-        assert_ok(skinslide_value_floats(&value, out, &error), &error);
+        assert_ok(take_floats(&value, out, &error), &error);
         for (int i = 0; i < 5; i++)
             assert_true(out[i] == floats[i]);
         assert_true(isnan(out[5]));
@@ -54,7 +66,7 @@ static void indices_are_applied(void **state) {
     const skinslide_value indices = INTS("x:indices", 1, 1, 0, 2);
     skinslide_value value = indexed_by(FLOATS("x", 5, 6, 7), &indices);
     assert_int_equal(skinslide_value_length(&value), 4);
-    assert_ok(skinslide_value_floats(&value, out, &error), &error);
+    assert_ok(take_floats(&value, out, &error), &error);
     assert_same_bytes(out, ((float[]){6, 6, 5, 7}), sizeof out);
     const skinslide_value whole = indexed_by(INTS("x", 5, 6, 7), &indices);
     int32_t ints[4];
@@ -67,13 +79,13 @@ static void bad_indices_are_named(void **state) {
     const skinslide_value outside = INTS("x:indices", 0, 3), below = INTS("x:indices", 0, 0, -1);
     const skinslide_value floats = FLOATS("x:indices", 1);
     skinslide_value value = indexed_by(FLOATS("x", 5, 6, 7), &outside);
-    assert_fails(skinslide_value_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
+    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
                  "x:indices[1] is 3, but x has 3 values");
     value.indices = &below;
-    assert_fails(skinslide_value_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
+    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
                  "x:indices[2] is -1, but x has 3 values");
     value.indices = &floats;
-    assert_fails(skinslide_value_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
+    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
                  "x:indices is not an array of int");
 }
 
@@ -101,14 +113,14 @@ static void no_value_is_an_empty_array(void **state) {
         assert_ok(skinslide_value_positions(&none[i], NULL, &error), &error);
     }
     assert_int_equal(skinslide_value_length(NULL), 0);
-    assert_ok(skinslide_value_floats(NULL, NULL, &error), &error);
+    assert_ok(take_floats(NULL, NULL, &error), &error);
 }
 
 static void other_types_are_named(void **state) {
     (void)state;
     const skinslide_value other = other_of("x", "string[]"), single = NUMBER("x", 1), text = text_of("x", "word");
     assert_fails(skinslide_value_positions(&other, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of points");
-    assert_fails(skinslide_value_floats(&single, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of float");
+    assert_fails(take_floats(&single, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of float");
     assert_fails(skinslide_value_integers(&text, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of int");
 }
 
@@ -122,12 +134,12 @@ static void records_of_other_versions(void **state) {
     } newer = {FLOATS("x", 1, 2), {0}};
     const skinslide_value indices = INTS("x:indices", 1, 0);
     newer.value.size = sizeof newer;
-    assert_ok(skinslide_value_floats(&newer.value, out, &error), &error);
+    assert_ok(take_floats(&newer.value, out, &error), &error);
     newer.more[0] = 1;
-    assert_int_equal(skinslide_value_floats(&newer.value, out, &error), SKINSLIDE_UNSUPPORTED);
+    assert_int_equal(take_floats(&newer.value, out, &error), SKINSLIDE_UNSUPPORTED);
     skinslide_value older = indexed_by(FLOATS("x", 1, 2), &indices);
     older.size = offsetof(skinslide_value, indices);
-    assert_ok(skinslide_value_floats(&older, out, &error), &error);
+    assert_ok(take_floats(&older, out, &error), &error);
     assert_same_bytes(out, ((float[]){1, 2}), sizeof out);
 }
 
@@ -135,18 +147,18 @@ static void records_that_are_none(void **state) {
     (void)state;
     skinslide_value bad = FLOATS("x", 1);
     bad.size = 0;
-    assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+    assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "skinslide_value: its size is ...");
     bad = FLOATS("x", 1), bad.count = -1;
-    assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+    assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "x: the record has no data, or a count of none");
     bad = FLOATS(NULL, 1), bad.data = NULL;
-    assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+    assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "the value: the record has no data, or a count of none");
     bad = FLOATS("x", 1), bad.width = 0;
-    assert_int_equal(skinslide_value_floats(&bad, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
+    assert_int_equal(take_floats(&bad, NULL, &error), SKINSLIDE_BAD_ARGUMENT);
     bad = FLOATS("x", 1), bad.type = (skinslide_value_type)99;
-    assert_fails(skinslide_value_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of float");
+    assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x is not an array of float");
 }
 
 /* A name of any length leaves room for what is wrong, and is not cut within a character. */
@@ -160,7 +172,7 @@ static void long_names_are_cut(void **state) {
         skinslide_value value = other_of(name + 2 * shift, "x");
         if (shift)
             name[2] = 'a', name[3] = 'b';
-        assert_int_equal(skinslide_value_floats(&value, NULL, &error), SKINSLIDE_BAD_CONTROL);
+        assert_int_equal(take_floats(&value, NULL, &error), SKINSLIDE_BAD_CONTROL);
         const char *cut = strstr(error.message, "...");
         assert_string_equal(cut, "... is not an array of float");
         assert_int_equal((unsigned char)cut[-1], 0xa9);

@@ -17,7 +17,7 @@ from skinslide.arrays.apart import apart, together
 from skinslide.arrays.checks import all_of, as_array, check_count, real, whole
 from skinslide.arrays.lookup import Lookup
 from skinslide.arrays.native import Handle, call, new, new_array, read, text, writable
-from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
+from skinslide.arrays.records import LookupInfo, PatchInfo, PatchResult, Roughness
 from skinslide.arrays.setups import Controls, PatchSetup, Sample, Subdivision
 from skinslide.arrays.structs import Arguments, Sizes
 from skinslide.arrays.workspaces import Workspaces
@@ -202,6 +202,17 @@ class Slider:
         with self._slid(points) as (workspace, cached):
             call(lib.skinslide_workspace_least_stretch, workspace.pointer, cached, writable("double[]", least))
         return tuple(least.tolist())
+
+    def lookup(self) -> LookupInfo:
+        """Says which lookup its frames have, and on which device.
+
+        Returns:
+            That of the next frame; its reason says how the device failed last, if it did.
+        """
+        info, device = new("lookup_info"), new("device_info")
+        with self._workspaces.taken() as workspace:
+            call(lib.skinslide_workspace_lookup, workspace.pointer, info, device)
+        return read(LookupInfo, info[0], device[0])
 
     def check_points(self, points: npt.ArrayLike) -> str:
         """Checks whether a frame can be slid.
