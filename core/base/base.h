@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "skinslide/skinslide.h"
 
@@ -122,6 +123,17 @@ static inline float ss_half_to_float(uint16_t half) {
 /* Whether all three coordinates of a point are finite. */
 static inline bool ss_is_finite(const float point[3]) {
     return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
+}
+
+/* Whether all of several numbers are finite: one that is not has the largest exponent, and adding 1 to that sets the sign. */
+static inline bool ss_all_finite(int64_t count, const float *x) {
+    uint32_t signs = 0;
+    for (int64_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, x + i, sizeof bits);
+        signs |= (bits & UINT32_C(0x7fffffff)) + UINT32_C(0x00800000);
+    }
+    return signs >> 31 == 0;
 }
 
 /* ---- Code for processors that do several things at once ---- */

@@ -21,14 +21,21 @@ static void mark_reads(const skinslide_mesh *mesh, const uint8_t *chosen, uint8_
     }
 }
 
+static bool begins_span(const uint8_t *marked, int32_t vertex) {
+    return marked[vertex] && (vertex == 0 || !marked[vertex - 1]);
+}
+
 static bool list_marked(ss_memory *memory, const uint8_t *marked, int32_t vertex_count, ss_list *list) {
     for (int32_t v = 0; v < vertex_count; v++)
-        list->count += marked[v];
-    list->vertex = SS_NEW(memory, int32_t, list->count);
-    for (int32_t v = 0, i = 0; list->vertex && v < vertex_count; v++)
+        list->count += marked[v], list->span_count += begins_span(marked, v);
+    list->spans = SS_NEW(memory, ss_span, list->span_count);
+    for (int32_t v = 0, i = 0; list->spans && v < vertex_count; v++) {
+        if (begins_span(marked, v))
+            list->spans[i++].first = v;
         if (marked[v])
-            list->vertex[i++] = v;
-    return list->vertex != NULL;
+            list->spans[i - 1].end = v + 1;
+    }
+    return list->spans != NULL;
 }
 
 bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, const uint8_t *chosen) {
@@ -45,13 +52,20 @@ bool ss_list_vertices(skinslide_slider *slider, const skinslide_mesh *mesh, cons
     return done;
 }
 
+static skinslide_status refuse_point(const ss_span *span, const float *points, const char *what, skinslide_error *error) {
+    int32_t v = span->first;
+    while (ss_is_finite(points + 3 * (int64_t)v))
+        v++;
+    return ss_refuse_vertex(what, v, points + 3 * (int64_t)v, 3, SKINSLIDE_BAD_POINTS, error);
+}
+
 skinslide_status ss_check_reads(const skinslide_slider *slider, const float *points, const char *what, skinslide_error *error) {
     if (!points)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
-    for (int32_t i = 0; i < slider->reads.count; i++) {
-        int32_t v = slider->reads.vertex[i];
-        if (!ss_is_finite(points + 3 * (int64_t)v))
-            return ss_refuse_vertex(what, v, points + 3 * (int64_t)v, 3, SKINSLIDE_BAD_POINTS, error);
+    for (int32_t i = 0; i < slider->reads.span_count; i++) {
+        const ss_span *span = &slider->reads.spans[i];
+        if (!ss_all_finite(3 * (int64_t)ss_span_size(span), points + 3 * (int64_t)span->first))
+            return refuse_point(span, points, what, error);
     }
     return SKINSLIDE_OK;
 }

@@ -21,9 +21,19 @@ typedef struct ss_part {
     ss_cage *cage;         /* NULL unless its interpolation is LIMIT */
 } ss_part;
 
+/* Vertices of the mesh that follow each other, up to end. */
+typedef struct ss_span {
+    int32_t first, end;
+} ss_span;
+
+static inline int32_t ss_span_size(const ss_span *span) {
+    return span->end - span->first;
+}
+
 typedef struct ss_list {
-    int32_t count;
-    int32_t *vertex; /* [count] of the mesh, ascending */
+    int32_t count; /* vertices */
+    int32_t span_count;
+    ss_span *spans; /* [span_count] ascending, with others between them */
 } ss_list;
 
 /* The matrices to where lengths are measured, and back. */

@@ -51,10 +51,10 @@ static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, c
 /* Sums weight times displacement, and weight, over the patches of each vertex. */
 static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
     for (int32_t i = 0; i < patch->free_count; i++) {
-        double *total = sum[patch->mesh_vertex[patch->free_vertex[i]]], weight = ss_blend_weight(work, i);
-        for (int k = 0; k < 3; k++)
-            total[k] += weight * work->displacement[i][k];
-        total[3] += weight;
+        const double *own = work->displacement[i];
+        double weight = ss_blend_weight(work, i);
+        ss_loose_two *total = (ss_loose_two *)sum[patch->mesh_vertex[patch->free_vertex[i]]];
+        total[0] += weight * (ss_two){own[0], own[1]}, total[1] += weight * (ss_two){own[2], 1};
     }
 }
 
@@ -82,35 +82,41 @@ static skinslide_status slide_patch(skinslide_workspace *workspace, int32_t p, s
 
 static void clear_sums(skinslide_workspace *workspace) {
     const ss_list *own = &workspace->slider->own;
-    for (int32_t i = 0; i < own->count; i++)
-        memset(workspace->sum[own->vertex[i]], 0, sizeof *workspace->sum);
+    for (int32_t i = 0; i < own->span_count; i++)
+        memset(workspace->sum[own->spans[i].first], 0, (size_t)ss_span_size(&own->spans[i]) * sizeof *workspace->sum);
 }
 
-/* From sums over patches to the displacement of each vertex. */
-static void blend(skinslide_workspace *workspace) {
-    const skinslide_slider *slider = workspace->slider;
-    for (int32_t i = 0; i < slider->own.count; i++) {
-        double *sum = workspace->sum[slider->own.vertex[i]];
-        for (int k = 0; k < 3 && sum[3] > 0 && sum[3] != 1; k++)
-            sum[k] /= sum[3];
-    }
+/* From a sum over patches to the displacement of a vertex. Its weight is then 1 or 0: to do it again changes nothing. */
+static inline void blend(double sum[4]) {
+    if (sum[3] > 0 && sum[3] != 1)
+        sum[0] /= sum[3], sum[1] /= sum[3], sum[2] /= sum[3], sum[3] = 1;
 }
 
-static bool moves(const double displacement[3]) {
-    return displacement[0] != 0 || displacement[1] != 0 || displacement[2] != 0;
+/* The length of a way along one axis after the other: 0 exactly if it leads nowhere. */
+static inline double along_axes(const double displacement[3]) {
+    return fabs(displacement[0]) + fabs(displacement[1]) + fabs(displacement[2]);
+}
+
+typedef int64_t two_bits __attribute__((vector_size(16)));
+
+/* Where a vertex goes, by its displacement, if that is any: else -0 is added, which leaves the bits of all numbers. */
+SS_INLINE void go(const float here[3], const double displacement[3], double any, float out[3]) {
+    const ss_two each = {any, any};
+    const two_bits minus = (each == 0) & INT64_MIN;
+    ss_two first = *(const ss_loose_two *)displacement, last = {displacement[2], 0};
+    first = (ss_two){here[0], here[1]} + (ss_two)((two_bits)first | minus);
+    last = (ss_two){here[2], 0} + (ss_two)((two_bits)last | minus);
+    out[0] = (float)first[0], out[1] = (float)first[1], out[2] = (float)last[0];
 }
 
 /* Where a vertex goes; a welded one goes with the vertex that it is one with. */
-static void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
-    const double *slid = workspace->sum[ss_welded(workspace->slider, vertex)], *displacement = slid;
-    double own[3];
-    bool moved = moves(slid);
+SS_INLINE void land(const skinslide_workspace *workspace, const float *points, int32_t vertex, float out[3]) {
+    double *sum = workspace->sum[ss_welded(workspace->slider, vertex)], own[3];
+    const double *displacement = sum;
+    blend(sum);
     if (workspace->slider->space)
-        ss_take_back(workspace->slider, slid, own), displacement = own;
-    for (int k = 0; k < 3; k++) {
-        float here = points[3 * (int64_t)vertex + k];
-        out[k] = moved ? (float)(here + displacement[k]) : here;
-    }
+        ss_take_back(workspace->slider, sum, own), displacement = own;
+    go(points + 3 * (int64_t)vertex, displacement, along_axes(sum), out);
 }
 
 static skinslide_status check_landing(const skinslide_workspace *workspace, const ss_patch *patch, int32_t vertex,
@@ -146,18 +152,19 @@ static skinslide_status refuse_landing(const skinslide_workspace *workspace, con
 static skinslide_status write_points(const skinslide_workspace *workspace, const float *points, float *slid,
                                      skinslide_error *error) {
     const ss_list *own = &workspace->slider->own;
-    bool finite = true;
-    for (int32_t i = 0; i < own->count; i++) {
-        land(workspace, points, own->vertex[i], workspace->landed[i]);
-        finite = finite && ss_is_finite(workspace->landed[i]);
-    }
+    float(*landed)[3] = workspace->landed;
+    for (int32_t i = 0; i < own->span_count; i++)
+        for (int32_t v = own->spans[i].first; v < own->spans[i].end; v++)
+            land(workspace, points, v, *landed++);
+    bool finite = ss_all_finite(3 * (int64_t)own->count, *workspace->landed);
     skinslide_status status = finite ? SKINSLIDE_OK : refuse_landing(workspace, points, error);
     if (status)
         return status;
     if (slid != points)
         memcpy(slid, points, (size_t)workspace->slider->vertex_count * sizeof(float[3]));
-    for (int32_t i = 0; i < own->count; i++)
-        memcpy(slid + 3 * (int64_t)own->vertex[i], workspace->landed[i], sizeof *workspace->landed);
+    landed = workspace->landed;
+    for (int32_t i = 0; i < own->span_count; landed += ss_span_size(&own->spans[i++]))
+        memcpy(slid + 3 * (int64_t)own->spans[i].first, landed, (size_t)ss_span_size(&own->spans[i]) * sizeof *landed);
     return SKINSLIDE_OK;
 }
 
@@ -167,7 +174,7 @@ static void measure_slide(const ss_patch *patch, const double (*displacement)[4]
     double largest = 0; /* squared */
     for (int32_t i = 0; i < patch->free_count; i++) {
         const double *d = displacement[patch->mesh_vertex[patch->free_vertex[i]]];
-        result->slid_vertices += moves(d);
+        result->slid_vertices += along_axes(d) != 0;
         largest = ss_most(ss_dot(d, d), largest);
     }
     result->largest_slide = sqrt(largest);
@@ -239,7 +246,6 @@ skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *po
     for (int32_t p = 0; p < slider->part_count; p++)
         if ((status = ss_go_on(workspace, slide_patch(workspace, p, error), error)))
             return status;
-    blend(workspace);
     if ((status = write_points(workspace, points, slid, error)))
         return status;
     if (results) {

@@ -67,14 +67,16 @@ skinslide_status skinslide_workspace_turns(skinslide_workspace *workspace, const
         return status;
     ss_smooth_normals(&slider->around, points, slider->vertex_count, workspace->normal);
     const ss_list *own = &slider->own;
-    for (int32_t i = 0; i < own->count; i++)
-        memset(workspace->target[own->vertex[i]], 0, sizeof *workspace->target);
+    for (int32_t i = 0; i < own->span_count; i++)
+        memset(workspace->target[own->spans[i].first], 0, (size_t)ss_span_size(&own->spans[i]) * sizeof *workspace->target);
     for (int32_t p = 0; p < slider->part_count; p++)
         add_targets(workspace, p);
-    for (int32_t i = 0; i < own->count; i++)
-        ss_normalise(workspace->target[own->vertex[i]]);
+    for (int32_t i = 0; i < own->span_count; i++)
+        for (int32_t v = own->spans[i].first; v < own->spans[i].end; v++)
+            ss_normalise(workspace->target[v]);
     memset(turns, 0, (size_t)slider->vertex_count * sizeof(float[3]));
-    for (int32_t i = 0; i < own->count; i++)
-        turn_vertex(workspace, own->vertex[i], turns + 3 * (int64_t)own->vertex[i]);
+    for (int32_t i = 0; i < own->span_count; i++)
+        for (int32_t v = own->spans[i].first; v < own->spans[i].end; v++)
+            turn_vertex(workspace, v, turns + 3 * (int64_t)v);
     return SKINSLIDE_OK;
 }
