@@ -29,16 +29,17 @@ static void lay_out(const ss_patch *patch, const float *points, double (*out)[4]
 
 /* The squares of four lengths, of edges that follow each other. */
 __attribute__((target("avx2"))) SS_INLINE ss_four squares(const int32_t (*edge)[2], const double (*points)[4]) {
-    ss_four way[4], low[2], high[2];
-    for (int k = 0; k < 4; k++)
-        way[k] = *(const ss_loose_four *)points[edge[k][1]] - *(const ss_loose_four *)points[edge[k][0]];
-    for (int k = 0; k < 2; k++) {
-        ss_four a = way[2 * k], b = way[2 * k + 1];
-        low[k] = (ss_four){a[0], b[0], a[2], b[2]}, high[k] = (ss_four){a[1], b[1], a[3], b[3]};
+    ss_four square[4], first[2], second[2];
+    for (int k = 0; k < 4; k++) {
+        ss_four way = *(const ss_loose_four *)points[edge[k][1]] - *(const ss_loose_four *)points[edge[k][0]];
+        square[k] = way * way;
     }
-    ss_four x = {low[0][0], low[0][1], low[1][0], low[1][1]}, y = {high[0][0], high[0][1], high[1][0], high[1][1]},
-            z = {low[0][2], low[0][3], low[1][2], low[1][3]};
-    return x * x + y * y + z * z;
+    for (int k = 0; k < 2; k++) { /* in its halves: x, x, z, z and y, y, 0, 0 */
+        first[k] = __builtin_shuffle(square[2 * k], square[2 * k + 1], (bits){0, 4, 2, 6});
+        second[k] = first[k] + __builtin_shuffle(square[2 * k], square[2 * k + 1], (bits){1, 5, 3, 7});
+    }
+    return __builtin_shuffle(second[0], second[1], (bits){0, 1, 4, 5}) +
+           __builtin_shuffle(first[0], first[1], (bits){2, 3, 6, 7});
 }
 
 /* Of the first edges, whose count is a multiple of four. It has no calls: GCC 12 does not clear the upper halves of registers before
