@@ -78,7 +78,7 @@ static inline void ss_set(int *flag, int to) {
 double ss_log(double x);
 /* The logarithms of several numbers, in place: the same bits, faster. */
 void ss_logs(int32_t count, double *x);
-/* The sum of log^2(x / y), added in order. */
+/* The sum of log^2(x / y), of numbers under 1e300; exactly 0 where each x is its y. */
 double ss_sum_squared_logs(int32_t count, const double *x, const double *y);
 /* The same as processors without AVX2 do them. */
 void ss_logs_plain(int32_t count, double *x);

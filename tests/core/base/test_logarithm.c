@@ -42,25 +42,45 @@ static void several_are_each_to_the_bit(void **state) {
     }
 }
 
-/* For any count, and with numbers among them that are not normal. */
-static void squares_are_summed_in_their_order(void **state) {
+/* Of whatever count, of quotients near 1 and far from it, and with what is not normal among them. Each log is a few units in the
+ * last place off, and so is its square; the sums are of at most 100. */
+static void squares_are_those_of_logarithms(void **state) {
     (void)state;
     enum { COUNT = 100 };
     double x[COUNT], y[COUNT];
-    for (int i = 0; i < COUNT; i++)
-        x[i] = ldexp(1 + i / 97.0, i % 40 - 20), y[i] = 1 + i / 89.0;
-    for (int k = 0; k < 4; k++) {
-        double sum = 0;
-        if (k % 2)
-            x[5] = 0x1p-1060;
-        for (int32_t count = 0; count < COUNT; count++) {
-            double found = (k < 2 ? ss_sum_squared_logs : ss_sum_squared_logs_plain)(count, x, y);
-            assert_memory_equal(&found, &sum, sizeof sum);
-            double logarithm = ss_log(x[count] / y[count]);
-            sum += logarithm * logarithm;
-        }
-        x[5] = 3;
+    for (int i = 0; i < COUNT; i++) {
+        y[i] = 0.3 + i / 89.0;
+        x[i] = i % 3 ? y[i] * (1 + (i % 3 - 1.5) * pow(0.7, i)) : ldexp(1 + i / 97.0, i % 40 - 20);
     }
+    for (int k = 0; k < 2; k++) {
+        double sum = 0;
+        for (int32_t count = 0; count < COUNT; count++) {
+            double found = ss_sum_squared_logs(count, x, y), plain = ss_sum_squared_logs_plain(count, x, y);
+            assert_near(found, sum, 16 * DBL_EPSILON * sum);
+            assert_memory_equal(&found, &plain, sizeof found);
+            sum += log(x[count] / y[count]) * log(x[count] / y[count]);
+        }
+        x[5] = 0x1p-1060, y[50] = 0x1p-1022;
+    }
+}
+
+/* Of one quotient at a time, so that no sum hides its error. */
+static void each_square_has_its_digits(void **state) {
+    (void)state;
+    for (double y = 1; y < 2; y += 0.0137)
+        for (double quotient = 0.2; quotient < 5; quotient *= 1.0071) {
+            double x = quotient * y, logarithm = log(x / y);
+            assert_near(ss_sum_squared_logs(1, &x, &y), logarithm * logarithm,
+                        8 * DBL_EPSILON * (logarithm * logarithm + fabs(logarithm)));
+        }
+}
+
+static void the_same_has_none(void **state) {
+    (void)state;
+    double x[20];
+    for (int i = 0; i < 20; i++)
+        x[i] = pow(7, i - 9);
+    assert_true(ss_sum_squared_logs(20, x, x) == 0);
 }
 
 static void exponentials_are_those_of_the_library(void **state) {
@@ -74,7 +94,9 @@ int main(void) {
         cmocka_unit_test(one_has_none),
         cmocka_unit_test(logarithms_are_those_of_the_library),
         cmocka_unit_test(several_are_each_to_the_bit),
-        cmocka_unit_test(squares_are_summed_in_their_order),
+        cmocka_unit_test(squares_are_those_of_logarithms),
+        cmocka_unit_test(each_square_has_its_digits),
+        cmocka_unit_test(the_same_has_none),
         cmocka_unit_test(exponentials_are_those_of_the_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
