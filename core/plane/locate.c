@@ -209,9 +209,9 @@ ss_place ss_locate_near(ss_locator *locator, int32_t triangle, const double p[2]
     return place;
 }
 
-/* Looks up query i, whose walk begins at the slab from. */
-static void locate_one(ss_locator *locator, int32_t i, int32_t from, const double p[2], const ss_candidates *candidates,
-                       ss_place *out, ss_located *located) {
+/* Looks up query i, whose walk begins at the slab from, where it was perhaps found already: then out is its place. */
+static void locate_one(ss_locator *locator, int32_t i, int32_t from, bool found, const double p[2],
+                       const ss_candidates *candidates, ss_place *out, ss_located *located) {
     const ss_patch *patch = locator->patch;
     const double *own = locator->paving.uv[i];
     int32_t vertex = patch->free_vertex[i], slab = -1;
@@ -221,6 +221,11 @@ static void locate_one(ss_locator *locator, int32_t i, int32_t from, const doubl
     }
     if (patch->vertex_loop[vertex] >= 0) {
         slide_on_loop(locator, vertex, p, out);
+        return;
+    }
+    if (found) {
+        located->walked++;
+        locator->landed[i] = from;
         return;
     }
     int32_t candidate = locator->regular ? try_candidates(locator, candidates, p, out) : -1;
@@ -239,14 +244,15 @@ static void locate_one(ss_locator *locator, int32_t i, int32_t from, const doubl
 static void locate_some(ss_locator *locator, int32_t begin, int32_t count, const double (*query)[2],
                         const ss_candidates *candidates, ss_place *places, ss_located *located) {
     int32_t near[SS_AT_ONCE];
+    bool found[SS_AT_ONCE] = {false};
     for (int32_t k = 0; k < count; k++) {
         int32_t before = locator->patch->free_before[begin + k];
         near[k] = locator->landed[before < 0 ? begin + k : before];
     }
     if (count == SS_AT_ONCE && locator->regular && !candidates)
-        located->steps += ss_paving_approach(&locator->paving, query + begin, near);
+        located->steps += ss_paving_approach(&locator->paving, query + begin, near, places + begin, found);
     for (int32_t k = 0, i = begin; k < count; k++, i++)
-        locate_one(locator, i, near[k], query[i], candidates ? &candidates[i] : NULL, &places[i], located);
+        locate_one(locator, i, near[k], found[k], query[i], candidates ? &candidates[i] : NULL, &places[i], located);
 }
 
 ss_located ss_locate(ss_locator *locator, const double (*uv)[2], bool regular, const double (*query)[2],

@@ -40,13 +40,35 @@ static void centre_of(const ss_paving *paving, int32_t slab, double out[2]) {
     }
 }
 
+/* A point is found only where a walk ends at once and off all sides, and its place is then the walk's to the bit. */
+static void expect_places(const ss_paving *paving, const double (*p)[2], const int32_t slab[SS_AT_ONCE],
+                          const ss_place places[SS_AT_ONCE], const bool found[SS_AT_ONCE]) {
+    for (int i = 0; i < SS_AT_ONCE; i++) {
+        ss_place place;
+        int64_t steps = 0;
+        bool on_border = false, ends = ss_paving_walk(paving, slab[i], p[i], &on_border, &steps) == slab[i] && steps == 0;
+        assert_true(!found[i] || (ends && !on_border));
+        if (!found[i])
+            continue;
+        ss_paving_place_at(paving, slab[i], p[i], &place);
+        assert_int_equal(places[i].triangle, place.triangle);
+        assert_same_bytes(places[i].weight, place.weight, sizeof place.weight);
+        assert_same_bytes(places[i].uv, place.uv, sizeof place.uv);
+    }
+}
+
 /* Hops as processors with and without AVX2 do. Returns how many slabs were entered. */
-static int64_t approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE]) {
+static int64_t approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE], bool found[SS_AT_ONCE]) {
     int32_t plain[SS_AT_ONCE];
+    bool plain_found[SS_AT_ONCE];
+    ss_place places[SS_AT_ONCE], plain_places[SS_AT_ONCE];
     memcpy(plain, slab, sizeof plain);
-    int64_t entered = ss_paving_approach(paving, p, slab);
-    assert_int_equal(ss_paving_approach_plain(paving, p, plain), entered);
+    int64_t entered = ss_paving_approach(paving, p, slab, places, found);
+    assert_int_equal(ss_paving_approach_plain(paving, p, plain, plain_places, plain_found), entered);
     assert_memory_equal(plain, slab, sizeof plain);
+    assert_memory_equal(plain_found, found, sizeof plain_found);
+    expect_places(paving, p, slab, places, found);
+    expect_places(paving, p, slab, plain_places, found);
     return entered;
 }
 
@@ -61,6 +83,7 @@ static void hops_are_steps_of_walks(void **state) {
         for (int round = 0; round < 50; round++) {
             double p[SS_AT_ONCE][2];
             int32_t slab[SS_AT_ONCE], begun[SS_AT_ONCE], wanted[SS_AT_ONCE];
+            bool found[SS_AT_ONCE];
             int64_t steps = 0;
             for (int i = 0; i < SS_AT_ONCE; i++) {
                 int64_t own = 0;
@@ -70,14 +93,15 @@ static void hops_are_steps_of_walks(void **state) {
                 assert_int_equal(ss_paving_walk(&n.paving, slab[i], p[i], &on_border, &own), wanted[i]);
                 steps += own < HOPS ? own : HOPS;
             }
-            assert_int_equal(approach(&n.paving, (const double(*)[2])p, slab), steps);
+            assert_int_equal(approach(&n.paving, (const double(*)[2])p, slab, found), steps);
             for (int i = 0; i < SS_AT_ONCE; i++) {
                 int64_t whole = 0, left = 0;
                 bool on_border;
                 ss_paving_walk(&n.paving, begun[i], p[i], &on_border, &whole);
                 ss_paving_walk(&n.paving, slab[i], p[i], &on_border, &left);
                 assert_int_equal(left, whole < HOPS ? 0 : whole - HOPS);
-                arrived += slab[i] == wanted[i];
+                assert_true(found[i] == (slab[i] == wanted[i]));
+                arrived += found[i];
             }
         }
         assert_true(arrived > 0);
@@ -94,14 +118,40 @@ static void hops_stay_on_the_patch(void **state) {
     for (int round = 0; round < 200; round++) {
         double p[SS_AT_ONCE][2];
         int32_t slab[SS_AT_ONCE];
+        bool found[SS_AT_ONCE];
         for (int i = 0; i < SS_AT_ONCE; i++) {
             slab[i] = roll_below(&d, n.patch->triangles.count);
             for (int axis = 0; axis < 2; axis++)
                 p[i][axis] = roll_between(&d, -2, 3);
         }
-        approach(&n.paving, (const double(*)[2])p, slab);
+        approach(&n.paving, (const double(*)[2])p, slab, found);
         for (int i = 0; i < SS_AT_ONCE; i++)
             assert_true(slab[i] >= 0 && slab[i] < n.patch->triangles.count);
+    }
+    free_net(&n);
+}
+
+/* On corners, on sides and a rounding beside them, where only an exact test can tell. */
+static void what_is_in_doubt_is_left_to_walks(void **state) {
+    (void)state;
+    dice d = {8};
+    net n;
+    make_net(triangle_grid(5, 5), 2, &n);
+    for (int round = 0; round < 200; round++) {
+        double p[SS_AT_ONCE][2];
+        int32_t slab[SS_AT_ONCE];
+        bool found[SS_AT_ONCE];
+        for (int i = 0; i < SS_AT_ONCE; i++) {
+            slab[i] = roll_below(&d, n.patch->triangles.count);
+            const int32_t *v = n.paving.slab[slab[i]].vertex;
+            const double *a = n.paving.uv[v[i % 3]], *b = n.paving.uv[v[(i + 1) % 3]];
+            double share = round % 4 == 0 ? 0 : roll_between(&d, 0, 1);
+            for (int axis = 0; axis < 2; axis++)
+                p[i][axis] = a[axis] + share * (b[axis] - a[axis]);
+        }
+        approach(&n.paving, (const double(*)[2])p, slab, found);
+        for (int i = 0; i < SS_AT_ONCE && round % 4 == 0; i++)
+            assert_false(found[i]);
     }
     free_net(&n);
 }
@@ -110,6 +160,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hops_are_steps_of_walks),
         cmocka_unit_test(hops_stay_on_the_patch),
+        cmocka_unit_test(what_is_in_doubt_is_left_to_walks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
