@@ -2,9 +2,25 @@
 #include "plane.h"
 
 /* q = 1/l, in units of the patch's shortest length, so that the patch's size does not matter. */
+SS_INLINE void divide(double unit, int32_t count, const double *lengths, double *restrict density) {
+    for (int32_t e = 0; e < count; e++)
+        density[e] = unit / lengths[e];
+}
+
+#ifdef __x86_64__
+__attribute__((target("avx2"))) static void divide_avx2(double unit, int32_t count, const double *lengths, double *density) {
+    divide(unit, count, lengths, density);
+}
+#endif
+
 static void unit_rule(const ss_patch *patch, const double *lengths, double *density) {
-    for (int32_t e = 0; e < patch->faces.edge_count; e++)
-        density[e] = patch->shortest / lengths[e];
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) {
+        divide_avx2(patch->shortest, patch->faces.edge_count, lengths, density);
+        return;
+    }
+#endif
+    divide(patch->shortest, patch->faces.edge_count, lengths, density);
 }
 
 /* q = m - l^2 + 1e-4 m, with m the largest l^2, in units of m. */

@@ -13,9 +13,9 @@ ss_net ss_net_of(const ss_patch *patch, const uint8_t *fixed) {
     return (ss_net){patch->vertex_count, patch->faces.edge_count, (const int32_t(*)[2])patch->edge_vertex, fixed};
 }
 
-static void assemble(const ss_system *system, ss_factor *factor, const double *density, const double (*uv)[2]) {
+static void assemble(const ss_system *system, ss_factor *factor, const double (*uv)[2]) {
+    const double *density = factor->entry;
     ss_factor_clear(factor);
-    memcpy(factor->entry, density, (size_t)system->edge_count * sizeof *density);
     for (int32_t i = 0; i < system->held_count; i++) {
         int32_t edge = system->held[i], a = system->edge_vertex[edge][0], b = system->edge_vertex[edge][1];
         bool first_is_free = system->unknown[a] >= 0;
@@ -27,9 +27,8 @@ static void assemble(const ss_system *system, ss_factor *factor, const double *d
     }
 }
 
-skinslide_status ss_embed(const ss_system *system, ss_factor *factor, const double *density, double (*uv)[2],
-                          skinslide_error *error) {
-    assemble(system, factor, density, (const double(*)[2])uv);
+skinslide_status ss_embed(const ss_system *system, ss_factor *factor, double (*uv)[2], skinslide_error *error) {
+    assemble(system, factor, (const double(*)[2])uv);
     if (!ss_factorise_and_solve(factor))
         return ss_fail(error, SKINSLIDE_SINGULAR,
                        "%s: its force densities differ too much in size for the embedding to be solved", system->label);
@@ -46,8 +45,10 @@ skinslide_status ss_embed_once(const ss_net *net, const char *label, const doubl
     skinslide_status status = ss_system_create(net, label, &system, error);
     if (!status)
         status = ss_factor_create(system, NULL, &factor, error);
-    if (!status)
-        status = ss_embed(system, factor, density, uv, error);
+    if (!status) {
+        memcpy(factor->entry, density, (size_t)system->edge_count * sizeof *density);
+        status = ss_embed(system, factor, uv, error);
+    }
     ss_factor_destroy(factor);
     ss_system_destroy(system);
     return status;

@@ -15,10 +15,9 @@ typedef struct plane_rest {
 typedef struct plane_slide {
     ss_slide head;
     ss_memory memory;
-    ss_room *room; /* of the factor and the next two, used while embedding */
+    ss_room *room; /* of the factor and the next, used while embedding */
     ss_factor *factor;
     double (*own_rest_uv)[2]; /* [vertex_count] U0 with the frame's paint */
-    double *density;          /* [edge_count] */
     ss_locator *locator;
     ss_traveller *traveller;    /* NULL before the first frame with limits */
     ss_idbuffer *idbuffer;      /* NULL: nothing proposes faces */
@@ -36,16 +35,13 @@ static const ss_system *system_of(const plane_slide *own) {
 
 static skinslide_status embed_rest(plane_rest *own, skinslide_error *error) {
     const ss_patch *patch = own->head.patch;
-    ss_memory scratch = {0};
     ss_factor *factor = NULL;
-    double *density = SS_NEW(&scratch, double, patch->faces.edge_count);
-    skinslide_status status = density ? ss_factor_create(own->system, NULL, &factor, error) : ss_out_of_memory(error);
+    skinslide_status status = ss_factor_create(own->system, NULL, &factor, error);
     if (!status) {
-        ss_force_density(patch, patch->rest_length, own->head.paint, density);
-        status = ss_embed(own->system, factor, density, own->uv, error);
+        ss_force_density(patch, patch->rest_length, own->head.paint, factor->entry);
+        status = ss_embed(own->system, factor, own->uv, error);
     }
     ss_factor_destroy(factor);
-    ss_free(&scratch);
     return status;
 }
 
@@ -103,7 +99,6 @@ static void lay_out(plane_slide *own, ss_room *room) {
     const ss_patch *patch = own->head.rest->patch;
     ss_factor_lay_out(own->factor, room);
     own->own_rest_uv = ss_take_room(room, patch->vertex_count, sizeof *own->own_rest_uv);
-    own->density = SS_TAKE(room, double, patch->faces.edge_count);
 }
 
 static skinslide_status allocate(plane_slide *own, skinslide_error *error) {
@@ -160,8 +155,8 @@ static skinslide_status choose_rest(plane_slide *own, const ss_frame *frame, ski
         return SKINSLIDE_OK;
     copy_rest(rest, own->own_rest_uv);
     own->rest_uv = (const double(*)[2])own->own_rest_uv;
-    ss_force_density(rest->patch, rest->patch->rest_length, frame->paint, own->density);
-    return ss_embed(system_of(own), own->factor, own->density, own->own_rest_uv, error);
+    ss_force_density(rest->patch, rest->patch->rest_length, frame->paint, own->factor->entry);
+    return ss_embed(system_of(own), own->factor, own->own_rest_uv, error);
 }
 
 /* u = lerp(own place in Ud, rest place in U0, weight): where each free vertex is looked up. */
@@ -185,10 +180,10 @@ static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_
     skinslide_status status = choose_rest(own, frame, error);
     if (status)
         return status;
-    ss_force_density(patch, frame->lengths, frame->paint, own->density);
+    ss_force_density(patch, frame->lengths, frame->paint, own->factor->entry);
     ss_lap(&time, &result->density_seconds);
 
-    if ((status = ss_embed(system_of(own), own->factor, own->density, own->uv, error)))
+    if ((status = ss_embed(system_of(own), own->factor, own->uv, error)))
         return status;
     ss_lap(&time, &result->embed_seconds);
 
