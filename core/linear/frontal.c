@@ -164,47 +164,108 @@ static void assemble_extras(const ss_front *front, const ss_shape *s, const doub
     }
 }
 
-/* Adds one column of a child's update, or the two of a block, from the diagonal on. The two are from_next and to_next apart,
- * and a row is added at step times its place. What lies above the diagonal of a block is added too, but never read. */
-SS_INLINE void add_columns(int block, const double *from, ptrdiff_t from_next, int32_t begin, int32_t end, const int32_t *place,
-                           int step, double *to, ptrdiff_t to_next) {
-    for (int32_t i = begin; i < end; i++) {
+/* A child's update, and the front that it is added to. */
+typedef struct extension {
+    const ss_front *front;
+    const ss_shape *to;
+    ss_shape from;
+    const double *origin;
+    int32_t count;                   /* rows of the child */
+    const int32_t *place, *in_panel; /* [count] */
+    double *panel, *update;
+    bool dominant;
+} extension;
+
+/* A column of a child's update, or the first of a block's two: where it is, where it goes, and how far the other is from each. */
+typedef struct column {
+    const double *from, *extra;
+    double *to, *extras;
+    ptrdiff_t from_next, to_next;
+} column;
+
+/* in_panel: whether the front has that column, which else goes to its update. */
+SS_INLINE column find_column(const extension *e, int block, int32_t row, bool in_panel) {
+    const double *from = e->origin + place_in_update(&e->from, block * row);
+    column c = {from, from + e->from.height - 4, NULL, NULL, next_in_update(&e->from, block * row), 4};
+    if (in_panel) {
+        c.to = e->panel + 4 * block * (ptrdiff_t)e->place[row];
+        c.extras = c.to + ss_tile_start(e->to, e->to->tiles - 1);
+    } else {
+        int32_t there = block * (e->place[row] - e->front->count);
+        c.to = e->update + place_in_update(e->to, there);
+        c.extras = c.to + e->to->height - 4;
+        c.to -= block * (ptrdiff_t)e->front->count;
+        c.to_next = next_in_update(e->to, there);
+    }
+    return c;
+}
+
+/* Adds the rows of a column, or of a block's two, from one on. What lies above the diagonal of a block is added too, but never
+ * read. */
+SS_INLINE void add_rows(const extension *e, const column *c, int block, int32_t begin, const int32_t *place, int step) {
+    for (int32_t i = begin; i < e->count; i++) {
         ptrdiff_t at = step * (ptrdiff_t)place[i];
         if (block == 2) {
-            *(ss_loose_two *)(to + at) += *(const ss_loose_two *)(from + 2 * i);
-            *(ss_loose_two *)(to + to_next + at) += *(const ss_loose_two *)(from + from_next + 2 * i);
+            *(ss_loose_two *)(c->to + at) += *(const ss_loose_two *)(c->from + 2 * i);
+            *(ss_loose_two *)(c->to + c->to_next + at) += *(const ss_loose_two *)(c->from + c->from_next + 2 * i);
         } else {
-            to[at] += from[i];
+            c->to[at] += c->from[i];
         }
     }
 }
 
-/* Adds a child's update to its parent, column by column: to the panel if the parent has that column, else to the parent's
- * update. */
+SS_INLINE void add_extras(const extension *e, const column *c) {
+    for (int k = 0; k < 3 && e->dominant; k++)
+        c->extras[k] += c->extra[k];
+}
+
+/* Adds columns from begin to end: of numbers, four at once as long as there are, since a loop that ends costs as much as many
+ * sums. */
+SS_INLINE void add_columns(const extension *e, int block, int32_t begin, int32_t end, bool in_panel) {
+    const int32_t *place = in_panel ? e->in_panel : e->place;
+    int step = in_panel ? 1 : block;
+    int32_t row = begin;
+    for (; block == 1 && row + 4 <= end; row += 4) {
+        column four[4];
+        for (int k = 0; k < 4; k++) {
+            four[k] = find_column(e, 1, row + k, in_panel);
+            add_extras(e, &four[k]);
+        }
+        for (int k = 0; k < 4; k++)
+            for (int i = k; i < 4; i++)
+                four[k].to[place[row + i]] += four[k].from[row + i];
+        for (int32_t i = row + 4; i < e->count; i++)
+            for (int k = 0; k < 4; k++)
+                four[k].to[place[i]] += four[k].from[i];
+    }
+    for (; row < end; row++) {
+        column one = find_column(e, block, row, in_panel);
+        add_rows(e, &one, block, row, place, step);
+        add_extras(e, &one);
+    }
+}
+
+/* Adds a child's update to its parent: to the panel what is in the parent's columns, the rest to the parent's update. */
 SS_INLINE void extend(ss_frontal *frontal, int32_t child, const ss_front *front, const ss_shape *s, int block, double *panel,
                       double *update) {
     const ss_front *own = &frontal->system->fronts[child];
-    const int32_t *place = frontal->system->place + own->row_start, *in_panel = frontal->row_place + own->row_start;
-    ss_shape from = ss_shape_of(frontal, own);
-    const double *origin = frontal->stack[frontal->odd[child]] + frontal->update[child];
-    for (int32_t row = 0; row < own->row_count; row++) {
-        const double *column = origin + place_in_update(&from, block * row), *extra = column + from.height - 4;
-        ptrdiff_t from_next = next_in_update(&from, block * row);
-        double *to, *extras;
-        if (place[row] < front->count) {
-            to = panel + 4 * block * (ptrdiff_t)place[row];
-            extras = to + ss_tile_start(s, s->tiles - 1);
-            add_columns(block, column, from_next, row, own->row_count, in_panel, 1, to, 4);
-        } else {
-            int32_t there = block * (place[row] - front->count);
-            to = update + place_in_update(s, there);
-            extras = to + s->height - 4;
-            add_columns(block, column, from_next, row, own->row_count, place, block, to - block * (ptrdiff_t)front->count,
-                        next_in_update(s, there));
-        }
-        for (int k = 0; k < 3 && frontal->dominant; k++)
-            extras[k] += extra[k];
-    }
+    const extension e = {
+        .front = front,
+        .to = s,
+        .from = ss_shape_of(frontal, own),
+        .origin = frontal->stack[frontal->odd[child]] + frontal->update[child],
+        .count = own->row_count,
+        .place = frontal->system->place + own->row_start,
+        .in_panel = frontal->row_place + own->row_start,
+        .panel = panel,
+        .update = update,
+        .dominant = frontal->dominant,
+    };
+    int32_t columns = 0;
+    while (columns < e.count && e.place[columns] < front->count)
+        columns++;
+    add_columns(&e, block, 0, columns, true);
+    add_columns(&e, block, columns, e.count, false);
 }
 
 static bool eliminate(ss_frontal *frontal, int32_t f, const ss_shape *s) {
