@@ -48,7 +48,7 @@ NOT_CALLED = {"skinslide_stage_file", "skinslide_stage_pose", "skinslide_stage_s
 
 
 class Struct(NamedTuple):
-    """One that may grow: its members as declarations, and its default."""
+    """A struct that may grow: its members as declarations, and its default."""
 
     members: list[str]
     values: list[str]
@@ -79,7 +79,7 @@ def size(members: list[str]) -> int:
 
 
 def older(struct: Struct) -> Struct:
-    """As it was before its last member came, which made it larger."""
+    """The struct before its last member was added, which made it larger."""
     count = len(struct.members)
     while size(struct.members[:count]) == size(struct.members):
         count -= 1
@@ -97,7 +97,7 @@ def structs() -> dict[str, Struct]:
 
 
 def headers_with(changed: dict[str, Struct], folder: Path) -> Path:
-    """The headers in a folder, in which some structs are others."""
+    """Writes the headers to a folder, with some structs replaced."""
     for path in (PACKAGE / "include" / "skinslide").glob("*.h"):
         text = SIZED.sub(
             lambda found: changed[found[1]].code(found[1]) if found[1] in changed else found[0], path.read_text()
@@ -139,7 +139,7 @@ def test_the_program_calls_everything(expected, structs):
 
 
 def test_programs_of_an_older_version(expected, structs, tmp_path):
-    """Whose structs lack what came last."""
+    """Their structs lack the members that were added last."""
     changed = {name: older(structs[name]) for name in structs.keys() - WHOLE}
     found = output(headers_with(changed, tmp_path), tmp_path, *(f"-DWITHOUT_{name}" for name in changed))
     assert found == expected
@@ -151,7 +151,7 @@ def newer_output(structs: dict[str, Struct], folder: Path, asks: str = "") -> li
 
 
 def test_programs_of_a_newer_version(expected, structs, tmp_path):
-    """Which asks for nothing that is new, and learns nothing of it."""
+    """They ask for nothing that is new, and learn nothing about it."""
     found = newer_output(structs, tmp_path)
     unknown = [line for line in found if line not in expected]
     assert [line for line in found if line in expected] == expected
@@ -177,7 +177,7 @@ def is_complete(struct: str) -> bool:
 
 
 def declared() -> dict[str, str]:
-    """Of each member of a struct and each name of an enum, where it is."""
+    """Where each member of a struct and each name of an enum is declared."""
     found = {}
     for name in sorted(ffi.list_types()[0]):
         kind = ffi.typeof(name)

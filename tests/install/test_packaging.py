@@ -153,7 +153,7 @@ def test_numpy_starts_no_threads_in_a_command():
 
 
 def test_garbage_is_collected_once_a_command_is_loaded(tmp_path):
-    """And not before: nothing that is loaded is garbage, nor looked at again."""
+    """Not before: nothing that is loaded is garbage, and none of it is looked at again."""
     said = run_python(f"""
         import gc, sys
         from skinslide.command.start import main
@@ -180,7 +180,7 @@ def test_an_interruption_while_the_command_is_loaded(tmp_path):
 
 
 def test_an_interruption_while_a_patch_is_set_up(tmp_path):
-    """Which may take minutes, within one call of the library."""
+    """That may take minutes, within one call of the library."""
     code = """
         import os, signal, threading
         from skinslide.arrays import slider
@@ -225,7 +225,7 @@ def test_libraries_give_their_own_names_away_and_nothing_else():
 
 
 def test_the_core_is_found_by_a_name_with_its_minor():
-    """So that the copies of two versions in one process are two libraries."""
+    """The copies of two versions in one process are then two libraries."""
     major, minor, _patch = skinslide.__version__.split(".")
     soname = f"libskinslide.so.{major}.{minor}"
     core, *others = libraries().values()
@@ -272,7 +272,7 @@ def test_without_any_usd(tmp_path):
 
 
 def test_a_project_in_c_builds_against_the_package(tmp_path):
-    """Found by CMake, and by pkg-config."""
+    """CMake finds it, and pkg-config does."""
     consumer, environment = (
         ROOT / "tests" / "consumer",
         os.environ | {"PKG_CONFIG_PATH": str(PACKAGE / "lib/pkgconfig")},

@@ -41,7 +41,7 @@ def test_a_camera_shows_its_own_view_in_every_picture(size, tmp_path):
 
 
 def columns(folder, frame: str) -> np.ndarray:
-    """Those of the left half in which a sheet is seen, ascending."""
+    """The columns of the left half in which a sheet is seen, ascending."""
     left = halves(picture(folder, frame=frame))[0].astype(int)
     return np.flatnonzero(np.abs(left - [59, 59, 63]).sum(axis=2).max(axis=0) > 60)  # the background
 
@@ -146,7 +146,7 @@ def test_an_orthographic_camera_may_see_what_is_behind_it(tmp_path):
 )
 @pytest.mark.parametrize("frame", [None, 1001.0, 1003.0])
 def test_a_mesh_that_is_nowhere(frame, matrix, message, tmp_path, capfd):
-    """At all, or at a frame, which the message names."""
+    """Throughout, or at a frame, which the message names."""
     stage, mesh = sheet()
     transform = UsdGeom.Xformable(mesh).AddTransformOp()
     if frame is None:

@@ -163,7 +163,7 @@ def test_files_as_others_read_them(tmp_path, shot):
 
 
 def test_the_later_face_wins(tmp_path):
-    """Both quads at one place, as mirrored halves are."""
+    """Both quads are in one place, as mirrored halves are."""
     stage, mesh = two_quads()
     stages.set_primvar(mesh, f"skinSlide:{PATCH}:forceDensity", Types.FloatArray, "uniform", [1.0, 5.0])
     square = [(0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75)]
@@ -479,7 +479,7 @@ def test_texture_coordinates_that_go_bad(tmp_path):
 
 
 def test_texture_coordinates_that_move_over_a_mesh_that_does_not(tmp_path):
-    """Which has one map, at the first of them."""
+    """The mesh has one map, by the first coordinates."""
     stage = stages.new_stage()
     mesh = stages.add_mesh(stage, stages.grid(), frames=[])
     stages.add_patch(mesh, stages.grid().all_faces)
@@ -578,7 +578,7 @@ def test_maps_that_a_resolver_finds_are_never_written(tmp_path):
 
 
 def test_a_stage_in_the_way(tmp_path):
-    """A layer under a map's name, as a link."""
+    """A layer lies under the name of a map, as a link."""
     shot = stages.save(charted()[0], tmp_path / "shot.usda")
     (tmp_path / "maps").mkdir()
     (tmp_path / "maps" / "skin_GEO.slide.1002.exr").hardlink_to(shot)
@@ -656,7 +656,7 @@ def test_a_full_disk_leaves_no_part_of_a_file(tmp_path, shot):
 
 
 def test_a_folder_that_goes_away(tmp_path, shot):
-    """Between frames: it is made again, or its place is taken and that is said."""
+    """If the folder goes away between frames it is made again; if its place is taken, that is reported."""
 
     def replace(done: int, _total: int) -> None:
         if done == 1:

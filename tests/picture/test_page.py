@@ -172,7 +172,7 @@ class Shown:
         )
 
     def look_at(self, view: str) -> None:
-        """At one view, or "" for all."""
+        """Chooses one view, or with "" all."""
         self.run(
             "for (const each of document.getElementsByName('view')) if (each.value === arguments[0]) each.click()", view
         )
@@ -217,7 +217,7 @@ def show(open_file, tmp_path):
 
 @pytest.fixture
 def shot(show, report) -> Shown:
-    """At the first frame, of the first view."""
+    """The page at the first frame, in the first view."""
     shown = show(strips_of(report), report)
     shown.look_at("chequer")
     shown.go_to(0)
@@ -729,7 +729,7 @@ def test_names_are_shown_as_they_are(show, report):
 
 
 def test_names_that_are_no_text_are_shown_by_number(show, report):
-    """As Python has the bytes of a file's name that are no UTF-8."""
+    """Python has names of files whose bytes are not UTF-8."""
     shown = show(strips_of(report), facts={"stage": b"a\xff.usda".decode("utf-8", "surrogateescape")})
     assert shown.one(".facts dd").text == "a\\udcff.usda"
 
@@ -807,7 +807,7 @@ def test_hundreds_of_frames(show, report):
 
 
 def test_without_the_script_a_frame_is_there(show, report, driver):
-    """That at which most is gained."""
+    """The one at which most is gained."""
     driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
     try:
         shown = show(strips_of(report), report)
@@ -853,7 +853,7 @@ def test_a_rate_that_cannot_be_played(report, rate):
 
 @contextlib.contextmanager
 def screen(driver, width: int):
-    """A screen so wide; under 500 pixels that of a phone."""
+    """A browser window of a width; under 500 pixels, that of a phone."""
     metrics = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": width < 500}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
     try:
@@ -878,7 +878,7 @@ RULES = ("before", "unit", "fast", "relaxed", "even")
 
 @pytest.fixture
 def every_view(show, report) -> Shown:
-    """All there is to choose among: every view, and every rule."""
+    """Every choice that there is: all views, and all rules."""
     strips = []
     for each in strips_of(report):
         pictures = {view: each.pictures["chequer"] for view in VIEWS}

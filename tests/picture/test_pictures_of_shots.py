@@ -233,7 +233,7 @@ def test_the_picture_of_wrinkles_is_as_made(example_stage, tmp_path):
 
 
 def hue(pixels):
-    """The mean colour of the middle, less its grey."""
+    """The mean colour of the middle of a picture, less its grey."""
     middle = pixels[20:-20, 60:-60].reshape(-1, 3).mean(axis=0)
     return middle - middle.mean()
 
@@ -394,7 +394,7 @@ def textured(stage, mesh, tmp_path, file):
 
 @pytest.mark.parametrize("udim", [False, True])
 def test_the_texture_of_the_mesh_is_shown(udim, tmp_path):
-    """Red above green, as the file has them; on a UDIM in its first tile."""
+    """Red above green, as in the file; with UDIM in the first tile."""
     stage, mesh = sheet()
     pixels = np.zeros((8, 8, 3), np.uint8)
     pixels[:4, :, 0] = pixels[4:, :, 1] = 255

@@ -121,7 +121,7 @@ def test_a_link_to_a_folder_that_is_not_there_yet(shot, tmp_path):
 
 
 def test_a_page_in_the_folder_of_the_pictures(shot, tmp_path):
-    """Which is made for both."""
+    """The folder is made for both."""
     draw(shot, tmp_path / "out", frames="1003", html=tmp_path / "out" / "page.html")
     assert sorted(os.listdir(tmp_path / "out")) == ["contact_sheet.1003.png", "page.html", f"{NAME}.chequer.1003.png"]
 
@@ -151,7 +151,7 @@ def test_an_unwritable_folder(public_folder, capfd):
 
 
 def test_a_patch_that_cannot_be_followed(tmp_path, capfd):
-    """At a frame where all of it is in one place."""
+    """All of it is in one place at a frame."""
     stage, mesh = sheet()
     scale = UsdGeom.Xformable(mesh).AddScaleOp()
     scale.Set((1, 1, 1), 1002)
@@ -164,7 +164,7 @@ def test_a_patch_that_cannot_be_followed(tmp_path, capfd):
 
 @pytest.mark.parametrize("name", [f"{NAME}.stretch.1003.png", "contact_sheet.png"])
 def test_a_folder_in_the_way_of_a_picture(name, shot, tmp_path, capfd):
-    """Known before a frame is slid."""
+    """That is reported before a frame is slid."""
     (tmp_path / "out" / name).mkdir(parents=True)
     assert main(["preview", str(shot), "-o", str(tmp_path / "out"), "--size", "64x32"]) == 2
     assert f"output {tmp_path / 'out' / name}: is a folder" in capfd.readouterr().err
@@ -237,7 +237,7 @@ def test_a_fault_of_the_mesh_is_said_once(tmp_path):
 
 
 def test_no_egl(shot, tmp_path):
-    """A machine whose EGL has no vendor at all."""
+    """On a machine on which EGL has no vendor at all."""
     empty = tmp_path / "vendors"
     empty.mkdir()
     environment = {**os.environ, "__EGL_VENDOR_LIBRARY_DIRS": str(empty)}

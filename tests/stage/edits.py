@@ -164,7 +164,7 @@ def inherited_samples(name: str, values: dict[float, float]) -> Edit:
 
 
 def floats(count: int, index: int = 0, value: float = 1.0) -> list[float]:
-    """Ones, but for one."""
+    """Ones, except for one of them."""
     values = [1.0] * count
     values[index] = value
     return values
@@ -236,12 +236,12 @@ def rest_changed(change: Callable[[np.ndarray], np.ndarray]) -> Edit:
 
 
 def shuffled(points: np.ndarray) -> np.ndarray:
-    """In another order."""
+    """The points in another order."""
     return points[np.random.default_rng(3).permutation(len(points))]
 
 
 def still(scene: Scene) -> None:
-    """Points without samples: those of the last frame, over a rest of their own."""
+    """Removes the samples of points: they are those of the last frame, over a rest of their own."""
     last = scene.points.Get(FRAMES[-1])
     rest = scene.points.Get()
     scene.points.Clear()
@@ -250,7 +250,7 @@ def still(scene: Scene) -> None:
 
 
 def topology(**arrays: Callable[[list[int]], list[int]]) -> Edit:
-    """counts, indices: what becomes of them."""
+    """Changes counts and indices."""
 
     def edit(scene: Scene) -> None:
         attributes = {"counts": scene.mesh.GetFaceVertexCountsAttr(), "indices": scene.mesh.GetFaceVertexIndicesAttr()}
@@ -261,7 +261,7 @@ def topology(**arrays: Callable[[list[int]], list[int]]) -> Edit:
 
 
 def half_way(scene: Scene) -> None:
-    """Samples between frames."""
+    """Puts samples between frames."""
     for frame in (1001.25, 1001.5, 1002.75):
         scene.points.Set(stages.vectors(stages.grid().moved(frame)), frame)
 
@@ -350,7 +350,7 @@ def normals(interpolation: str | None, count: int, times: Iterable[float | None]
 
 
 def one_of(attribute: str, index: int, value: tuple, time: float) -> Edit:
-    """One of its vectors at a time."""
+    """Changes one of its vectors at a time."""
 
     def edit(scene: Scene) -> None:
         found = np.array(scene.prim.GetAttribute(attribute).Get(time))

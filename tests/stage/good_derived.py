@@ -44,7 +44,7 @@ ROLES = (
 
 
 def everything_that_varies(scene: Scene) -> None:
-    """Everything that a bake writes, and controls that vary beside the points."""
+    """Everything that a bake writes varies, and controls do, beside the points."""
     put("normals", Types.Normal3fArray, "faceVarying", [(0, 0, 1)])(scene)
     indexed("normals", [0] * 144)(scene)
     vectors("velocities", 49, FRAMES, (1, 1, 1))(scene)

@@ -98,7 +98,7 @@ def subdivided(scene: Scene) -> None:
 
 
 def apart(scene: Scene) -> None:
-    """Copies of points a little beside each other, at rest and in every frame."""
+    """Moves copies of points a little apart, at rest and in every frame."""
     noise = np.random.default_rng(1).uniform(-1e-5, 1e-5, (144, 3))
     for time in (Usd.TimeCode.Default(), *FRAMES):
         scene.points.Set(stages.vectors(np.array(scene.points.Get(time)) + noise), time)
@@ -431,7 +431,7 @@ POINTS = [
 
 
 def above(change: Callable[[UsdGeom.Xformable], object]) -> Edit:
-    """Does something with the transforms of the mesh's parent."""
+    """Changes the transforms of the mesh's parent."""
 
     def edit(scene: Scene) -> None:
         change(UsdGeom.Xformable(scene.prim.GetParent()))

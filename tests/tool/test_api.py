@@ -228,7 +228,7 @@ def test_faces(faces, stage, prim):
 
 
 def test_faces_take_the_place_of_all_before(stage, prim):
-    """Of samples and indices in the edit target, and of values below it."""
+    """In place of samples and indices in the edit target, and of values below it."""
     stages.add_patch(UsdGeom.Mesh(stage.below.GetPrimAtPath(MESH)), [30])
     patch = SkinSlideAPI(prim, PATCH)
     older = patch.CreatePatchPrimvar("vertex", [True, False])
@@ -276,7 +276,7 @@ def test_edges(stage, prim):
 
 
 def test_opinions_go_to_the_edit_target_and_with_it(stage, prim):
-    """Of the session, and of a variant: a layer that is taken away, or cleared, undoes them."""
+    """The session's, or a variant's: if the layer is cleared or taken away, they are gone."""
     session = Sdf.Layer.CreateAnonymous()
     stage.GetSessionLayer().subLayerPaths.append(session.identifier)
     before = text(stage)
@@ -341,7 +341,7 @@ CHAINS = {
 
 @pytest.mark.parametrize("chain", CHAINS.values(), ids=CHAINS.keys())
 def test_a_layer_and_an_edit_target_get_the_same(chain, tmp_path):
-    """Every function, and the one of it that writes a file: the same opinions."""
+    """Each function authors the same opinions as its variant that writes a file."""
     stage, output = build(tmp_path), tmp_path / "patches.usda"
     target = Sdf.Layer.CreateAnonymous(".usda")
     stage.GetSessionLayer().subLayerPaths.append(target.identifier)

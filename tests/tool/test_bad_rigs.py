@@ -275,7 +275,7 @@ def test_joints_that_move_no_point_may_be_anything():
 
 @pytest.mark.parametrize("size", [1e-6, 1e6])
 def test_a_bind_pose_may_have_any_size(size):
-    """Also along one axis."""
+    """Also along a single axis."""
     stage, mesh = rigs.skinned_stage()
     binds = [Gf.Matrix4d().SetScale(Gf.Vec3d(size, 1, size)) for _ in range(3)]
     skeleton_of(stage).GetBindTransformsAttr().Set(binds)
@@ -284,7 +284,7 @@ def test_a_bind_pose_may_have_any_size(size):
 
 
 def test_weights_that_cannot_be_at_a_frame_are_named_with_it(tmp_path):
-    """Of points, and not of the normals that are skinned with them."""
+    """The error is of points, and not of the normals that are skinned with them."""
     stage, mesh = rigs.skinned_stage()
     mesh.CreateNormalsAttr([(0, 0, 1)] * 49)
     weights = mesh.GetPrim().GetAttribute("primvars:skel:jointWeights")

@@ -145,7 +145,7 @@ def test_a_link_to_the_output_stays_a_link(shot, tmp_path):
 
 
 def test_where_no_file_can_be_made(shot):
-    """It is told of by its own name, not that under which it would have been written first."""
+    """The error names the output, and not the name under which it would have been written first."""
     with pytest.raises(StageError) as raised:
         bake_to_file(shot.save().path, "/proc/out.usdc")
     assert str(raised.value) == "output /proc/out.usdc: No such file or directory"

@@ -16,7 +16,7 @@ RATE = 24
 
 @pytest.fixture
 def stage() -> Usd.Stage:
-    """With velocities that are 0."""
+    """A stage with velocities of 0."""
     stage, mesh = stages.patched_stage()
     points = mesh.GetPointsAttr()
     for frame in FRAMES:
@@ -35,13 +35,13 @@ def baked(stage: Usd.Stage, name: str = "points", **options) -> dict[float, np.n
 
 
 def cached(stage: Usd.Stage) -> dict[float, np.ndarray]:
-    """Before a bake."""
+    """The points before a bake."""
     points = UsdGeom.Mesh(stage.GetPrimAtPath(MESH)).GetPointsAttr()
     return {time: np.array(points.Get(time)) for time in TIMES}
 
 
 def rates(slid: dict[float, np.ndarray], cache: dict[float, np.ndarray], *times: float) -> np.ndarray:
-    """How fast the slide changes from one time to another."""
+    """How fast the slide changes between two times."""
     first, last = (slid[time].astype(float) - cache[time] for time in times)
     return (last - first) / (times[1] - times[0]) * RATE
 
@@ -56,7 +56,7 @@ def test_a_frame_alone_is_that_of_all(stage, name):
 
 
 def test_slid_points_do_not_go_straight(stage):
-    """Unlike cached ones, which is why there are frames between."""
+    """Cached points do, so that slid ones need the frames between samples."""
     cache, slid = cached(stage), baked(stage)
     for points, tolerance in ((cache, 1e-6), (slid, None)):
         off = np.abs(points[1005] - (0.75 * points[1004.5] + 0.25 * points[1006.5])).max()

@@ -185,7 +185,7 @@ def isolated_vertices() -> stages.Shape:
 
 
 def merged_points() -> stages.Shape:
-    """An edge of no length, and faces that are slivers for it."""
+    """A sheet with an edge of no length, and with slivers next to it."""
     shape = stages.grid()
     points = shape.points.copy()
     points[24] = points[25]
@@ -193,7 +193,7 @@ def merged_points() -> stages.Shape:
 
 
 def on_a_line() -> stages.Shape:
-    """Faces of no area, and edges of no length."""
+    """A sheet on a line, with faces of no area and edges of no length."""
     shape = stages.grid()
     return stages.Shape(shape.points * np.array([1, 0, 0], np.float32), shape.counts, shape.indices)
 

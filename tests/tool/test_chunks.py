@@ -117,7 +117,7 @@ def test_a_spec_is_short():
 
 
 def refused(chunks, folder, says, error=StageProblems, **options) -> str:
-    """What stitch says, which leaves what it would have written as it was."""
+    """What stitch says; its output stays as it was."""
     (folder / "out.usdc").write_bytes(b"older")
     with pytest.raises(error, match=says) as raised:
         stitch(chunks, folder / "out.usdc", **options)
@@ -215,7 +215,7 @@ def facing(count: int, frame: float) -> np.ndarray:
 
 
 def add_normals(stage):
-    """Of frames of the mesh that moves, and of the one that does not."""
+    """Gives normals at frames to the mesh that moves, and to the one that does not."""
     for path in (MESH, STILL):
         mesh = UsdGeom.Mesh(stage.GetPrimAtPath(path))
         for frame in FRAMES:
@@ -239,7 +239,7 @@ def add_st(stage):
 
 
 def turn(name, frame, path=MESH):
-    """An edit of vectors at one frame."""
+    """An edit that changes vectors at one frame."""
 
     def edit(stage):
         attribute = stage.GetPrimAtPath(path).GetAttribute(name)
@@ -275,7 +275,7 @@ VECTORS = [
 
 
 def test_chunks_of_another_stage(shot, tmp_path):
-    """Whose frames are as many, and of which no mesh is in both."""
+    """It has as many frames, and no mesh is in both."""
     stage, other = stages.new_stage(), "/World/prop/other_GEO"
     stages.add_patch(stages.add_mesh(stage, stages.grid(), other, frames=FRAMES, rest="Pref"), stages.annulus())
     first, second = tmp_path / "1.usdc", tmp_path / "2.usdc"
@@ -297,7 +297,7 @@ def test_chunks_of_other_vectors(begin, edit, where, tmp_path):
 
 @pytest.mark.parametrize("diagnostics", [True, False])
 def test_chunks_of_other_texture_coordinates(diagnostics, tmp_path):
-    """Which are read for diagnostics alone."""
+    """They are read only for diagnostics."""
     shot, first, second = saved_shot(tmp_path / "shot.usda", add_st), tmp_path / "1.usdc", tmp_path / "2.usdc"
     bake_to_file(shot, first, chunk="1/2", diagnostics=diagnostics)
     saved_shot(shot, both(add_st, move_st))
@@ -340,7 +340,7 @@ def test_chunks_of_another_version(shot, tmp_path):
 
 
 def test_a_chunk_that_is_not_finished(shot, tmp_path):
-    """As a bake that was killed leaves beside it, under another name."""
+    """A bake that was killed leaves one beside its output, under another name."""
     chunks = ranges(shot, tmp_path, "1001-1004", "1005-1008")
 
     def forget(layer):
@@ -369,7 +369,7 @@ def test_a_chunk_that_is_not_finished(shot, tmp_path):
     ],
 )
 def test_a_record_that_is_damaged(member, value, shot, tmp_path):
-    """It is no traceback, and such a chunk is baked again."""
+    """It does not end in a traceback, and such a chunk is baked again."""
     chunks = ranges(shot, tmp_path, "1001-1004", "1005-1008")
 
     def damage(layer):
@@ -429,7 +429,7 @@ def chunk(shot, tmp_path):
 
 
 def resumed(shot, path, **options) -> bool:
-    """Whether it was left as it was."""
+    """Whether the chunk was left as it was."""
     before = path.stat().st_ino
     report = bake_to_file(shot, path, resume=True, **{"chunk": "2/3", "max_folded": 4, **options})
     assert report.resumed == (path.stat().st_ino == before) == (not report.meshes)
@@ -463,7 +463,7 @@ def test_a_chunk_of_something_else_is_baked_again(edit, shot, chunk):
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_a_chunk_of_another_pose_is_baked_again(frame, shot, chunk):
-    """Of any frame of its own, and of those beside it, of which velocities come."""
+    """The pose of any frame of its own, or of one beside it, which velocities are made of."""
 
     def move(stage):
         points = UsdGeom.Mesh(stage.GetPrimAtPath(MESH)).GetPointsAttr()
@@ -494,7 +494,7 @@ def test_a_chunk_of_other_vectors_over_points_that_stay_is_baked_again(tmp_path)
 
 
 def test_a_chunk_of_vectors_that_cannot_be_recomputed_is_whole(tmp_path):
-    """Since there are too few of them at a frame."""
+    """There are too few of them at a frame."""
 
     def shorten(stage):
         stage.GetPrimAtPath(MESH).GetAttribute("velocities").Set(stages.vectors(np.zeros((5, 3))), FRAMES[4])
@@ -505,7 +505,7 @@ def test_a_chunk_of_vectors_that_cannot_be_recomputed_is_whole(tmp_path):
 
 
 def test_a_chunk_of_another_spline_is_baked_again(tmp_path):
-    """Whose knots are where they were."""
+    """The spline has its knots where they were, with other values."""
 
     def animate(*values):
         def edit(stage):
@@ -571,7 +571,7 @@ def test_commands(shot, tmp_path, capfd):
 
 
 def test_quiet_hides_no_warning(tmp_path, capfd):
-    """Of what one chunk blocks."""
+    """A warning of what one chunk blocks."""
 
     def edit(stage):
         velocities = stage.GetPrimAtPath(MESH).GetAttribute("velocities")

@@ -71,7 +71,7 @@ def test_json_is_json_whatever_the_numbers(capsys):
 
 @pytest.mark.parametrize("error", [MemoryError(), KeyboardInterrupt(), StageError("lost")])
 def test_a_document_that_breaks_off_is_the_only_one(error, shot, tmp_path, capfd, monkeypatch):
-    """It is printed as it is made: what is out of it cannot be called back."""
+    """It is printed as it is made, and what is printed cannot be taken back."""
 
     def fail(_report: PatchReport) -> None:
         raise error
@@ -100,7 +100,7 @@ FORGED = "\x1b[2J\nerror: forged\r\x9b1m\u202e\u2028"
 
 @pytest.mark.parametrize("command", ["check", "setup", "stitch", "bake", FORGED])
 def test_names_cannot_forge_lines(command, tmp_path, monkeypatch, capfd):
-    """Control characters in names of files, patches, prims and commands."""
+    """Names of files, patches, prims and commands may hold control characters."""
     monkeypatch.chdir(tmp_path)
     stage, mesh = stages.patched_stage()
     mesh.GetPrim().AddAppliedSchema(f"SkinSlideAPI:{FORGED}")

@@ -34,7 +34,7 @@ def above(layer, shot) -> Usd.Stage:
 
 
 def values(stage: Usd.Stage) -> dict:
-    """Of every attribute of every mesh: its samples, and its values at and between them, and beyond."""
+    """The samples of every attribute of every mesh, and its values at, between and beyond them."""
     found = {}
     times = [FRAMES[0] - 1, *FRAMES, *(frame + 0.25 for frame in FRAMES)]
     for path in MESHES:
@@ -119,7 +119,7 @@ stitch(chunks, output, clips=True)
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_kill_leaves_all_as_it_was_or_whole(count, shot, tmp_path):
-    """Though the older layer has more than the new one, of which a manifest says nothing."""
+    """The older layer has attributes that the manifest of the new one does not list."""
     folders = [tmp_path / name for name in ("older", "newer")]
     older, newer = (parts(shot, make(folder), diagnostics=folder.name == "older") for folder in folders)
     read = []

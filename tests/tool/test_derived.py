@@ -30,7 +30,7 @@ def flat_normals(count: int) -> Vt.Vec3fArray:
 
 
 def true_normals(points: np.ndarray, frame: float) -> np.ndarray:
-    """Those of the bump of `pose` at points on it, (n, 3)."""
+    """The normals (n, 3) of the bump of `pose` at points on it."""
     x, y = points[:, 0].astype(np.float64) - frame, points[:, 1].astype(np.float64) - 4.0
     slope = 1.8 * np.exp(-0.3 * (x * x + y * y))
     normals = np.stack([slope * x, slope * y, np.ones_like(x)], axis=1)
@@ -38,7 +38,7 @@ def true_normals(points: np.ndarray, frame: float) -> np.ndarray:
 
 
 def angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Between vectors (n, 3), in degrees; exact where they are small."""
+    """Angles between vectors (n, 3), in degrees; exact also if they are small."""
     a, b = np.asarray(a, np.float64), np.asarray(b, np.float64)
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)))
 
@@ -94,7 +94,7 @@ def test_a_tiny_slide_is_no_jump(shot, out):
 
 
 def test_angles_across_seams_stay_as_in_the_cache(shot, out):
-    """Each corner of a vertex turns alike, whatever its normal is."""
+    """All corners of a vertex turn alike, whatever their normals are."""
     rng = np.random.default_rng(1)
     normals = rng.normal(size=(4 * FACES, 3)).astype(np.float32)
     tangents = rng.normal(size=(4 * FACES, 3)).astype(np.float32)

@@ -167,7 +167,7 @@ def test_bad_arrays():
 
 
 def test_beside_the_points(tmp_path):
-    """The rest of the layer is as without, and USD finds nothing wrong with it."""
+    """The rest of the layer is as without diagnostics, and USD finds nothing wrong with it."""
     stage, _mesh, _faces = overlapping_stage()
     shot = stages.save(stage, tmp_path / "shot.usda")
     plain, measured = tmp_path / "plain.usda", tmp_path / "slid.usda"
@@ -308,7 +308,7 @@ def test_indices_of_a_primvar_of_that_name(where):
 
 
 def test_indices_of_a_primvar_of_that_name_below_a_layer(tmp_path):
-    """In one bake, and in chunks that are stitched."""
+    """In one bake, and in chunks that are stitched together."""
     stage, _mesh = indexed_stage()
     shot = stages.save(stage, tmp_path / "shot.usda")
     bake_to_file(shot, tmp_path / "whole.usda", diagnostics=True)
@@ -368,7 +368,7 @@ def test_what_no_primvar_can_be_written_over(what, tmp_path):
 
 
 def test_through_a_skinslide_file(tmp_path):
-    """Baked from one, and into the session above its text, again and again."""
+    """Baked from such a file, and into the session layer above its text, several times."""
     stage, _mesh = stages.patched_stage()
     stages.save(stage, tmp_path / "cache.usda")
     expected = tmp_path / "expected.usdc"

@@ -23,7 +23,7 @@ def shot(tmp_path):
 
 
 def refused(shot: Path, output: Path, message: str = "the stage reads this file") -> None:
-    """Neither a bake nor a set-up replaces the output."""
+    """Asserts that neither a bake nor a set-up replaces the output."""
     before = output.read_bytes() if os.path.isfile(output) else None
     with pytest.raises(UsageError, match=message):
         bake_to_file(shot, output)
@@ -74,7 +74,7 @@ def test_variants_that_are_not_selected(tmp_path):
 
 @pytest.mark.parametrize("texture", ["skin.<UDIM>.png", "gone.<UDIM>.png", "gone.png"])
 def test_nothing_is_said_of_textures(texture, tmp_path, capfd):
-    """Which are often elsewhere than the shot, and no concern of a bake."""
+    """Textures are often not where the shot is, and do not concern a bake."""
     stage, _mesh = stages.patched_stage()
     shader = stage.DefinePrim("/World/skin", "Shader")
     shader.CreateAttribute("inputs:file", Sdf.ValueTypeNames.Asset).Set(Sdf.AssetPath(f"./{texture}"))
@@ -86,7 +86,7 @@ def test_nothing_is_said_of_textures(texture, tmp_path, capfd):
 
 
 def test_an_input_that_appears_while_it_is_read(shot, tmp_path, monkeypatch):
-    """What is not there when the bake starts can still be a clip that the stage reads in the end."""
+    """A file that does not exist when the bake starts can still be a clip that the stage reads at the end."""
     output = tmp_path / "late.usda"
 
     def read_late(_done: int, _total: int) -> None:
@@ -196,7 +196,7 @@ NAMED = {
     ],
 )
 def test_clips_of_other_types_name_nothing(shot, entry):
-    """As USD has it, which opens such a stage and reads none of them."""
+    """USD opens such a stage, and reads none of these clips."""
     layer = shot.with_name("clips.usda")
     layer.write_text(f'{sublayer(shot.name)}over "World" (\nclips = {{\n{entry}\n}}\n)\n{{\n}}\n')
     assert main(["check", str(layer)]) == 0
@@ -302,7 +302,7 @@ def test_what_killed_bakes_left_is_removed_after_a_day(shot, tmp_path):
 
 
 def test_a_fault_of_the_stage_is_not_blamed_on_the_output(shot, tmp_path, monkeypatch):
-    """USD's errors are of one kind, whichever file they are about."""
+    """USD raises the same kind of error, whichever file it is about."""
 
     def fail(*_arguments):
         Sdf.Layer.CreateAnonymous(".usda").ImportFromString("words")

@@ -74,7 +74,7 @@ ANOTHER = "choose another by stage.SetEditTarget, such as stage.GetSessionLayer(
 
 
 def refused(stage: Usd.Stage) -> str:
-    """What is said of the edit target of a stage, which is left as it is."""
+    """What is said of the edit target of a stage; the target stays as it is."""
     before = stage.ExportToString()
     with pytest.raises(UsageError) as error:
         bake(stage)
@@ -83,7 +83,7 @@ def refused(stage: Usd.Stage) -> str:
 
 
 def sublayered(stage: Usd.Stage) -> Sdf.Layer:
-    """A layer of the stage, which is its edit target."""
+    """Makes a new layer below the session layer the edit target."""
     layer = Sdf.Layer.CreateAnonymous(".usda")
     stage.GetSessionLayer().subLayerPaths.append(layer.identifier)
     stage.SetEditTarget(layer)

@@ -30,7 +30,7 @@ def faces_of(stage, patch):
 
 
 def middles(mesh, faces):
-    """Along x, which the joints lie along."""
+    """The middles of faces along x, in which direction the joints lie."""
     points = np.array(mesh.GetPointsAttr().Get())
     return points[np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 4)[faces], 0].mean(axis=1)
 

@@ -75,7 +75,7 @@ def test_the_device_comes_from_the_environment(shot, monkeypatch, capfd):
 
 
 def test_auto_is_predictable():
-    """What auto comes to follows from what the device is, and does not change."""
+    """What auto leads to follows from the device, and does not change."""
     device = skinslide.choose_lookup("egl")
     chosen = {skinslide.choose_lookup("auto") for _ in range(3)}
     assert [info.lookup for info in chosen] == ["exact" if device.software else "egl"]

@@ -61,7 +61,7 @@ def prop(mesh, name: str, value, patch: str = LEFT, time: float | None = None) -
 
 
 class Read(NamedTuple):
-    """A patch, with its controls over time, for as long as the mesh that it is on."""
+    """A patch with its controls over time, which live as long as the mesh."""
 
     patch: PatchSetup
     controls: Animation
@@ -77,7 +77,7 @@ def read(path) -> dict[str, Read]:
 
 
 def mirrored(stage: Usd.Stage, folder, **options) -> Read:
-    """The patch on the other side."""
+    """Mirrors the patch, and reads the one on the other side."""
     path = stages.save(stage, folder / "shot.usda")
     report = mirror_to_file(path, folder / "both.skinslide", MESH, LEFT, **options)
     assert not report.failed
@@ -90,7 +90,7 @@ def mirrored(stage: Usd.Stage, folder, **options) -> Read:
 
 
 def test_what_the_rule_even_has(tmp_path):
-    """Faces that join a patch are joined on the other side, and not chosen there."""
+    """Faces that join a patch by grow are joined on the other side too, and not chosen there."""
     stage, mesh = new_shot()
     hold = np.linspace(0.5, 4, 63)
     primvar(mesh, "hold", "vertex", hold)
@@ -219,7 +219,7 @@ def test_a_subset_becomes_a_primvar(tmp_path):
 
 
 def test_what_was_there_before_is_replaced(tmp_path):
-    """In the stage below, too: what the first patch does not have is blocked."""
+    """Also in the stage below: what the first patch does not have is blocked."""
     stage, mesh = new_shot()
     stages.add_patch(mesh, stages.block(COLUMNS, range(6, 8), range(2)), RIGHT)
     primvar(mesh, "weight", "vertex", np.full(63, 0.1), RIGHT)
@@ -382,7 +382,7 @@ def test_a_tolerance_takes_what_is_about_there(tmp_path):
 
 
 def test_points_of_a_seam_are_mirrored_by_their_faces(tmp_path):
-    """Of a mesh split at every corner, whose points each have several in their place."""
+    """The mesh is split at every corner, so that several points are in each place."""
     whole = symmetric_grid()
     shape = stages.split(whole)
     places = np.sort(whole.indices)

@@ -218,7 +218,7 @@ def animate(mesh) -> None:
 
 
 def unchanged(_mesh) -> None:
-    """The stage is good."""
+    """Leaves the stage as it is, which is good."""
 
 
 NAN = float("nan")

@@ -194,7 +194,7 @@ def test_a_flattened_bake_is_one_too(baked_shot, tmp_path):
 
 
 def test_a_cache_above_a_bake_is_slid(baked_shot, tmp_path):
-    """What is hidden slides nothing twice."""
+    """A bake that is hidden does not make anything slide twice."""
     text = "#usda 1.0\n(\n    subLayers = [@./cache.usda@, @./slid.usdc@]\n)\n"
     (tmp_path / "hidden.usda").write_text(text)
     bake_to_file(tmp_path / "hidden.usda", tmp_path / "again.usdc")

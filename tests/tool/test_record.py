@@ -19,7 +19,7 @@ VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 
 @pytest.fixture
 def shot(tmp_path):
-    """With a setting that says nothing, and another patch over the first, which cannot slide."""
+    """A stage with a setting that has no effect, and a second patch over the first, which cannot slide."""
     stage, mesh = stages.patched_stage()
     stages.set_property(mesh, "grow", 0.1)
     stages.add_patch(mesh, stages.block(6, range(2), range(1)), "strip")
@@ -88,7 +88,7 @@ def test_what_check_warns_of_is_in_it(shot, tmp_path):
     ],
 )
 def test_limits_of_stretch(limit, says, tmp_path):
-    """Each lets pass what is worst, and nothing less. A vertex that is lifted gets more stretch by the rule fast."""
+    """A limit lets pass the worst there is, and fails a little below. The rule fast adds stretch at a lifted vertex."""
     stage, mesh = stages.patched_stage()
     stages.set_property(mesh, "forceDensityRule", "fast")
     for frame in FRAMES:

@@ -21,7 +21,7 @@ def posed(shot, pose_at):
 
 
 def popping(shot):
-    """Skin that slides over a pose that stands still, but for one frame."""
+    """Skin that slides over a pose that stands still, except at one frame."""
     for frame in FRAMES:
         shot.envelope().Set(float(frame != POP), OFFSET + frame)
     return posed(shot, lambda _frame: pose(4)).save()
@@ -32,7 +32,7 @@ def patch_of(shot, out, **options):
 
 
 def second_differences(poses: np.ndarray) -> np.ndarray:
-    """The largest of any vertex at each time between two others."""
+    """The largest second difference of any vertex at each time between two others."""
     return np.linalg.norm(np.diff(poses.astype(float), 2, axis=0), axis=2).max(axis=1)
 
 
@@ -55,7 +55,7 @@ def test_skin_at_rest_is_as_smooth_as_its_cache(shot, out):
 
 
 def test_skin_that_moves_evenly_is_too(shot, out):
-    """By no more than rounding does either differ from even motion, in which coordinates grow to 100."""
+    """Both differ from even motion by rounding alone, with coordinates up to 100."""
     patch = patch_of(posed(shot, lambda frame: pose(2) + frame * np.array([20, -3.3, 0.7])), out)
     assert patch.results[0].slid_vertices and patch.roughness == 1
 
@@ -68,7 +68,7 @@ def test_a_jump_is_found_at_its_frame(shot, out):
 
 
 def test_what_nobody_sees_is_not_rough(shot, out):
-    """Under a hundredth of an edge, skin may turn as it likes over a cache that moves evenly."""
+    """Skin that moves by under a hundredth of an edge may move as it likes over a cache that moves evenly."""
     posed(shot, lambda frame: pose(2) + frame * np.array([1, 0, 0]))
     for frame in FRAMES:
         shot.envelope().Set(0.01 * (frame % 2), OFFSET + frame)
@@ -78,7 +78,7 @@ def test_what_nobody_sees_is_not_rough(shot, out):
 
 
 def test_uneven_frames_are_measured_as_they_are_made(shot, out):
-    """Even motion is even, whatever the frames."""
+    """Even motion counts as even, whatever the frames are."""
     even = posed(shot, lambda frame: pose(2) + frame * np.array([1, 0, 0]))
     patch = patch_of(even, out, frames=[1001, 1001.5, 1004, 1005])
     assert patch.roughness == 1 and list(patch.motion) == [1001.5, 1004.0]

@@ -46,7 +46,7 @@ def c_texts(source: str) -> Iterator[str]:
 
 
 def python_texts(source: str) -> Iterator[str]:
-    """Literals but docstrings and what an option's help says."""
+    """String literals, except docstrings and the help of options."""
     left_out: set[ast.AST] = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Expr):
@@ -79,7 +79,7 @@ def said(words: list[str], begins: list[int], fewest: int) -> Iterator[str]:
 
 
 def repeated(texts: dict[str, list[str]]) -> dict[str, list[str]]:
-    """Sentences of several texts, and the files of those."""
+    """Sentences that several texts have, and the files that these are in."""
     places = defaultdict(list)
     for file, literals in texts.items():
         for literal in literals:

@@ -29,7 +29,7 @@ def unit(vectors):
 
 
 def skinned_prims(stage):
-    """What UsdSkel says that it skins."""
+    """The prims that UsdSkel says it skins."""
     found = []
     for root in stage.Traverse():
         if root.IsA(UsdSkel.Root):
@@ -71,7 +71,7 @@ def moving_mesh(_stage, mesh):
 
 
 def sparse_keys(stage, _mesh):
-    """Skinned points turn between them, and do not go straight."""
+    """Skinned points turn between these samples, and do not go straight."""
     UsdSkel.Animation(stage.GetPrimAtPath(rigs.ANIMATION)).GetRotationsAttr().ClearAtTime(FRAMES[1])
 
 
@@ -83,7 +83,7 @@ def joints_of_its_own(_stage, mesh):
 
 
 def rigid(_stage, mesh):
-    """One joint moves all of it, as is authored above the mesh."""
+    """One joint moves all of the mesh, as authored above it."""
     for name in ("jointIndices", "jointWeights"):
         mesh.GetPrim().RemoveProperty(f"primvars:skel:{name}")
     binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim().GetParent())
@@ -163,7 +163,7 @@ def test_normals_are_those_that_usd_bakes(interpolation, method):
 
 
 def add_normals(mesh, interpolation):
-    """Those of the sheet, tilted by no rule, so that no rule can have made them again."""
+    """Gives the sheet normals that are tilted at random, so that no rule can have made them again."""
     count = 49 if interpolation == "vertex" else 144
     vectors = np.random.default_rng(7).normal((0, 0, 1), 0.2, (count, 3))
     mesh.CreateNormalsAttr(stages.vectors(unit(vectors)))
@@ -183,7 +183,7 @@ def add_tangents(mesh, interpolation, type_name=Sdf.ValueTypeNames.Vector3fArray
 @pytest.mark.parametrize("interpolation", ["vertex", "faceVarying"])
 @pytest.mark.parametrize("type_name", [Sdf.ValueTypeNames.Vector3fArray, Sdf.ValueTypeNames.Vector3dArray])
 def test_tangents_turn_as_the_joints_do(interpolation, type_name, tmp_path):
-    """Where one joint moves all points they are still from point to point; where two do they keep their lengths."""
+    """Where one joint moves all points, tangents lead from point to point; where two do, they keep their lengths."""
     stage, mesh = rigs.skinned_stage()
     add_tangents(mesh, interpolation, type_name)
     stages.set_property(mesh, "envelope", 0.0)

@@ -203,7 +203,7 @@ def test_controls_that_are_none(sheet, rest):
 
 
 class TestWrongTypes:
-    """One sentence that names what is wrong, be it an array, a word or a number."""
+    """One sentence names what is wrong, whether it is an array, a word or a number."""
 
     @pytest.mark.parametrize("setting", ["boundary", "holes", "rule", "interpolation"])
     @pytest.mark.parametrize("word", [["unit"], np.array(["unit"]), {}, 3])
@@ -334,12 +334,12 @@ def test_a_signal_stops_the_frames_of_a_pool(own_sheet, rest):
 
 
 def goes_on():
-    """Whether something goes on that nobody waits for."""
+    """Whether a call is still running for which nobody waits."""
     return any(thread.name.startswith(APART) for thread in threading.enumerate())
 
 
 def end_all(ended):
-    """Has what a signal left at work end."""
+    """Ends what a signal left running."""
     ended.set()
     for thread in threading.enumerate():
         if thread is not threading.main_thread() and thread.name.startswith(APART):
@@ -543,7 +543,7 @@ def test_carry(counts, indices, rest, sheet):
 
 
 def test_the_extent_is_that_of_usd():
-    """Bit for bit, of zeros and of what is no number too."""
+    """Bit for bit, also for zeros and for what is not a number."""
     points = np.random.default_rng(1).normal(size=(5000, 3)).astype(np.float32)
     special = np.array([[0.0, -0.0, np.nan], [-0.0, 0.0, np.inf], [np.nan, np.nan, -np.inf]], np.float32)
     for given in (points, special, -special, np.abs(points) * special[0], points[:0], np.vstack([points, special])):

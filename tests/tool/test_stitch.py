@@ -81,7 +81,7 @@ def test_frames_that_chunks_share_must_be_equal(shot, chunks, tmp_path):
 
 
 def test_what_one_chunk_blocks_is_blocked(shot, tmp_path):
-    """As in a bake of all the frames."""
+    """A bake of all frames would block it too."""
     stage = Usd.Stage.Open(str(shot))
     velocities = stage.GetPrimAtPath(MESH).GetAttribute("velocities")
     velocities.Set(stages.vectors(np.zeros((5, 3))), FRAMES[2])

@@ -84,7 +84,7 @@ def test_commands_that_author_name_the_flag(words, says, shot, tmp_path, capfd):
 
 
 def test_any_direction_is_no_choice(shot, tmp_path, capfd):
-    """What is given as it is by default asks for nothing."""
+    """An option that is given its default asks for nothing."""
     words = [*ON[:2], "--patch", PATCH, "--value", "2", "--primvar", "none", "--direction", "any"]
     assert main(["paint", str(shot), "-o", str(tmp_path / "out.usda"), *words]) == 3
 

@@ -12,7 +12,7 @@ from stages import FRAMES, MESH, PATCH
 
 @pytest.fixture
 def split():
-    """The shape, split at every corner, and the point of the whole that each is."""
+    """The shape, split at every corner, and for each point the one of the whole that it is a copy of."""
     whole = stages.grid()
     return stages.split(whole), np.sort(whole.indices)
 
@@ -94,7 +94,7 @@ def test_points_that_part_are_told_with_the_frame(split, tmp_path):
 
 
 def test_chunks_of_a_shot_agree(split, tmp_path):
-    """Also where points part in a frame that is not of the chunk."""
+    """Also if points part at a frame that is not in the chunk."""
     stage, mesh = split_stage(split)
     set_apart(mesh, np.flatnonzero(split[1] == 24)[1], FRAMES[2])
     together = slid(stage, tmp_path)
@@ -150,7 +150,7 @@ def free_stage() -> tuple[Usd.Stage, UsdGeom.Mesh]:
 
 
 def border_moves(stage: Usd.Stage, tmp_path) -> bool:
-    """Whether the border by the other mesh does; all else does, or the test says nothing."""
+    """Whether the border next to the other mesh moves; everything else must, or the test would say nothing."""
     points = slid(stage, tmp_path)[FRAMES[-1]]
     moved = (points != np.array(UsdGeom.Mesh(stage.GetPrimAtPath(MESH)).GetPointsAttr().Get(FRAMES[-1]))).any(axis=1)
     assert moved[7:-7:7].any()
@@ -186,7 +186,7 @@ def test_a_copy_of_the_mesh_holds_nothing(tmp_path):
 
 
 def test_a_skinned_mesh_meets_where_it_is_skinned(tmp_path):
-    """Its points are elsewhere until they are bound, but for their rounding."""
+    """Its points are elsewhere before they are skinned; equal up to rounding."""
     stage, body = free_stage()
     skinslide.SkinSlideMeshAPI.Apply(body).CreateWeldToleranceAttr(1e-6)
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath(neighbour(stage)))
@@ -223,7 +223,7 @@ def test_a_slider_takes_what_is_one(split):
 
 
 def test_what_is_one_can_be_found_without_usd(split):
-    """As the stage has it; and less where points part in a pose."""
+    """The same points as in the stage, and fewer if points part in a pose."""
     shape, whole = split
     patches = [skinslide.PatchSetup("sheet", np.arange(36))]
     mesh = (shape.counts, shape.indices, shape.points, patches)

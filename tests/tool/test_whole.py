@@ -45,7 +45,7 @@ def shot(tmp_path):
 
 
 def whole(path) -> dict[str, dict[str, np.ndarray]]:
-    """The faces of each patch of each mesh."""
+    """The faces of each patch, by the path of its mesh."""
     return {mesh.path: {patch.name: patch.faces for patch in mesh.patches} for mesh in read_meshes(open_stage(path))[0]}
 
 
@@ -129,7 +129,7 @@ def test_pins(shot, tmp_path):
 
 
 def referenced(shot, folder, **instanceable: str):
-    """The character by reference, once under each name."""
+    """The character, referenced once under each name."""
     prims = (
         f'def "{name}" (references = @{shot.name}@; instanceable = {value}) {{\n}}'
         for name, value in instanceable.items()

@@ -137,7 +137,7 @@ def test_memory_does_not_grow_with_frames(tmp_path, monkeypatch, extension):
 
 
 def _own_memory() -> int:
-    """Bytes of this process that are not those of a file."""
+    """The bytes of this process that are not those of a file."""
     (line,) = [line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("RssAnon")]
     return 1024 * int(line.split()[1])
 
