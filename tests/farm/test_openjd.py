@@ -109,7 +109,9 @@ def test_a_stage_that_does_not_move(tmp_path):
     mesh.GetPointsAttr().Clear()
     mesh.GetPointsAttr().Set(stages.vectors(stages.grid().points))
     still = stages.save(stage, tmp_path / "still.usda")
-    assert "one bake will do" in tool("farm", still, "-o", tmp_path / "slid.usdc", "--chunk", "1", code=3)
+    assert "so there are no frames to divide" in tool(
+        "farm", still, "-o", tmp_path / "slid.usdc", "--chunk", "1", code=3
+    )
 
 
 def test_what_a_template_cannot_hold(shot, tmp_path):

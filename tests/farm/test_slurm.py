@@ -132,7 +132,7 @@ def test_a_chunk_that_fails_does_not_keep_a_task_from_the_others(shot, environme
 def test_a_task_out_of_range(shot, environment):
     job = Submitted(shot, environment, "--chunk", "4", sbatch=["--array=3"])
     job.wait(job.task(3), "FAILED")
-    assert "error: --chunk 3/2: of 2 there are 1 to 2" in job.said(job.task(3))
+    assert "error: --chunk 3/2: the part must be from 1 to 2" in job.said(job.task(3))
     assert not job.chunk(3).exists()
 
 

@@ -69,7 +69,7 @@ def test_more_patches_leave_it_as_it_is(payload, cache, tmp_path):
 @pytest.mark.parametrize(
     ("output", "file", "says"),
     [
-        ("patches.usda", "payload.usda", "is live where it ends in .skinslide alone"),
+        ("patches.usda", "payload.usda", "its name must end in .skinslide"),
         ("patches.skinslide", "payload.skinslide", "must end in .usda, .usdc, .usd"),
         ("patches.skinslide", "cache.usda", "the stage reads this file"),
         ("patches.skinslide", "other.usda", "exists and says something else; --force replaces it"),

@@ -88,8 +88,8 @@ def test_parts_are_all_frames_once(count):
         ("3", "must be a part and how many there are"),
         ("", "must be a part and how many there are"),
         (3, "must be a part and how many there are"),
-        ("0/4", "of 4 there are 1 to 4"),
-        ("5/4", "of 4 there are 1 to 4"),
+        ("0/4", "the part must be from 1 to 4"),
+        ("5/4", "the part must be from 1 to 4"),
         ("1/9", "there are 8 frames to divide"),
     ],
 )
@@ -560,7 +560,7 @@ def test_commands(shot, tmp_path, capfd):
         said = capfd.readouterr().out.splitlines()
         assert said == [f"{name}: is whole already, and was not baked again"]
     assert main(["bake", str(shot), "-o", names[0], "--chunk", "3/2"]) == 2
-    assert "there are 1 to 2" in capfd.readouterr().err
+    assert "must be from 1 to 2" in capfd.readouterr().err
     out = str(tmp_path / "out.usdc")
     assert main(["stitch", *names, "-o", out, "--json", "--frames", "1001:1008"]) == 0
     told = json.loads(capfd.readouterr().out)

@@ -60,7 +60,7 @@ def test_bake_json_is_one_document(shot, tmp_path, capsys):
 
 def test_json_is_json_whatever_the_numbers(capsys):
     numbers = {"stretch": float("nan"), "frames": [1.5, float("inf"), (float("-inf"), 2)], "name": "nan"}
-    outcome.say(outcome.as_json(numbers), 0)
+    outcome.print_result(outcome.as_json(numbers), 0)
 
     def refuse(constant: str) -> None:
         raise ValueError(constant)

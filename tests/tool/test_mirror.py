@@ -345,7 +345,7 @@ def test_faces_cut_along_other_diagonals(tmp_path):
     assert [problem.patch for problem in told] == [RIGHT, RIGHT]
     assert told[0].message.startswith("mirrored by nearest place, since faces are not symmetric: the farthest is ")
     assert float(told[0].message.split()[-2]) < 1e-6
-    assert told[1].message == "1 of 3 painted edges are not there"
+    assert told[1].message == "1 of 3 painted edges are not on the other side"
     right = read(tmp_path / "both.skinslide")[RIGHT]
     assert np.array_equal(right.patch.faces, halves(ACROSS_FACES))
     controls = right.patch.controls

@@ -62,7 +62,7 @@ def test_edges_of_a_subset(extension, shot, tmp_path):
     report = paint_to_file(shot, output, MESH, PATCH, 3, subset="seam")
     assert painted(output) == {(8, 9): 3, (9, 10): 3, (10, 11): 3}
     assert (report.painted, report.left_out, report.total) == (3, 1, 3)
-    assert f"{PATCH}: 3 edges painted 3, 1 left out that are not of the patch; 3 painted in all" in report.text()
+    assert f"{PATCH}: 3 edges painted with 3, 1 left out that are not of the patch; 3 painted in all" in report.text()
     stage = open_stage(output)
     assert stage.GetRootLayer().subLayerPaths[0].endswith("/shot.usda")
 
@@ -187,10 +187,10 @@ def test_the_command(shot, tmp_path, capsys):
     options = ["--prim", MESH, "--patch", PATCH, "--value", "4", "--curve", CURVE, "--within", "0.1"]
     assert main(["paint", str(shot), "-o", str(output), *options, "--direction", "across"]) == 0
     said = capsys.readouterr().out
-    assert f"{PATCH}: 10 edges painted 4; 10 painted in all" in said and f"{output}: written" in said
+    assert f"{PATCH}: 10 edges painted with 4; 10 painted in all" in said and f"{output}: written" in said
     options = ["--prim", MESH, "--patch", PATCH, "--value", "2", "--primvar", "ramp", "--threshold", "3"]
     assert main(["paint", str(shot), "-o", str(output), *options]) == 0
-    assert "13 edges painted 2; " in capsys.readouterr().out
+    assert "13 edges painted with 2; " in capsys.readouterr().out
 
 
 # ---- Bad input ----

@@ -190,7 +190,7 @@ def counted(count: int, one: str, many: str | None = None) -> str:
     return f"{count} {one if count == 1 else many or f'{one}s'}"
 
 
-def told(problems: Iterable[Problem]) -> Iterator[str]:
+def problem_lines(problems: Iterable[Problem]) -> Iterator[str]:
     """A line for each problem; of each severity no more than anyone reads, and how many there are beyond."""
     counts: dict[str, int] = {}
     for problem in problems:

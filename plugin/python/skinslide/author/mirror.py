@@ -76,7 +76,7 @@ def mirror(stage: Usd.Stage, prim: PrimLike, patch: str, **reflection: Unpack[Mi
         copy = _Copy(mesh, patch, animation, across)
         copy.run(read_chosen(mesh.prim, patch, mesh.meaning))
         report = mesh.checked()
-        notes = [Problem("note", str(mesh.prim.GetPath()), to, None, said) for said in copy.told]
+        notes = [Problem("note", str(mesh.prim.GetPath()), to, None, note) for note in copy.notes]
         return replace(report, problems=[*report.problems, *notes])
 
 
@@ -128,7 +128,7 @@ class _OtherSide(NamedTuple):
     face_sources: np.ndarray  # (n,)
     vertex_sources: np.ndarray  # (V,) -1 of vertices that are not of these faces
     vertices: np.ndarray  # (V,) of vertices of this side, where they go: -1 for nowhere
-    told: str  # what to say of it, or nothing
+    note: str  # of how they were found, or nothing
 
 
 def _across(mesh: EditedMesh, faces: np.ndarray, asked: MirrorOptions) -> _OtherSide:
@@ -140,10 +140,10 @@ def _across(mesh: EditedMesh, faces: np.ndarray, asked: MirrorOptions) -> _Other
             nearest = mirror_nearest(*shape, axis=asked.axis, plane=asked.plane, tolerance=asked.tolerance)
         except SliderError:
             raise Fault(f"the mesh is not symmetric here: {error}") from error
-        told = f"mirrored by nearest place, since faces are not symmetric: the farthest is {nearest.worst:.3g} off"
+        note = f"mirrored by nearest place, since faces are not symmetric: the farthest is {nearest.worst:.3g} off"
         there = np.flatnonzero(nearest.face_sources >= 0).astype(np.int32)
         vertices = _inverse(nearest.vertex_sources)
-        return _OtherSide(there, nearest.face_sources[there], nearest.vertex_sources, vertices, told)
+        return _OtherSide(there, nearest.face_sources[there], nearest.vertex_sources, vertices, note)
     return _OtherSide(found.faces, faces, _inverse(found.vertices), found.vertices, "")
 
 
@@ -155,10 +155,10 @@ def _inverse(places: np.ndarray) -> np.ndarray:
 
 
 class _Copy:
-    """Copies what one patch has to another; `told` is what to report."""
+    """Copies what one patch has to another; `notes` are for the report."""
 
     def __init__(self, mesh: EditedMesh, patch: str, animation: Animation, across: _OtherSide):
-        self.told = [across.told] if across.told else []
+        self.notes = [across.note] if across.note else []
         self._mesh, self._patch, self._name, self._topology = mesh.prim, patch, mesh.patch, mesh.topology
         self._animation, self._setup, self._across = animation, animation.setup, across
 
@@ -220,12 +220,12 @@ class _Copy:
     def _kept_edges(self) -> np.ndarray | None:
         """Which painted edges the other side has, bool (n,): all, unless by nearest place; None if none are painted."""
         edges = self._setup.controls.edges
-        if edges is None or not self._across.told:
+        if edges is None or not self._across.note:
             return None if edges is None else np.ones(len(edges), dtype=bool)
         there = {tuple(edge) for edge in np.sort(self._topology.edges_of(self._across.faces), axis=1).tolist()}
         kept = np.array([tuple(edge) in there for edge in np.sort(self._across.vertices[edges], axis=1).tolist()], bool)
         if not kept.all():
-            self.told.append(f"{np.count_nonzero(~kept)} of {len(kept)} painted edges are not there")
+            self.notes.append(f"{np.count_nonzero(~kept)} of {len(kept)} painted edges are not on the other side")
         return kept if kept.any() else None
 
     # ---- Attributes ----

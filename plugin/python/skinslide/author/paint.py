@@ -62,8 +62,8 @@ class PaintReport:
     def text(self) -> str:
         """What `check` says, and a line of what was painted."""
         out = f", {self.left_out} left out that are not of the patch" if self.left_out else ""
-        done = f"{self.patch}: {counted(self.painted, 'edge')} painted {self.value:g}{out}; {self.total} painted in all"
-        return f"{self.check.text()}\n{one_line(done)}"
+        edges = f"{counted(self.painted, 'edge')} painted with {self.value:g}{out}; {self.total} painted in all"
+        return f"{self.check.text()}\n{one_line(f'{self.patch}: {edges}')}"
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ class PayloadLayer:
         self._output, live = given_output("payload", output), given_output("output", setup)
         below, opened = given_file(stage), given_stage(stage)
         if live.suffix != EXTENSION:
-            raise UsageError(f"output {live}: a payload of it is live where it ends in {EXTENSION} alone")
+            raise UsageError(f"output {live}: its name must end in {EXTENSION} for its payload to be live")
         check_output(self._output, [each for each in EXTENSIONS if each != EXTENSION])
         check_not_input(self._output, opened, below)
         self._text = _layer(opened, live, below, self._output).ExportToString()

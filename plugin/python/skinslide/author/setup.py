@@ -101,7 +101,7 @@ def _setup_whole(stage: Usd.Stage, asked: SetupOptions) -> CheckReport:
     with without_earlier_bake(stage, paths):
         moving, barred = moving_meshes(stage, paths)
         _check_pins([mesh.prim for mesh in moving], asked.pin)
-        faces, said, wrong = needed_faces(moving, None if asked.frames is None else checked_frames(asked.frames))
+        faces, notes, wrong = needed_faces(moving, None if asked.frames is None else checked_frames(asked.frames))
     wrong = [*barred, *wrong]
     while faces:
         try:
@@ -114,7 +114,7 @@ def _setup_whole(stage: Usd.Stage, asked: SetupOptions) -> CheckReport:
             for path in {each.prim for each in own}:
                 del faces[path]
         else:
-            return replace(report, problems=[*report.problems, *said, *left_out(wrong)])
+            return replace(report, problems=[*report.problems, *notes, *left_out(wrong)])
     message = never("no edge of any mesh") if moving else "no mesh is rendered and has points that move"
     raise StageProblems(wrong or [Problem("error", paths[0] if paths else "", None, None, message)])
 

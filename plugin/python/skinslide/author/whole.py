@@ -72,7 +72,7 @@ def needed_faces(
         Of each mesh that needs one, by its path, whether a patch needs each face, bool (F,); notes of the others, and
         warnings of frames beyond samples; an error for each mesh that cannot be looked at.
     """
-    found, said, wrong = dict[str, np.ndarray](), list[Problem](), list[Problem]()
+    found, notes, wrong = dict[str, np.ndarray](), list[Problem](), list[Problem]()
     for prim, pose in moving:
         path = str(prim.GetPath())
         try:
@@ -84,12 +84,12 @@ def needed_faces(
         except FrameProblem as bad:
             wrong.append(bad.problem)
             continue
-        said += beyond(mesh, frames or ())
+        notes += beyond(mesh, frames or ())
         if faces.any():
             found[path] = faces
         else:
-            said.append(_without_patch("note", path, None, never("no edge")))
-    return found, said, wrong
+            notes.append(_without_patch("note", path, None, never("no edge")))
+    return found, notes, wrong
 
 
 def left_out(wrong: Iterable[Problem]) -> Iterator[Problem]:

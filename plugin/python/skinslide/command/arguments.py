@@ -10,7 +10,7 @@ from dataclasses import Field, fields
 from typing import Any, NoReturn
 
 from skinslide.author.options import EDGES, FACES, MirrorOptions, PaintOptions, SetupOptions
-from skinslide.command.outcome import DONE, EXIT_CODES, say, tell
+from skinslide.command.outcome import DONE, EXIT_CODES, print_error, print_result
 from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, positive_text
 from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
@@ -65,11 +65,11 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(**words, epilog=EXIT_CODES, argument_default=argparse.SUPPRESS)
 
     def print_help(self, _file: Any = None) -> NoReturn:
-        raise SystemExit(say(self.format_help().rstrip("\n"), DONE))
+        raise SystemExit(print_result(self.format_help().rstrip("\n"), DONE))
 
     def error(self, message: str) -> NoReturn:
         for line in self.format_usage().splitlines():
-            tell(line)
+            print_error(line)
         raise UsageError(message)
 
 
@@ -79,7 +79,7 @@ class _Version(argparse.Action):
     def __call__(self, *_arguments: object) -> NoReturn:
         import skinslide
 
-        raise SystemExit(say(f"skinslide {skinslide.__version__}", DONE))
+        raise SystemExit(print_result(f"skinslide {skinslide.__version__}", DONE))
 
 
 def _parser() -> argparse.ArgumentParser:

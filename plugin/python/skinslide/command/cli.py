@@ -14,7 +14,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from skinslide.command.arguments import device_of_environment, parse
-from skinslide.command.outcome import DONE, PROBLEMS, as_json, expected, failed, prepare_streams, say, tell
+from skinslide.command.outcome import (
+    DONE,
+    PROBLEMS,
+    as_json,
+    expected,
+    failed,
+    prepare_streams,
+    print_error,
+    print_result,
+)
 from skinslide.problems import StageError, UsageError, listed, one_line
 from skinslide.shot.options import PictureOptions
 
@@ -44,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # blocked by start.py
         result = run(function, **given)
         json = False  # a document that breaks off is not followed by another
-        return say(*result)
+        return print_result(*result)
     except expected() as error:
         return failed(error, json, _outcome(given, before), words)
 
@@ -118,9 +127,9 @@ def _bake(
     **options: Any,
 ) -> Result:
     also = _also(pictures, html, maps, options)
-    report = _followed(bake_to_file, quiet, stage, output, also=also, **options)
-    told = [_layer_there(output)] if report.resumed else [*_written(pictures, html), _layer_written(output)]
-    lines = [report.text(), *told]
+    report = _slide(bake_to_file, quiet, stage, output, also=also, **options)
+    written = [_layer_there(output)] if report.resumed else [*_written(pictures, html), _layer_written(output)]
+    lines = [report.text(), *written]
     return _reported(report, {"stage": stage, "output": output}, lines, json, quiet), DONE
 
 
@@ -147,7 +156,7 @@ def _also(pictures: str | None, html: str | None, maps: str | None, options: dic
 
 
 def _check(check: Callable[..., Any], stage: str, *, json: bool = False, **options: Any) -> Result:
-    report = _followed(check, not options.get("share"), stage, **options)
+    report = _slide(check, not options.get("share"), stage, **options)
     return as_json(report.as_dict()) if json else report.text(), PROBLEMS if report.failed else DONE
 
 
@@ -161,21 +170,21 @@ def _preview(
     quiet: bool = False,
     **options: Any,
 ) -> Result:
-    report = _followed(preview, quiet, stage, folder, html=html, **options)
+    report = _slide(preview, quiet, stage, folder, html=html, **options)
     return _reported(report, {"stage": stage}, [report.text(), *_written(folder, html)], json, quiet), DONE
 
 
 def _maps(
     maps: Callable[..., Any], stage: str, folder: str, *, json: bool = False, quiet: bool = False, **options: Any
 ) -> Result:
-    report = _followed(maps, quiet, stage, folder, **options)
+    report = _slide(maps, quiet, stage, folder, **options)
     return _reported(report, {"stage": stage, "folder": folder}, [report.text()], json, quiet), DONE
 
 
 def _cache(
     cache: Callable[..., Any], stage: str, output: str, *, json: bool = False, quiet: bool = False, **options: Any
 ) -> Result:
-    report = _told(cache, quiet, stage, output, **options)
+    report = _with_progress(cache, quiet, stage, output, **options)
     lines = [report.text(), _layer_written(output, "character")]
     return _reported(report, {"stage": stage, "output": output}, lines, json, quiet), DONE
 
@@ -220,16 +229,16 @@ def _reported(report: Any, named: dict[str, Any], lines: Sequence[str], json: bo
         return as_json({**named, **getattr(report, "document", report.as_dict)()})
     for problem in report.problems if quiet else ():
         if problem.severity == "warning":
-            tell(str(problem))
+            print_error(str(problem))
     return "" if quiet else "\n".join(filter(None, lines))
 
 
-def _followed(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
+def _slide(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
     """Calls a function that slides, and shows its progress."""
-    return _told(function, quiet, *arguments, **_with_lookup(options))
+    return _with_progress(function, quiet, *arguments, **_with_lookup(options))
 
 
-def _told(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
+def _with_progress(function: Callable[..., Any], quiet: bool, *arguments: Any, **options: Any) -> Any:
     """Calls a function that works on frames, and shows its progress."""
     from skinslide.command.progress import reporter
 

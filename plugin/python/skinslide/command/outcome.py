@@ -10,7 +10,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any, TextIO
 
-from skinslide.problems import FrameProblem, Problem, StageError, StageProblems, UsageError, one_line, told, usd_message
+from skinslide.problems import (
+    FrameProblem,
+    Problem,
+    StageError,
+    StageProblems,
+    UsageError,
+    one_line,
+    problem_lines,
+    usd_message,
+)
 
 DONE, FAILED, USAGE, PROBLEMS = 0, 1, 2, 3
 INTERRUPTED = 130
@@ -60,13 +69,13 @@ def prepare_streams() -> None:
             getattr(sys, name).reconfigure(errors="backslashreplace")
 
 
-def tell(line: str) -> None:
+def print_error(line: str) -> None:
     """Prints a line to stderr, if that is possible."""
     with suppress(OSError):
         _print(one_line(line), sys.stderr)
 
 
-def say(text: str | Iterator[str], code: int) -> int:
+def print_result(text: str | Iterator[str], code: int) -> int:
     """Prints what a command was asked for, or its pieces. Returns the exit code: failed if it cannot be printed."""
     if not text:
         return code
@@ -76,7 +85,7 @@ def say(text: str | Iterator[str], code: int) -> int:
     except BrokenPipeError:  # whoever read us has left
         return FAILED
     except OSError as error:
-        tell(f"error: the report cannot be printed: {error.strerror}")
+        print_error(f"error: the report cannot be printed: {error.strerror}")
         return FAILED
 
 
@@ -107,10 +116,10 @@ def failed(error: BaseException, json: bool, done: str = "", words: Sequence[str
     words  those of the command
     """
     code, problems = _verdict(error, done, words)
-    for line in told(problems):
-        tell(line)
+    for line in problem_lines(problems):
+        print_error(line)
     if json:
-        say(as_json({"problems": [problem.as_dict() for problem in problems]}), code)
+        print_result(as_json({"problems": [problem.as_dict() for problem in problems]}), code)
     return code
 
 
@@ -139,8 +148,8 @@ def _verdict(error: BaseException, done: str, words: Sequence[str]) -> tuple[int
 def _out_of_memory() -> str:
     from skinslide._core import ffi, lib
 
-    said: bytes = ffi.string(lib.skinslide_status_text(lib.SKINSLIDE_OUT_OF_MEMORY))
-    return said.decode()
+    text: bytes = ffi.string(lib.skinslide_status_text(lib.SKINSLIDE_OUT_OF_MEMORY))
+    return text.decode()
 
 
 def _plain(message: str) -> Problem:

@@ -169,8 +169,8 @@ class MeshPictures(MeshMaking):
         if flat:
             message = f"{counted(flat, 'face is', 'faces are')} drawn flat, without a limit surface"
             self._problems.append(Problem("warning", self._mesh.path, None, None, message))
-        if skin.told and "chequer" in self._options.views:
-            self._problems.append(Problem("note", self._mesh.path, None, None, skin.told))
+        if skin.note and "chequer" in self._options.views:
+            self._problems.append(Problem("note", self._mesh.path, None, None, skin.note))
         made = (self._make_series(skin, i) for i in chosen)
         return [series for series in made if series]
 

@@ -65,7 +65,7 @@ class Skin:
     texture: dict[int, np.ndarray] | None = None  # by tile; None: it is not wanted
 
     @property
-    def told(self) -> str:
+    def note(self) -> str:
         """What to report about the chequer, or nothing."""
         if self.st is not None:
             return ""

@@ -17,7 +17,7 @@ from typing import Any
 from urllib.parse import quote
 
 from skinslide.picture.page import render
-from skinslide.problems import Problem, UsageError, counted, lines_text, told
+from skinslide.problems import Problem, UsageError, counted, lines_text, problem_lines
 from skinslide.shot.report import RECORD, far_apart, roughness_text, stretch_text, time_text
 from skinslide.stage.given import StrPath
 from skinslide.write.place import check_output, given_output
@@ -116,7 +116,7 @@ class ShotsReport:
 
     def text(self) -> str:
         """A line for each shot, and for what is left out."""
-        return lines_text([*map(_line, self.shots), *told(self.left_out)])
+        return lines_text([*map(_line, self.shots), *problem_lines(self.left_out)])
 
 
 def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
@@ -165,12 +165,12 @@ def _instead(left_out: Sequence[Problem]) -> str:
 
 def _line(shot: ShotRecord) -> str:
     worst = max(shot.patches, key=lambda patch: patch.after, default=None)
-    told = counted(len(shot.problems), "problem")
+    problems = counted(len(shot.problems), "problem")
     if worst is None:
-        return f"{shot.file}: {shot.stage}: no patches, {told}"
+        return f"{shot.file}: {shot.stage}: no patches, {problems}"
     stretch = f"stretch {stretch_text(worst.before)}, slid {stretch_text(worst.after)}"
     where = f"{worst.label} at frame {time_text(worst.worst)}"
-    return f"{shot.file}: {shot.stage}: {stretch}, {where}, rough {roughness_text(worst.roughness)}, {told}"
+    return f"{shot.file}: {shot.stage}: {stretch}, {where}, rough {roughness_text(worst.roughness)}, {problems}"
 
 
 # ---- Records ----

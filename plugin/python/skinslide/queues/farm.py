@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from skinslide.problems import Problem, StageProblems, counted, errors, frame_text, lines_text, told
+from skinslide.problems import Problem, StageProblems, counted, errors, frame_text, lines_text, problem_lines
 from skinslide.queues.openjd import template
 from skinslide.queues.slurm import script
 from skinslide.queues.steps import Job
@@ -66,7 +66,7 @@ class FarmReport:
         """What it will do, and every problem, for a terminal."""
         frames, tasks = counted(len(self.frames), "frame"), counted(len(self.chunks), "task")
         span = f"{frame_text(self.frames[0])} to {frame_text(self.frames[-1])}"
-        return lines_text([f"{frames}, {span}, in {tasks}", *told(self.problems)])
+        return lines_text([f"{frames}, {span}, in {tasks}", *problem_lines(self.problems)])
 
 
 def farm(
@@ -161,7 +161,17 @@ def _wanted(stage: Path, written: list[Path], options: SlideOptions) -> tuple[li
         raise StageProblems(problems)
     times = {time.GetValue() for mesh in meshes for time in times_of(mesh, options.frames) if not time.IsDefault()}
     if not times:
-        raise StageProblems([Problem("error", "", None, None, "nothing that is slid has samples: one bake will do")])
+        raise StageProblems(
+            [
+                Problem(
+                    "error",
+                    "",
+                    None,
+                    None,
+                    "nothing that is slid has samples, so there are no frames to divide; use skinslide bake",
+                )
+            ]
+        )
     return sorted(times), problems
 
 

@@ -52,8 +52,8 @@ def _unread(mesh: PatchedMesh) -> Iterator[Problem]:
 
 def _described(mesh: PatchedMesh) -> Iterator[Problem]:
     for patch, animation in zip(mesh.patches, mesh.animation, strict=True):
-        for said in animation.described():
-            yield Problem("note", mesh.path, patch.name, None, said)
+        for note in animation.described():
+            yield Problem("note", mesh.path, patch.name, None, note)
 
 
 def _overlaps(mesh: PatchedMesh) -> Iterator[Problem]:

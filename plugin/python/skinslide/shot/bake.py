@@ -260,8 +260,8 @@ def _given(options: SlideOptions | LayerOptions) -> dict[str, Any]:
     """Those options on which the samples of a layer depend, or whether there is one, where they are not the default."""
     if isinstance(options, SlideOptions):
         return {AUTHORED: True} if options.frames == AUTHORED else {}
-    told = {each.name: getattr(options, each.name) for each in fields(options) if each.name != "share"}
-    return {name: value for name, value in told.items() if value is not None and value is not False}
+    asked = {each.name: getattr(options, each.name) for each in fields(options) if each.name != "share"}
+    return {name: value for name, value in asked.items() if value is not None and value is not False}
 
 
 class _MeshBake(MeshMaking):
@@ -279,8 +279,8 @@ class _MeshBake(MeshMaking):
         return self._needed[time]
 
     def read(self, _time: Usd.TimeCode) -> Callable[[SlidFrame], list[tuple[Primvar, Any]]]:
-        told = self._diagnostics
-        return lambda frame: told.values(frame) if told else []
+        diagnostics = self._diagnostics
+        return lambda frame: diagnostics.values(frame) if diagnostics else []
 
     def take(self, time: Usd.TimeCode, frames: SlidFrames, made: list[tuple[Primvar, Any]]) -> None:
         frame, overs, prim = frames[time], self._baking.overs, self._mesh.prim

@@ -18,7 +18,16 @@ import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from skinslide.arrays.native import version
-from skinslide.problems import FrameProblem, Problem, StageProblems, counted, errors, first_of, lines_text, told
+from skinslide.problems import (
+    FrameProblem,
+    Problem,
+    StageProblems,
+    counted,
+    errors,
+    first_of,
+    lines_text,
+    problem_lines,
+)
 from skinslide.shot.frames import AskedFrames
 from skinslide.shot.options import Frames, Prims, SlideOptions
 from skinslide.shot.plan import times_of
@@ -80,7 +89,7 @@ class CacheReport:
 
     def text(self) -> str:
         """A line for each mesh, and every problem."""
-        return lines_text([*(mesh.text() for mesh in self.meshes), *told(self.problems)])
+        return lines_text([*(mesh.text() for mesh in self.meshes), *problem_lines(self.problems)])
 
 
 def cache(

@@ -23,7 +23,7 @@ from skinslide.problems import (
     errors,
     frame_text,
     lines_text,
-    told,
+    problem_lines,
 )
 from skinslide.shot.advice import advice
 from skinslide.shot.candidates import Candidate, find_candidates
@@ -228,7 +228,7 @@ class CheckReport:
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
         lines += [line for mesh in self.candidates for line in mesh.lines()]
         lines += [f"{each.prim}: {each.patch}: {share_text(each.least, each.median)}" for each in self.shares]
-        return lines_text([*lines, *self.lookup.lines(), *told(self.problems), self._verdict()])
+        return lines_text([*lines, *self.lookup.lines(), *problem_lines(self.problems), self._verdict()])
 
     def _verdict(self) -> str:
         counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}
@@ -261,8 +261,8 @@ def _patch_lines(name: str, pieces: Sequence[CheckedPatch]) -> Iterator[str]:
     counts = ("vertices", "free", "edges", "faces", "holes")
     if len(pieces) > _MOST_PIECES:
         spans = [(count, [getattr(piece, count) for piece in pieces]) for count in counts]
-        told = ", ".join(f"{count} {min(found)} to {max(found)}" for count, found in spans)
-        yield f"  {name}: {len(pieces)} pieces, {told}"
+        ranges = ", ".join(f"{count} {min(found)} to {max(found)}" for count, found in spans)
+        yield f"  {name}: {len(pieces)} pieces, {ranges}"
         return
     for piece in pieces:
         label = name if piece.pieces == 1 else f"{name} ({piece.piece} of {piece.pieces})"
@@ -379,11 +379,11 @@ def _checked(info: PatchInfo) -> CheckedPatch:
 
 def _patch_problems(mesh: PatchedMesh, pieces: list[CheckedPatch]) -> Iterator[Problem]:
     """What is worth knowing of the pieces of one patch, a line for each kind."""
-    told = (
+    counts = (
         ("edge has", "edges have", "no length at rest", sum(piece.zero_length_edges for piece in pieces)),
         ("face has", "faces have", "no area in the rest embedding", sum(piece.collapsed_faces for piece in pieces)),
         ("face turns", "faces turn", "over in the rest embedding", sum(piece.folded_faces for piece in pieces)),
     )
-    for one, many, what, count in told:
+    for one, many, what, count in counts:
         if count:
             yield Problem("warning", mesh.path, pieces[0].name, None, f"{counted(count, one, many)} {what}")

@@ -29,7 +29,7 @@ LEAST, MOST = 1e-37, 1e37  # of what is a float in the core
 
 
 def option(default: Any, check: Check, flag: str, *, old: str = "", python: str = "", **words: Any) -> Any:
-    """A field of Options. flag and words are argparse's; an old flag is understood, but not told of.
+    """A field of Options. flag and words are argparse's; an old flag is understood, but is not in the help.
 
     What has no flag is for Python alone. python is what docstrings say beside the help.
     """
@@ -76,7 +76,7 @@ class Options:
 def takes(table: type[Options]) -> Callable[[F], F]:
     """Gives a function that takes options as keywords their signature, and a line for each of them in its docstring."""
 
-    def told(function: F) -> F:
+    def decorate(function: F) -> F:
         signature = inspect.signature(function)
         fixed = [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
         options = [each for each in fields(table) if each.name not in signature.parameters]
@@ -89,7 +89,7 @@ def takes(table: type[Options]) -> Callable[[F], F]:
         function.__doc__ = re.sub(r" +\*\*\w+: .*", lambda _: lines, function.__doc__ or "")
         return function
 
-    return told
+    return decorate
 
 
 def _argument(each: Field[Any], table: type[Options]) -> str:

@@ -51,8 +51,8 @@ class Derived:
         self._sources = {source.wanted.property(): source for source in sources}
         for source in sources:
             self._meaning.take(source.wanted, source.first(), source.samples())
-        for said in self._meaning.warnings():
-            self._warn(said)
+        for warning in self._meaning.warnings():
+            self._warn(warning)
         self._recomputed: list[Output] = []
         for output in self._meaning.outputs():
             if output.pose_count:
@@ -115,9 +115,9 @@ class Derived:
         return [first for found in self._faults.values() for first in first_of(found)]
 
     def _note_faults(self, output: Output, cached: CachedValue | None, time: Usd.TimeCode) -> None:
-        told = self._meaning.look(output, cached)
-        if told:
-            problem = replace(self._mesh.problem(told, time), severity="warning")
+        warning = self._meaning.look(output, cached)
+        if warning:
+            problem = replace(self._mesh.problem(warning, time), severity="warning")
             self._faults.setdefault(output.name, []).append(problem)
 
     def _times_of(self, output: Output, time: Usd.TimeCode) -> list[Usd.TimeCode]:

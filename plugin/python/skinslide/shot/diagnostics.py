@@ -39,7 +39,7 @@ PRIMVARS = (
 
 
 def texture_coordinates(mesh: PatchedMesh, st: str = _ST) -> Value | None:
-    """Those by which directions are told, as authored. Raises Fault."""
+    """Those in which directions are measured, as authored. Raises Fault."""
     return primvar_source(mesh.prim, st).at(FIRST)
 
 
@@ -74,8 +74,8 @@ class MeshDiagnostics:
     def values(self, frame: SlidFrame) -> list[tuple[Primvar, Vt.FloatArray | Vt.Vec2fArray]]:
         """Of a frame, those that there are. Raises SliderError."""
         fields = {**frame.measured()._asdict(), **self._strain.of(self._mesh.drawn_points(frame.slid))._asdict()}
-        told = [(primvar, fields[primvar.field]) for primvar in PRIMVARS]
-        return [(primvar, _as_usd(values)) for primvar, values in told if values is not None]
+        written = [(primvar, fields[primvar.field]) for primvar in PRIMVARS]
+        return [(primvar, _as_usd(values)) for primvar, values in written if values is not None]
 
     def indices(self) -> list[Usd.Attribute]:
         """Those of primvars that the stage has under the names: they would choose among the values that are written."""

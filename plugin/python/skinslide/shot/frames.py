@@ -140,7 +140,7 @@ class Chunk:
             raise UsageError(f"chunk {text!r}: must be a part and how many there are, such as 3/8")
         chunk = cls(int(found[1]), int(found[2]))
         if not 1 <= chunk.number <= chunk.count:
-            raise UsageError(f"chunk {chunk}: of {chunk.count} there are 1 to {chunk.count}")
+            raise UsageError(f"chunk {chunk}: the part must be from 1 to {chunk.count}")
         return chunk
 
     def __str__(self) -> str:

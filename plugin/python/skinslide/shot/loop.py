@@ -60,7 +60,7 @@ def slide(
                 for _ in mesh.run(pool, options.jobs):
                     if progress:
                         progress(report.frame_count, total)
-                report.warnings.extend(first_of(mesh.told))
+                report.warnings.extend(first_of(mesh.warnings))
                 ended = [problem for made in mesh.makings for problem in made.end()]
                 known = set(report.warnings)
                 report.warnings.extend(each for each in dict.fromkeys(ended) if each not in known)
@@ -94,7 +94,7 @@ class _Mesh(NamedTuple):
     planned: PlannedMesh
     report: MeshReport
     makings: list[MeshMaking]
-    told: list[Problem]  # what to warn of in the points of each frame
+    warnings: list[Problem]  # what to warn of in the points of each frame
 
     @classmethod
     def of(cls, planned: PlannedMesh) -> _Mesh:
@@ -121,8 +121,8 @@ class _Mesh(NamedTuple):
             for making, result in zip(self.makings, made.pop(time), strict=True):
                 making.take(time, frames, result)
             self.report.add(frame_of(time), frames[time].patches)
-            if frames[time].told:
-                self.told.append(replace(self.planned.mesh.problem(frames[time].told, time), severity="warning"))
+            if frames[time].warning:
+                self.warnings.append(replace(self.planned.mesh.problem(frames[time].warning, time), severity="warning"))
             recent.append((time, frames[time]))
             self._measure_motion(recent)
             yield time

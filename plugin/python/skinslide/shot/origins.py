@@ -31,8 +31,8 @@ _BYTES = 8
 
 def record_of(plan: Plan, chunk: Chunk | None, options: dict[str, Any]) -> Record:
     """The record of a layer with all that is planned, but for poses, which are known as they are slid."""
-    told = bool(options.get("diagnostics"))
-    meshes = {each.mesh.path: MeshRecord(origins_of(each, told), tuple(each.frames)) for each in plan.meshes}
+    diagnostics = bool(options.get("diagnostics"))
+    meshes = {each.mesh.path: MeshRecord(origins_of(each, diagnostics), tuple(each.frames)) for each in plan.meshes}
     record = Record(meshes, options, asked=tuple(sorted(plan.paths)))
     if chunk:
         record = replace(record, chunk=str(chunk), wanted=tuple(plan.wanted))

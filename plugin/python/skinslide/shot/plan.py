@@ -48,9 +48,9 @@ class Plan:
             raise StageProblems(problems)
         planned = [_planned(mesh, slider, options.frames) for mesh, slider in found if slider]
         if options.frames is None:
-            problems += [said for mesh, *_ in planned for said in mesh.between_problems()]
+            problems += [note for mesh, *_ in planned for note in mesh.between_problems()]
         wanted = sorted({frame for mesh in planned for frame in mesh.frames})
-        problems += [said for mesh, *_ in planned for said in beyond(mesh, options.named)]
+        problems += [note for mesh, *_ in planned for note in beyond(mesh, options.named)]
         own = sorted({frame for mesh, *_ in planned for frame in _own_frames(mesh)}) if options.named else wanted
         paths = [each.mesh.path for each in planned]
         return cls(_part(planned, set(chunk.of(wanted))) if chunk else planned, paths, problems, wanted, own)
@@ -111,8 +111,8 @@ def beyond(mesh: PatchedMesh, named: Sequence[float]) -> Iterator[Problem]:
     if frames:
         samples = mesh.sample_times()
         span = f"from {frame_text(samples[0])} to {frame_text(samples[-1])}"
-        said = counted(len(frames), "frame is", "frames are")
-        message = f"{said} beyond the samples, which go {span}; the nearest is held there"
+        count = counted(len(frames), "frame is", "frames are")
+        message = f"{count} beyond the samples, which go {span}; the nearest is held there"
         yield Problem("warning", mesh.path, None, frames[0], message)
 
 

@@ -44,13 +44,13 @@ class Shot(NamedTuple):
 class SlidFrame:
     """One time of a mesh, slid. Points float32 (V, 3); `patches` is the core's result of each, `turns` where wanted.
 
-    `told` is what to warn of in its points, or nothing.
+    `warning` is what to warn of in its points, or nothing.
     """
 
     def __init__(self, slider: Slider, points: np.ndarray, controls: Sequence[Controls] | None, *, turns: bool):
         frame = slider.slide(points, controls, turns=turns)
         self.cached, self.slid, self.patches, self.turns = points, frame.points, frame.patches, frame.turns
-        self.told = slider.check_points(points)
+        self.warning = slider.check_points(points)
         self.controls, self._slider = controls, slider
         self._measured: dict[tuple[bool, ...], Diagnostics] = {}
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from skinslide.arrays.native import version
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
-from skinslide.problems import Problem, counted, frame_text, lines_text, told
+from skinslide.problems import Problem, counted, frame_text, lines_text, problem_lines
 from skinslide.shot.rows import Moments, Rows
 
 if TYPE_CHECKING:
@@ -250,7 +250,7 @@ def _share(found: np.ndarray) -> str:
     """In how many of some frames something is; nothing to say of one."""
     if len(found) == 1:
         return ""
-    return f" ({np.count_nonzero(found)} of {len(found)} frames have such; this one most)"
+    return f" (at {np.count_nonzero(found)} of {len(found)} frames, most at this one)"
 
 
 def stretch_text(stretch: float) -> str:
@@ -426,7 +426,7 @@ class BakeReport:
     def text(self) -> str:
         """The table for a terminal, every problem, and what was made."""
         if self.resumed:
-            return lines_text(told(self.problems))
+            return lines_text(problem_lines(self.problems))
         rows = [_HEADINGS, *(_row(patch) for mesh in self.meshes for patch in mesh.patches)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [_line(_HEADINGS, widths)]
@@ -437,7 +437,7 @@ class BakeReport:
             lines.extend(_share_line(patch) for patch in mesh.patches if patch.shares)
         made = [line for made in self.made for line in made.lines(self.meshes)]
         legend = [_LEGEND] if len(rows) > 1 else []
-        return lines_text([*lines, *legend, *told(self.problems), *made])
+        return lines_text([*lines, *legend, *problem_lines(self.problems), *made])
 
 
 _HEADINGS = [

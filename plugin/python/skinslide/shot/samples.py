@@ -47,12 +47,12 @@ def _points_problem(mesh: PatchedMesh, slider: Slider | None, time: Usd.TimeCode
         if slider is None:
             mesh.meaning.check_points(points)
             return None
-        told = slider.check_points(points)
+        warning = slider.check_points(points)
     except FrameProblem as bad:
         return bad.problem
     except (Fault, SliderError) as fault:
         return mesh.problem(str(fault), time)
-    return replace(mesh.problem(told, time), severity="warning") if told else None
+    return replace(mesh.problem(warning, time), severity="warning") if warning else None
 
 
 def _controls_problem(mesh: PatchedMesh, index: int, time: Usd.TimeCode) -> Problem | None:

@@ -17,7 +17,7 @@ from skinslide.stage.mesh import PatchedMesh
 
 
 class Shares:
-    """What reports are told of each frame."""
+    """What goes into reports of each frame."""
 
     def begin(self, _shot: Shot, _options: SlideOptions) -> Making:
         return _Searching()

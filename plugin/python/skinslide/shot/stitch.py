@@ -27,7 +27,7 @@ from skinslide.problems import (
     counted,
     frame_text,
     lines_text,
-    told,
+    problem_lines,
 )
 from skinslide.shot.frames import FramesLike, checked_frames, spec_of
 from skinslide.stage.given import StrPath
@@ -75,7 +75,7 @@ class StitchReport:
         """What it holds, and every problem, for a terminal."""
         first_to_last = f", {frame_text(self.frames[0])} to {frame_text(self.frames[-1])}" if self.frames else ""
         meshes, frames = counted(len(self.prims), "mesh", "meshes"), counted(len(self.frames), "frame")
-        return lines_text([f"{meshes}, {frames}{first_to_last}", *told(self.problems)])
+        return lines_text([f"{meshes}, {frames}{first_to_last}", *problem_lines(self.problems)])
 
 
 def stitch(

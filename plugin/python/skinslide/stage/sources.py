@@ -85,7 +85,7 @@ def _look_at(layer: Sdf.Layer, name: str, identifier: str) -> None:
 
 
 def _open(identifier: str) -> Sdf.Layer | None:
-    """None for what does not open: a problem of the stage, told where it matters."""
+    """None for what does not open: a problem of the stage, reported where it matters."""
     with suppress(Tf.ErrorException):
         path = Sdf.Layer.SplitIdentifier(identifier)[0]
         return Sdf.Layer.FindOrOpen(path, TEXT_ONLY) if path.endswith(EXTENSION) else Sdf.Layer.FindOrOpen(identifier)

@@ -72,7 +72,7 @@ def _dependencies(stage: Usd.Stage) -> list[str]:
         return utils.DependencyInfo() if clips else named  # USD would look for a file of the template's name
 
     unsaid = utils.CoalescingDiagnosticDelegate()  # while it lives, USD's warnings of missing textures
-    with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, told where it matters
+    with suppress(Tf.ErrorException):  # what does not open is a problem of the stage, reported where it matters
         utils.ComputeAllDependencies(stage.GetRootLayer().identifier, collect)
     unsaid.TakeUncoalescedDiagnostics()
     return found

@@ -84,33 +84,38 @@ class Record:
             path: {**mesh.origins, "frames": _array(mesh.frames), "poses": Vt.Int64Array(list(mesh.poses))}
             for path, mesh in self.meshes.items()
         }
-        told: dict[str, Any] = {"form": _FORM, "version": self.version, "meshes": meshes, "options": dict(self.options)}
-        told["asked"] = Vt.StringArray(list(self.asked))
-        told |= {name: at for name in ("before", "after") if (at := getattr(self, name)) is not None}
+        stored: dict[str, Any] = {
+            "form": _FORM,
+            "version": self.version,
+            "meshes": meshes,
+            "options": dict(self.options),
+        }
+        stored["asked"] = Vt.StringArray(list(self.asked))
+        stored |= {name: at for name in ("before", "after") if (at := getattr(self, name)) is not None}
         if self.chunk:
-            told |= {"chunk": self.chunk, "wanted": _array(self.wanted)}
-        layer.customLayerData = {**layer.customLayerData, _KEY: told}
+            stored |= {"chunk": self.chunk, "wanted": _array(self.wanted)}
+        layer.customLayerData = {**layer.customLayerData, _KEY: stored}
 
     @classmethod
     def read(cls, layer: Sdf.Layer) -> Record:
         """Raises Fault where there is none, or one of another kind."""
-        told = layer.customLayerData.get(_KEY)
-        if not isinstance(told, dict):
+        stored = layer.customLayerData.get(_KEY)
+        if not isinstance(stored, dict):
             raise Fault("does not say what it was baked from: it is not finished, or older than skinslide 0.2")
-        if told.get("form") != _FORM:
-            raise Fault(f"was baked by skinslide {told.get('version')}, whose record this one cannot read")
+        if stored.get("form") != _FORM:
+            raise Fault(f"was baked by skinslide {stored.get('version')}, whose record this one cannot read")
         try:
-            return cls._of(told)
+            return cls._of(stored)
         except (AttributeError, KeyError, TypeError, ValueError) as bad:
             raise Fault("says what it was baked from in a way that cannot be read") from bad
 
     @classmethod
-    def _of(cls, told: Mapping[str, Any]) -> Record:
-        meshes = {_prim(path): _mesh(dict(mesh)) for path, mesh in told["meshes"].items()}
-        before, after = (None if told.get(end) is None else float(told[end]) for end in ("before", "after"))
-        asked, wanted = tuple(map(str, told["asked"])), _frames(told.get("wanted", ()))
-        part = (asked, str(told.get("chunk", "")), wanted)
-        return cls(meshes, dict(told["options"]), before, after, *part, str(told["version"]))
+    def _of(cls, stored: Mapping[str, Any]) -> Record:
+        meshes = {_prim(path): _mesh(dict(mesh)) for path, mesh in stored["meshes"].items()}
+        before, after = (None if stored.get(end) is None else float(stored[end]) for end in ("before", "after"))
+        asked, wanted = tuple(map(str, stored["asked"])), _frames(stored.get("wanted", ()))
+        part = (asked, str(stored.get("chunk", "")), wanted)
+        return cls(meshes, dict(stored["options"]), before, after, *part, str(stored["version"]))
 
 
 def joined(records: Sequence[Record]) -> Record:
@@ -129,11 +134,11 @@ def joined(records: Sequence[Record]) -> Record:
     return replace(records[0].whole(), meshes=dict(sorted(meshes.items())), options=options, before=before, after=after)
 
 
-def _mesh(told: dict[str, Any]) -> MeshRecord:
-    frames, poses = _frames(told.pop("frames")), tuple(map(int, told.pop("poses")))
+def _mesh(stored: dict[str, Any]) -> MeshRecord:
+    frames, poses = _frames(stored.pop("frames")), tuple(map(int, stored.pop("poses")))
     if len(poses) != len(frames):
         raise ValueError(poses)
-    return MeshRecord(told, frames, poses)
+    return MeshRecord(stored, frames, poses)
 
 
 def _posed(mesh: MeshRecord) -> dict[float, int]:
@@ -146,8 +151,8 @@ def _prim(path: str) -> str:
     return path
 
 
-def _frames(told: Sequence[float]) -> tuple[float, ...]:
-    return tuple(map(float, told))
+def _frames(stored: Sequence[float]) -> tuple[float, ...]:
+    return tuple(map(float, stored))
 
 
 def _array(frames: Sequence[float]) -> Vt.DoubleArray:
