@@ -1,4 +1,4 @@
-/* Points of a limit surface, for pictures and measures: skinslide_limit_points. */
+/* Points of a limit surface, for pictures and measures, and the faces that have one. */
 #include "limit.h"
 
 /* The faces that places are on, in the order of the mesh, and the place of each in that list. */
@@ -81,16 +81,40 @@ static skinslide_status evaluate_all(const skinslide_mesh *mesh, const chosen_fa
     return status;
 }
 
+static skinslide_status take_subdivided(const skinslide_mesh **mesh, ss_taken_mesh *taken, skinslide_error *error) {
+    skinslide_status status = ss_take_mesh(mesh, taken, error);
+    if (!status && !ss_is_subdivided(*mesh))
+        status = ss_fail(error, SKINSLIDE_BAD_MESH, "the mesh is not subdivided: it has no limit surface");
+    return status ? status : ss_check_subdivision(*mesh, error);
+}
+
+skinslide_status skinslide_limit_faces(const skinslide_mesh *mesh, uint8_t *faces, skinslide_error *error) {
+    if (!faces)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no place for the faces");
+    ss_taken_mesh taken;
+    ss_topology *topology = NULL;
+    ss_memory memory = {0};
+    skinslide_status status = take_subdivided(&mesh, &taken, error);
+    ss_face_surface *kinds = status ? NULL : SS_NEW(&memory, ss_face_surface, mesh->face_count);
+    if (!status && !kinds)
+        status = ss_out_of_memory(error);
+    if (!status)
+        status = ss_topology_create(mesh, &topology, error);
+    if (!status)
+        status = ss_face_surfaces(topology, kinds, error);
+    for (int32_t f = 0; !status && f < mesh->face_count; f++)
+        faces[f] = kinds[f] == SS_SURFACE;
+    ss_topology_destroy(topology);
+    ss_free(&memory);
+    return status;
+}
+
 skinslide_status skinslide_limit_points(const skinslide_mesh *mesh, const float *points, const skinslide_limit_place *places,
                                         int32_t count, float *out, skinslide_error *error) {
     if (count < 0 || (count > 0 && (!places || !out)))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no places, or no room for their points");
     ss_taken_mesh taken;
-    skinslide_status status = ss_take_mesh(&mesh, &taken, error);
-    if (!status && !ss_is_subdivided(mesh))
-        status = ss_fail(error, SKINSLIDE_BAD_MESH, "the mesh is not subdivided: it has no limit surface");
-    if (!status)
-        status = ss_check_subdivision(mesh, error);
+    skinslide_status status = take_subdivided(&mesh, &taken, error);
     if (!status)
         status = ss_check_points(points, mesh->vertex_count, "points", error);
     if (!status)

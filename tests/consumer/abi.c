@@ -272,10 +272,13 @@ static void refine(void) {
     skinslide_mesh smooth = mesh;
     const skinslide_limit_place middle = {2, 0, 0};
     float out[3];
+    uint8_t has[FACES];
     subdivision.scheme = SKINSLIDE_SCHEME_CATMULL_CLARK;
     smooth.subdivision = &subdivision;
     if (said("limit", skinslide_limit_points(&smooth, points, &middle, 1, out, &error)))
         printf("limit %g\n", out[0]);
+    if (said("limit faces", skinslide_limit_faces(&smooth, has, &error)))
+        printf("face 0 has a surface: %d\n", has[0]);
 }
 
 int main(void) {

@@ -173,10 +173,12 @@ static skinslide_status run_all(void *subject, skinslide_error *error) {
     skinslide_workspace *workspace = NULL;
     const skinslide_limit_place place = {5, 0.5f, 0.5f};
     float point[3];
+    uint8_t has_surface[128];
     const skinslide_diagnostics diagnostics = {.size = sizeof(skinslide_diagnostics), .slide = s->slide};
     static const double space[9] = {2, 0, 0, 0, 1, 0, 0, 0, 1};
     skinslide_mesh view = view_of_scene(s);
     view.space = space;
+    assert_true(view.face_count <= (int32_t)sizeof has_surface);
     skinslide_status status = skinslide_slider_create(&view, s->setups, SETUPS, &slider, error);
     if (!status)
         status = skinslide_workspace_create(slider, &options, &workspace, error);
@@ -190,6 +192,8 @@ static skinslide_status run_all(void *subject, skinslide_error *error) {
         status = skinslide_carry(&view, s->turns, SKINSLIDE_NORMALS_FACE_VARYING, s->normals, error);
     if (!status)
         status = skinslide_limit_points(&view, s->points, &place, 1, point, error);
+    if (!status)
+        status = skinslide_limit_faces(&view, has_surface, error);
     skinslide_workspace_destroy(workspace);
     skinslide_slider_destroy(slider);
     return status;

@@ -203,8 +203,8 @@ def three_at_an_edge(mesh):
     indices.Set([*indices.Get(), 312, 313, 0])
 
 
-def hole(mesh):
-    mesh.CreateHoleIndicesAttr([300])
+def hole_of_no_face(mesh):
+    mesh.CreateHoleIndicesAttr([10_000])
     mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.catmullClark)
 
 
@@ -236,9 +236,49 @@ def pin_of_another_count(mesh):
     stages.set_primvar(mesh, "lips", Sdf.ValueTypeNames.FloatArray, "vertex", [1.0] * 40)
 
 
+def holed(stage, scheme=UsdGeom.Tokens.catmullClark) -> Usd.Stage:
+    """The skin as a subdivision surface with holes where it stretches."""
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN))
+    mesh.CreateSubdivisionSchemeAttr(scheme)
+    mesh.CreateHoleIndicesAttr([300, 301])
+    return stage
+
+
+@pytest.mark.parametrize("interpolation", [None, "auto", "limit"])
+def test_faces_without_a_limit_surface_are_left_out(interpolation, shot, tmp_path):
+    """Not in place of the mesh: the others are as they are without holes, and what is made can be baked."""
+    setup_to_file(shot, tmp_path / "without.usda", SKIN, whole=True)
+    character = stages.save(holed(Usd.Stage.Open(str(shot))), tmp_path / "holed.usda")
+    report = setup_to_file(character, tmp_path / "x.usda", SKIN, whole=True, interpolation=interpolation)
+    (note,) = [each for each in report.problems if "limit surface" in each.message]
+    says = "2 faces have no limit surface, face 300 the first, and are left out; --interpolation linear takes them"
+    assert (note.severity, note.prim, note.message) == ("note", SKIN, says)
+    faces, without = (whole(tmp_path / name)[SKIN]["skin"].tolist() for name in ("x.usda", "without.usda"))
+    assert faces == [face for face in without if face not in (300, 301)] != without
+    record = skinslide.bake_to_file(tmp_path / "x.usda", tmp_path / "slid.usda")
+    ((patch,),) = (mesh.patches for mesh in record.meshes)
+    assert (
+        max(patch.column("folded_faces")) == 0
+        and patch.column("stretch_after")[-1] < patch.column("stretch_before")[-1]
+    )
+    assert main(["check", str(tmp_path / "x.usda")]) == 0
+
+
+@pytest.mark.parametrize(
+    ("scheme", "interpolation"), [(UsdGeom.Tokens.catmullClark, "linear"), (UsdGeom.Tokens.none, None)]
+)
+def test_holes_are_faces_without_a_limit_surface_only(scheme, interpolation, shot, tmp_path):
+    setup_to_file(shot, tmp_path / "without.usda", SKIN, whole=True)
+    character = stages.save(holed(Usd.Stage.Open(str(shot)), scheme), tmp_path / "holed.usda")
+    report = setup_to_file(character, tmp_path / "x.usda", SKIN, whole=True, interpolation=interpolation)
+    assert not [each for each in report.problems if "limit surface" in each.message]
+    faces, without = (whole(tmp_path / name)[SKIN]["skin"].tolist() for name in ("x.usda", "without.usda"))
+    assert faces == without and 300 in faces
+
+
 BAD = {
     "an edge of three faces": (three_at_an_edge, None, "faces"),
-    "holes in a limit surface": (hole, None, "face 300 has no limit surface"),
+    "a hole that is no face": (hole_of_no_face, None, "10000"),
     "no rest": (without_rest, None, "rest"),
     "a sample that is not finite": (not_finite, FRAMES[1], "points: vertex 7 is not finite"),
     "a sample of another count": (other_count, FRAMES[1], "points has 5 values"),

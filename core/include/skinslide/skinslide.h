@@ -635,6 +635,13 @@ typedef struct skinslide_limit_place {
     float s, t;     /* 0..1 */
 } skinslide_limit_place;
 
+/* Which faces of a subdivided mesh have a limit surface, so that a patch of interpolation limit may have them: not its holes,
+ * none at a boundary that is not interpolated, and none that skinslide_limit_points finds unsupported.
+ *   mesh   in   rest_points are not read
+ *   faces  out  [face_count] 1 or 0
+ * Fails with BAD_ARGUMENT (NULL), BAD_MESH (as above, or a mesh that is not subdivided), UNSUPPORTED, OUT_OF_MEMORY. */
+SKINSLIDE_API skinslide_status skinslide_limit_faces(const skinslide_mesh *mesh, uint8_t *faces, skinslide_error *error);
+
 /* Points of the limit surface of a subdivided mesh.
  *   mesh     in   rest_points are not read
  *   points   in   [vertex_count][3]

@@ -317,6 +317,48 @@ static void awkward_faces_give_parameters(void **state) {
     free_mesh(&mesh);
 }
 
+/* ---- Which faces have one ---- */
+
+/* As a place on each of them says: those with holes, and at boundaries that are interpolated or not. */
+static void faces_with_a_surface(void **state) {
+    (void)state;
+    const int32_t holes[2] = {1, 6};
+    skinslide_error error;
+    for (int32_t i = 0; i < MESH_COUNT; i++)
+        for (int rule = SKINSLIDE_BOUNDARY_RULE_EDGE_AND_CORNER; rule <= SKINSLIDE_BOUNDARY_RULE_NONE; rule++) {
+            test_mesh mesh = nth_mesh(i);
+            skinslide_mesh view = view_of(&mesh);
+            skinslide_subdivision own = {sizeof own, .scheme = SKINSLIDE_SCHEME_CATMULL_CLARK};
+            uint8_t *has = malloc((size_t)mesh.face_count);
+            own.boundary_rule = (skinslide_boundary_rule)rule, own.hole_count = mesh.face_count > 6 ? 2 : 1;
+            own.hole_indices = holes, view.subdivision = &own;
+            assert_ok(skinslide_limit_faces(&view, has, &error), &error);
+            assert_int_equal(has[1], 0);
+            for (int32_t f = 0, c = 0; f < mesh.face_count; c += mesh.face_counts[f++]) {
+                float out[3];
+                const skinslide_limit_place place = {c, 0.5f, 0.5f};
+                skinslide_status status = skinslide_limit_points(&view, mesh.points, &place, 1, out, &error);
+                assert_int_equal(has[f], status == SKINSLIDE_OK);
+                assert_true(!status || status == SKINSLIDE_BAD_PATCH || status == SKINSLIDE_UNSUPPORTED);
+            }
+            free(has);
+            free_mesh(&mesh);
+        }
+}
+
+static void faces_that_nobody_asks_for(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(2, 2);
+    skinslide_mesh view = view_of(&mesh);
+    uint8_t has[4] = {7, 7, 7, 7};
+    skinslide_error error;
+    assert_fails(skinslide_limit_faces(&view, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "no place for the faces");
+    assert_fails(skinslide_limit_faces(&view, has, &error), &error, SKINSLIDE_BAD_MESH,
+                 "the mesh is not subdivided: it has no limit surface");
+    assert_int_equal(has[0], 7);
+    free_mesh(&mesh);
+}
+
 /* ---- Bad input ---- */
 
 static void expect_bad(const skinslide_subdivision *own, skinslide_status expected, const char *text) {
@@ -490,6 +532,8 @@ int main(void) {
         cmocka_unit_test(corners_are_found_at_corners),
         cmocka_unit_test(a_quad_by_hand),
         cmocka_unit_test(awkward_faces_give_parameters),
+        cmocka_unit_test(faces_with_a_surface),
+        cmocka_unit_test(faces_that_nobody_asks_for),
         cmocka_unit_test(bad_subdivisions_are_named),
         cmocka_unit_test(bad_places_are_named),
         cmocka_unit_test(faces_that_cannot_be_subdivided),

@@ -11,6 +11,24 @@ from skinslide.arrays.setups import Subdivision
 from skinslide.arrays.structs import Arguments
 
 
+def limit_faces(face_counts: np.ndarray, face_indices: np.ndarray, subdivision: Subdivision) -> np.ndarray:
+    """Which faces of a subdivided mesh have a limit surface, so that a patch of interpolation limit may have them.
+
+    Args:
+        face_counts: Vertices of each face (F,).
+        face_indices: Vertices (sum of counts,), face by face.
+        subdivision: How it is subdivided.
+
+    Returns:
+        bool (F,).
+    """
+    points = np.zeros((int(face_indices.max(initial=-1)) + 1, 3), np.float32)
+    native, found = Arguments(), np.empty(len(face_counts), np.uint8)
+    mesh = native.mesh(face_counts, face_indices, points, subdivision)
+    call(lib.skinslide_limit_faces, ffi.addressof(mesh), writable("uint8_t[]", found))
+    return found.astype(bool)
+
+
 def limit_points(
     face_counts: np.ndarray,
     face_indices: np.ndarray,

@@ -101,7 +101,8 @@ def _setup_whole(stage: Usd.Stage, asked: SetupOptions) -> CheckReport:
     with without_earlier_bake(stage, paths):
         moving, barred = moving_meshes(stage, paths)
         _check_pins([mesh.prim for mesh in moving], asked.pin)
-        faces, notes, wrong = needed_faces(moving, None if asked.frames is None else checked_frames(asked.frames))
+        frames = None if asked.frames is None else checked_frames(asked.frames)
+        faces, notes, wrong = needed_faces(moving, frames, asked.interpolation)
     wrong = [*barred, *wrong]
     while faces:
         try:

@@ -11,13 +11,16 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from skinslide.arrays.geometry import least_stretch, mask_stretched, note_stretch
-from skinslide.problems import Fault, FrameProblem, Problem, SliderError
+from skinslide.arrays.limit import limit_faces
+from skinslide.problems import Fault, FrameProblem, Problem, SliderError, counted
 from skinslide.shot.plan import beyond
 from skinslide.stage.finding import is_skinned, prims_at, slidable
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.reading import read_moving
+from skinslide.stage.taking import take_subdivision
 from skinslide.stage.values import FIRST
 
+_BY_SURFACE = (None, "auto", "limit")
 PURPOSES = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
 
 
@@ -60,17 +63,19 @@ def _is_rendered(prim: Usd.Prim) -> bool:
 
 
 def needed_faces(
-    moving: Sequence[Moving], frames: Sequence[float] | None
+    moving: Sequence[Moving], frames: Sequence[float] | None, interpolation: str | None
 ) -> tuple[dict[str, np.ndarray], list[Problem], list[Problem]]:
     """The faces of which each mesh needs a patch, by the frames given or every sample.
 
     Args:
         moving: Meshes.
         frames: Those to look at; None: every sample.
+        interpolation: Of the patches; None: as the schema has it.
 
     Returns:
-        Of each mesh that needs one, by its path, whether a patch needs each face, bool (F,); notes of the others, and
-        warnings of frames beyond samples; an error for each mesh that cannot be looked at.
+        Of each mesh that needs one, by its path, whether a patch needs each face, bool (F,); notes of the others and of
+        faces that cannot be had, and warnings of frames beyond samples; an error for each mesh that cannot be looked
+        at.
     """
     found, notes, wrong = dict[str, np.ndarray](), list[Problem](), list[Problem]()
     for prim, pose in moving:
@@ -85,11 +90,29 @@ def needed_faces(
             wrong.append(bad.problem)
             continue
         notes += beyond(mesh, frames or ())
-        if faces.any():
-            found[path] = faces
-        else:
+        if not faces.any():
             notes.append(_without_patch("note", path, None, never("no edge")))
+            continue
+        missing = _without_surface(mesh, faces) if interpolation in _BY_SURFACE else np.zeros_like(faces)
+        if missing.any():
+            notes.append(Problem("note", path, None, None, _told(missing)))
+        found[path] = faces & ~missing
     return found, notes, wrong
+
+
+def _without_surface(mesh: PatchedMesh, faces: np.ndarray) -> np.ndarray:
+    """Which of the faces, bool (F,), have no limit surface, where the mesh has one."""
+    with suppress(SliderError):  # what is wrong with it a check says
+        subdivision = None if take_subdivision(mesh.prim, mesh.meaning) else mesh.meaning.subdivision()
+        if subdivision:
+            return faces & ~limit_faces(mesh.face_counts, mesh.face_indices, subdivision)
+    return np.zeros_like(faces)
+
+
+def _told(missing: np.ndarray) -> str:
+    said = counted(int(np.count_nonzero(missing)), "face has", "faces have")
+    first = int(np.flatnonzero(missing)[0])
+    return f"{said} no limit surface, face {first} the first, and are left out; --interpolation linear takes them"
 
 
 def left_out(wrong: Iterable[Problem]) -> Iterator[Problem]:
