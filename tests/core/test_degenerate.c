@@ -7,27 +7,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Those that make a slide in one step, and that which goes without a plane. */
-static const skinslide_rule rules[] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_FAST, SKINSLIDE_RULE_EVEN};
+enum { RULES = 4 };
+static const skinslide_rule rules[RULES] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_FAST, SKINSLIDE_RULE_EVEN,
+                                            SKINSLIDE_RULE_RELAXED};
 
 static void expect_finite(const float *points, int32_t vertex_count) {
     for (int32_t k = 0; k < 3 * vertex_count; k++)
         assert_true(isfinite(points[k]));
 }
 
-/* Rest keeps its bits; any pose gives finite points. */
+/* By any rule rest keeps its bits, and any pose gives finite points. */
 static void check_poses(const test_mesh *mesh, skinslide_patch_setup choices) {
-    rig r = rig_of(mesh, choices);
-    float *slid = slide_with(&r, mesh, mesh->points, NULL, NULL);
-    assert_same_bytes(slid, mesh->points, POINT_BYTES(mesh));
-    free(slid);
-    for (uint64_t seed = 0; seed < 5; seed++) {
-        float *points = random_pose(mesh, seed);
-        slid = slide_with(&r, mesh, points, NULL, NULL);
-        expect_finite(slid, mesh->vertex_count);
-        free(points), free(slid);
+    for (size_t rule = 0; rule < RULES; rule++) {
+        choices.rule = rules[rule];
+        rig r = rig_of(mesh, choices);
+        float *slid = slide_with(&r, mesh, mesh->points, NULL, NULL);
+        assert_same_bytes(slid, mesh->points, POINT_BYTES(mesh));
+        free(slid);
+        for (uint64_t seed = 0; seed < 5; seed++) {
+            float *points = random_pose(mesh, seed);
+            slid = slide_with(&r, mesh, points, NULL, NULL);
+            expect_finite(slid, mesh->vertex_count);
+            free(points), free(slid);
+        }
+        free_rig(&r);
     }
-    free_rig(&r);
 }
 
 static skinslide_patch_info info_of(const rig *r) {
@@ -41,12 +45,16 @@ static void patches_with_nothing_free(void **state) {
     (void)state;
     for (int32_t sides = 3; sides < 9; sides++) {
         test_mesh mesh = polygon(sides);
-        rig r = rig_of(&mesh, setup_of(NULL, 0));
-        float *points = shaken(&mesh, 1, 1), *slid = slide_with(&r, &mesh, points, NULL, NULL);
-        assert_same_bytes(slid, points, POINT_BYTES(&mesh));
-        assert_int_equal(info_of(&r).free_count, 0);
-        free(points), free(slid);
-        free_rig(&r);
+        skinslide_patch_setup setup = setup_of(NULL, 0);
+        for (size_t rule = 0; rule < RULES; rule++) {
+            setup.rule = rules[rule];
+            rig r = rig_of(&mesh, setup);
+            float *points = shaken(&mesh, 1, 1), *slid = slide_with(&r, &mesh, points, NULL, NULL);
+            assert_same_bytes(slid, points, POINT_BYTES(&mesh));
+            assert_int_equal(info_of(&r).free_count, 0);
+            free(points), free(slid);
+            free_rig(&r);
+        }
         free_mesh(&mesh);
     }
 }
@@ -66,14 +74,18 @@ static test_mesh grid_with_isolated(void) {
 static void isolated_vertices_keep_their_bits(void **state) {
     (void)state;
     test_mesh mesh = grid_with_isolated();
-    check_poses(&mesh, setup_of(NULL, 0));
-    rig r = rig_of(&mesh, setup_of(NULL, 0));
-    float *points = shaken(&mesh, 1, 0.4), *slid = slide_with(&r, &mesh, points, NULL, NULL);
-    for (int32_t v = 0; v < 50; v += 2)
-        assert_same_bytes(slid + 3 * v, points + 3 * v, sizeof(float[3]));
-    assert_true(largest_difference(slid, points, 150) > 0.01);
-    free(points), free(slid);
-    free_rig(&r);
+    skinslide_patch_setup setup = setup_of(NULL, 0);
+    check_poses(&mesh, setup);
+    for (size_t rule = 0; rule < RULES; rule++) {
+        setup.rule = rules[rule];
+        rig r = rig_of(&mesh, setup);
+        float *points = shaken(&mesh, 1, 0.4), *slid = slide_with(&r, &mesh, points, NULL, NULL);
+        for (int32_t v = 0; v < 50; v += 2)
+            assert_same_bytes(slid + 3 * v, points + 3 * v, sizeof(float[3]));
+        assert_true(largest_difference(slid, points, 150) > 0.01);
+        free(points), free(slid);
+        free_rig(&r);
+    }
     free_mesh(&mesh);
 }
 
@@ -84,9 +96,9 @@ static void isolated_vertices_are_nowhere(void **state) {
     for (int32_t v = 0; v < 50; v += 2)
         nowhere.points[3 * v + v % 3] = v % 4 ? NAN : INFINITY;
     float *points = shaken(&mesh, 1, 0.4);
-    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
-        skinslide_patch_setup setup = setup_of(NULL, 0);
-        setup.rule = rules[i];
+    skinslide_patch_setup setup = setup_of(NULL, 0);
+    for (size_t rule = 0; rule < RULES; rule++) {
+        setup.rule = rules[rule];
         rig r = rig_of(&mesh, setup), other = rig_of(&nowhere, setup);
         float *slid = slide_with(&r, &mesh, points, NULL, NULL), *same = slide_with(&other, &nowhere, points, NULL, NULL);
         assert_same_bytes(same, slid, POINT_BYTES(&mesh));
@@ -178,7 +190,7 @@ static void edges_of_no_length_do_not_fold(void **state) {
 static void a_pose_in_one_place(void **state) {
     (void)state;
     for (int32_t i = 0; i < FIXTURE_COUNT; i++)
-        for (size_t rule = 0; rule < sizeof rules / sizeof *rules; rule++) {
+        for (size_t rule = 0; rule < RULES; rule++) {
             fixture f = make_fixture(i);
             rig r = rig_of(&f.mesh, (skinslide_patch_setup){.rule = rules[rule]});
             float *points = copy_points(&f.mesh);
@@ -201,14 +213,19 @@ static void flat_and_sliver_poses(void **state) {
     for (int32_t i = 0; i < FIXTURE_COUNT; i++)
         for (int32_t squeeze = 0; squeeze < 3; squeeze++) {
             fixture f = make_fixture(i);
-            rig r = rig_of(&f.mesh, setup_of(NULL, 0));
+            skinslide_patch_setup setup = setup_of(NULL, 0);
             float *points = random_pose(&f.mesh, 1);
             for (int32_t k = 0; k < 3 * f.mesh.vertex_count; k++)
                 points[k] *= k % 3 == 0 ? 1 : squeeze == 0 ? 0 : squeeze == 1 ? 1e-7f : k % 3 == 1 ? 1e-20f : 1;
-            float *slid = slide_with(&r, &f.mesh, points, NULL, NULL);
-            expect_finite(slid, f.mesh.vertex_count);
-            free(points), free(slid);
-            free_rig(&r);
+            for (size_t rule = 0; rule < RULES; rule++) {
+                setup.rule = rules[rule];
+                rig r = rig_of(&f.mesh, setup);
+                float *slid = slide_with(&r, &f.mesh, points, NULL, NULL);
+                expect_finite(slid, f.mesh.vertex_count);
+                free(slid);
+                free_rig(&r);
+            }
+            free(points);
             free_mesh(&f.mesh);
         }
 }
@@ -238,13 +255,18 @@ static void sizes_at_the_ends_of_float(void **state) {
         float *points = random_pose(&mesh, 2);
         for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
             mesh.points[k] *= scale, points[k] *= scale;
-        rig r = rig_of(&mesh, setup_of(NULL, 0));
-        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
-        float *slid = slide_with(&r, &mesh, points, NULL, &result);
-        expect_finite(slid, mesh.vertex_count);
-        assert_true(result.slid_vertices > 0);
-        free(points), free(slid);
-        free_rig(&r);
+        skinslide_patch_setup setup = setup_of(NULL, 0);
+        for (size_t rule = 0; rule < RULES; rule++) {
+            setup.rule = rules[rule];
+            rig r = rig_of(&mesh, setup);
+            skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+            float *slid = slide_with(&r, &mesh, points, NULL, &result);
+            expect_finite(slid, mesh.vertex_count);
+            assert_true(result.slid_vertices > 0);
+            free(slid);
+            free_rig(&r);
+        }
+        free(points);
         free_mesh(&mesh);
     }
 }
@@ -258,14 +280,19 @@ static void either_winding_slides(void **state) {
         int32_t swap = mesh.face_indices[c + 1];
         mesh.face_indices[c + 1] = mesh.face_indices[c + 3], mesh.face_indices[c + 3] = swap;
     }
-    check_poses(&mesh, setup_of(NULL, 0));
-    rig r = rig_of(&mesh, setup_of(NULL, 0));
-    skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
-    float *slid = slide_with(&r, &mesh, points, NULL, &result);
-    assert_int_equal(result.folded_faces, 0);
-    assert_true(result.slid_vertices > 40);
-    free(points), free(slid);
-    free_rig(&r);
+    skinslide_patch_setup setup = setup_of(NULL, 0);
+    check_poses(&mesh, setup);
+    for (size_t rule = 0; rule < RULES; rule++) {
+        setup.rule = rules[rule];
+        rig r = rig_of(&mesh, setup);
+        skinslide_patch_result result = SKINSLIDE_PATCH_RESULT_DEFAULT;
+        float *slid = slide_with(&r, &mesh, points, NULL, &result);
+        assert_int_equal(result.folded_faces, 0);
+        assert_true(result.slid_vertices > 40);
+        free(slid);
+        free_rig(&r);
+    }
+    free(points);
     free_mesh(&mesh);
 }
 
