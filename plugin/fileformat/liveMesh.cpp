@@ -6,6 +6,7 @@
 #include "pythonLock.h"
 
 #include "pxr/base/tf/diagnostic.h"
+#include "pxr/base/tf/stringUtils.h"
 #include "pxr/usd/sdf/types.h"
 
 #include <algorithm>
@@ -89,6 +90,15 @@ void LiveMesh::sayFaults(double time, const VtVec3fArray &cached) {
     skinslide_error told;
     if (skinslide_slider_check_points(_slider, floatsOf(cached), &passed, &told, nullptr) == SKINSLIDE_OK && passed)
         sayOnce("points", time, told.message);
+}
+
+// What is degraded: of each kind the first frame at which a patch is.
+void LiveMesh::sayDegraded(double time, const skinslide_workspace *workspace) {
+    skinslide_error told;
+    for (int32_t patch = 0; skinslide_workspace_degraded(workspace, patch, 0, nullptr) >= 0; patch++)
+        for (int32_t kind = 0, count = 0; (count = skinslide_workspace_degraded(workspace, patch, kind, &told)) >= 0; kind++)
+            if (count > 0)
+                sayOnce(TfStringPrintf("patch %d %d", patch, kind), time, told.message);
 }
 
 void LiveMesh::sayFaults(const Derived &derived, double time) {
@@ -244,6 +254,7 @@ Frame LiveMesh::slide(double time) {
         giveBack(std::move(work));
         throw;
     }
+    sayDegraded(time, work.workspace.get());
     giveBack(std::move(work));
     sayFaults(time, cached);
     int arrays = record.value().IsHolding<VtVec3fArray>() ? 1 : 2;

@@ -23,7 +23,7 @@ class LiveMesh {
     }
     // Each gives the value at a time of the layer, Attribute::defaultTime where the mesh has no samples. Where the points
     // cannot be slid there is one message for the mesh and time, and the cache's own value; where what follows from them cannot
-    // be recomputed, a message and a block.
+    // be recomputed, a message and a block. What is degraded, such as folded faces, is said once of each kind and patch.
     VtValue points(double time);
     VtValue extent(double time);
     VtValue derived(const Derived &derived, double time);
@@ -52,6 +52,7 @@ class LiveMesh {
     void sayOnce(const std::string &what, double time, const std::string &message);
     void sayFaults(double time, const VtVec3fArray &cached);
     void sayFaults(const Derived &derived, double time);
+    void sayDegraded(double time, const skinslide_workspace *workspace);
 
     const std::shared_ptr<const PatchedMesh> _mesh;
     const skinslide_lookup _lookup;

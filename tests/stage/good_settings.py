@@ -75,7 +75,11 @@ def triangles() -> stages.Shape:
 CONTROLS = [
     Good("envelope: half", setting("envelope", 0.5)),
     Good("envelope: 0", setting("envelope", 0.0), slides=False),
-    Good("envelope: above 1 and below 0", sampled("envelope", {1001: -1.0, 1003: 3.0})),
+    Good(
+        "envelope: above 1 and below 0",
+        sampled("envelope", {1001: -1.0, 1003: 3.0}),
+        warns="1 weight or envelope outside 0..1, clamped",
+    ),
     Good("envelope: blocked", all_of(setting("envelope", 0.0), blocked(f"{PLACE}:envelope"))),
     Good(
         "envelope: blocked at a sample",
@@ -106,7 +110,11 @@ CONTROLS = [
         refuses=f"{PLACE}:envelope comes from value clips, {CANNOT_READ}",
     ),
     Good("weight: by vertex", painted(WEIGHT, "vertex", ramp(49, 0, 1))),
-    Good("weight: outside 0 to 1", painted(WEIGHT, "vertex", ramp(49, -1, 2))),
+    Good(
+        "weight: outside 0 to 1",
+        painted(WEIGHT, "vertex", ramp(49, -1, 2)),
+        warns="12 weights or envelopes outside 0..1, clamped",
+    ),
     Good("weight: constant", painted(WEIGHT, "constant", [0.5])),
     Good("weight: a constant that is no array", put(WEIGHT, Types.Float, "constant", 0.5)),
     Good("weight: a relationship counts for nothing", related(f"primvars:{WEIGHT}")),

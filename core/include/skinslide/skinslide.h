@@ -573,6 +573,17 @@ SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, c
                                                const skinslide_controls *controls, float *slid, skinslide_patch_result *results,
                                                skinslide_error *error);
 
+/* What makes a result less than it should be: each kind, from 0 on, is a count of skinslide_patch_result.
+ *   told  out  the count in words, such as "3 faces turned over in the embedding"; may be NULL
+ * Returns the name of its member, such as "folded_faces"; NULL beyond the last kind. */
+SKINSLIDE_API const char *skinslide_degradation(int32_t kind, int32_t count, skinslide_error *told);
+
+/* The same of a patch in the last frame that this workspace slid, where nothing was measured, too.
+ *   told  out  where there are any, "patch elbow: 3 faces turned over in the embedding"; may be NULL
+ * Returns the count; -1 beyond the last patch or kind, or before the first frame. One thread at a time for a workspace. */
+SKINSLIDE_API int32_t skinslide_workspace_degraded(const skinslide_workspace *workspace, int32_t patch, int32_t kind,
+                                                   skinslide_error *told);
+
 /* The embedding Ud of a patch in the last frame that this workspace slid.
  *   uv  out [vertex_count of the patch][2]
  * Fails with BAD_ARGUMENT where there is no such patch or no frame yet, UNSUPPORTED where the rule has none. */

@@ -23,6 +23,22 @@ def version() -> str:
     return text(lib.skinslide_version())
 
 
+@cache
+def degradations() -> tuple[str, ...]:
+    """The fields of a PatchResult that say it is less than it should be, in the order of their kinds."""
+    found: list[str] = []
+    while name := lib.skinslide_degradation(len(found), 0, ffi.NULL):
+        found.append(text(name))
+    return tuple(found)
+
+
+def degradation_text(kind: int, count: int) -> str:
+    """So many of a kind in words."""
+    told = ffi.new("skinslide_error *")
+    lib.skinslide_degradation(kind, count, told)
+    return text(told.message)
+
+
 def call(function: Any, *arguments: Any) -> None:
     error = ffi.new("skinslide_error *")
     status = function(*arguments, error)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from skinslide.arrays.native import version
+from skinslide.arrays.native import degradation_text, degradations, version
 from skinslide.arrays.records import PatchInfo, PatchResult, Roughness
 from skinslide.problems import Problem, counted, frame_text, lines_text, problem_lines
 from skinslide.shot.rows import Moments, Rows
@@ -21,22 +21,11 @@ if TYPE_CHECKING:
 STAGES = ("density", "embed", "relax", "locate", "interpolate")
 
 # Counts that say a result is less than it should be.
-_EDGES, _FACES, _VERTICES = ("edge", "edges"), ("face", "faces"), ("vertex", "vertices")
+_EDGES, _FACES = ("edge", "edges"), ("face", "faces")
 _AT_REST = {
     "zero_length_edges": (_EDGES, "of no length at rest, taken as 1e-6 of the mean edge"),
     "collapsed_faces": (_FACES, "of no area in the rest embedding"),
     "folded_faces": (_FACES, "turned over in the rest embedding"),
-}
-_AT_FRAMES = {
-    "clamped_vertices": (_VERTICES, "looked up outside every face, put on the nearest"),
-    "clamped_weights": (("weight or envelope", "weights or envelopes"), "outside 0..1, clamped"),
-    "damped_vertices": (
-        _VERTICES,
-        "brought back towards the flat faces, where the limit surface rings",
-    ),
-    "folded_faces": (_FACES, "turned over in the embedding"),
-    "zero_length_edges": (_EDGES, "of no length, taken as 1e-6 of the mean rest edge"),
-    "lost_textures": (("texture", "textures"), "lost by a failing device, each vertex walked for instead"),
 }
 
 
@@ -221,13 +210,9 @@ class PatchReport:
         Returns:
             The warnings.
         """
-        at_rest = [(None, getattr(self.info, name), words, text) for name, (words, text) in _AT_REST.items()]
-        at_frames = [self._most(name, words, text) for name, (words, text) in _AT_FRAMES.items()]
-        warned = [
-            Problem("warning", prim, self.label, frame, f"{counted(count, *words)} {text}")
-            for frame, count, words, text in [*at_rest, *at_frames]
-            if count
-        ]
+        counts = [(getattr(self.info, name), words, text) for name, (words, text) in _AT_REST.items()]
+        at_rest = [(None, f"{counted(count, *words)} {text}") for count, words, text in counts if count]
+        warned = [Problem("warning", prim, self.label, *said) for said in [*at_rest, *self._degraded()]]
         return warned + self._stretched(prim)
 
     def _stretched(self, prim: str) -> list[Problem]:
@@ -241,9 +226,12 @@ class PatchReport:
         message = f"sliding adds stretch: {before} in the cache, {after} slid{_share(added > _NO_STRETCH)}"
         return [Problem("warning", prim, self.label, self.frames[worst], message)]
 
-    def _most(self, name: str, words: tuple[str, str], text: str) -> tuple[float | None, int, tuple[str, str], str]:
-        counts = self.column(name)
-        return self.frames[counts.argmax()], counts.max().item(), words, text + _share(counts)
+    def _degraded(self) -> Iterator[tuple[float | None, str]]:
+        """Of each kind that there is, the frame at which there is most of it, and what to say."""
+        for kind, name in enumerate(degradations()):
+            counts = self.column(name)
+            if counts.any():
+                yield self.frames[counts.argmax()], degradation_text(kind, counts.max().item()) + _share(counts)
 
 
 def _share(found: np.ndarray) -> str:
