@@ -19,11 +19,18 @@ class Idle(Generic[T]):
     @contextmanager
     def taken(self) -> Iterator[T]:
         """One of them, or a new one, for the calling thread alone."""
-        with self._lock:
-            own = self._made.pop() if self._made else None
-        own = self._make() if own is None else own
+        own = self.take()
         try:
             yield own
         finally:
-            with self._lock:
-                self._made.append(own)
+            self.give_back(own)
+
+    def take(self) -> T:
+        """The same, until it is given back."""
+        with self._lock:
+            own = self._made.pop() if self._made else None
+        return self._make() if own is None else own
+
+    def give_back(self, own: T) -> None:
+        with self._lock:
+            self._made.append(own)

@@ -135,10 +135,13 @@ class Slider:
         given = native.frame_controls(controls, self._names, self._sizes)
         slid = np.empty((self._sizes.vertices, 3), np.float32)
         results = new_array("patch_result", len(self.patches)) if measures else ffi.NULL
-        with self._workspaces.taken() as workspace:
+        workspace = self._workspaces.take()
+        try:
             call(lib.skinslide_slide, workspace.pointer, cached, given, writable("float[]", slid), results)
             planes = self._frame_embeddings(workspace) if embeddings else None
             turned = self._frame_turns(workspace, cached) if turns else None
+        finally:
+            self._workspaces.give_back(workspace)
         measured = tuple(read(PatchResult, result) for result in results) if measures else ()
         return Frame(slid, measured, planes, turned)
 

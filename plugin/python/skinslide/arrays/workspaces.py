@@ -25,16 +25,25 @@ class Workspaces:
     @contextmanager
     def taken(self) -> Iterator[Handle]:
         """A workspace for the calling thread alone."""
-        with self._idle.taken() as workspace:
-            with self._lock:
-                self._busy.append(workspace)
-                if self._stopped:
-                    lib.skinslide_workspace_interrupt(workspace.pointer)
-            try:
-                yield workspace
-            finally:
-                with self._lock:
-                    self._busy.remove(workspace)
+        workspace = self.take()
+        try:
+            yield workspace
+        finally:
+            self.give_back(workspace)
+
+    def take(self) -> Handle:
+        """The same, until it is given back: what each frame does, since a context of its own takes longer."""
+        workspace = self._idle.take()
+        with self._lock:
+            self._busy.append(workspace)
+            if self._stopped:
+                lib.skinslide_workspace_interrupt(workspace.pointer)
+        return workspace
+
+    def give_back(self, workspace: Handle) -> None:
+        with self._lock:
+            self._busy.remove(workspace)
+        self._idle.give_back(workspace)
 
     def stop(self) -> None:
         """Makes what is done with any of them, now or later, fail soon."""
