@@ -6,7 +6,6 @@ Of each attribute the first frame's value is the default, and what differs from 
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -33,8 +32,8 @@ class Joined:
             check_output(Path(cache), [each for each in EXTENSIONS if each != EXTENSION])
         self._cache, self._frames = Path(cache).resolve(), list[int]()
         self._layer = Sdf.Layer.CreateAnonymous(".usdc")
-        self._kept = self._cache.with_name(partial_name(self._cache, secrets.token_hex(4)))
-        self.part = str(self._cache.with_name(partial_name(self._cache.with_suffix(".usdc"), secrets.token_hex(4))))
+        self._kept = self._cache.with_name(partial_name(self._cache))
+        self.part = str(self._cache.with_name(partial_name(self._cache.with_suffix(".usdc"))))
 
     def __enter__(self) -> Joined:
         return self

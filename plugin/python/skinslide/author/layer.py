@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -50,7 +49,7 @@ def author_layer(stage: StageLike, output: StrPath, force: bool, author: Callabl
 def _starting_layer(stage: Usd.Stage, path: Path, output: Path, force: bool) -> Sdf.Layer:
     check_not_input(output, stage, path)
     # Named as if beside the output, so that relative paths mean what they will mean there; never saved under that name.
-    place = output.absolute().with_name(partial_name(output.with_suffix(".usda"), secrets.token_hex(4)))
+    place = output.absolute().with_name(partial_name(output.with_suffix(".usda")))
     layer = Sdf.Layer.New(Sdf.FileFormat.FindById("usda"), str(place))
     if output.exists() and not force:
         layer.TransferContent(_existing_layer(output))

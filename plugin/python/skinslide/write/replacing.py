@@ -6,7 +6,6 @@ import fcntl
 import glob
 import os
 import re
-import secrets
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -43,7 +42,7 @@ def replacing(output: Path, if_still: Callable[[], bool] = lambda: True) -> Iter
     if_still  asked last; where it says no, Changed is raised. Nothing else of ours is put in the folder meanwhile
     """
     output = output.resolve()
-    partial = output.with_name(partial_name(output, secrets.token_hex(4)))
+    partial = output.with_name(partial_name(output))
     with signals_as_exceptions():
         try:
             with writing(output):
@@ -63,14 +62,14 @@ def replacing(output: Path, if_still: Callable[[], bool] = lambda: True) -> Iter
                 left.unlink(missing_ok=True)
 
 
-def partial_name(output: Path, token: str = 8 * "0") -> str:
-    """The name under which an output is written, beside it."""
-    return f".{output.stem}.{token}{output.suffix}"
+def partial_name(output: Path) -> str:
+    """A name under which an output is written, beside it: another each time."""
+    return f".{output.stem}.{os.urandom(4).hex()}{output.suffix}"
 
 
 def check_writable(output: Path) -> None:
     """Raises StageError where no file can be made beside an output, whose folder may be missing still."""
-    probe = output.resolve().with_name(partial_name(output, secrets.token_hex(4)))
+    probe = output.resolve().with_name(partial_name(output))
     if probe.parent.is_dir():
         with writing(output):
             probe.touch(exist_ok=False)
