@@ -106,6 +106,18 @@ def test_a_bake_loads_nothing_that_it_seldom_needs(tmp_path):
     assert said.splitlines()[-1].strip() == "0"
 
 
+def test_a_page_of_shots_needs_no_usd(tmp_path):
+    said = run_python(f"""
+        import sys
+        from skinslide.command.start import main
+        sys.modules["pxr"] = None  # whoever imports it gets an ImportError
+        sys.argv = ["skinslide", "report", {str(tmp_path)!r}]
+        sys.stderr = sys.stdout
+        print(main())
+    """)
+    assert said.splitlines()[-1] == "2" and "json" in said
+
+
 def test_a_slider_needs_no_usd():
     said = run_python("""
         import sys

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
@@ -225,6 +226,12 @@ def core_problem(prim: str, patches: Sequence[str], message: str, frame: float |
             piece = f"{label[2]}: " if label[2] else ""
             return Problem("error", prim, patch, frame, piece + message[label.end() :])
     return Problem("error", prim, None, frame, message)
+
+
+def usd_errors() -> tuple[type[BaseException], ...]:
+    """USD's exception, or nothing if USD is not loaded, so that it is not loaded for this."""
+    usd = sys.modules.get("pxr.Tf")
+    return (usd.ErrorException,) if usd else ()
 
 
 def usd_message(error: Tf.ErrorException) -> str:

@@ -18,6 +18,7 @@ from skinslide.problems import (
     UsageError,
     one_line,
     problem_lines,
+    usd_errors,
     usd_message,
 )
 
@@ -42,13 +43,7 @@ _EXPECTED = (
 
 def expected() -> tuple[type[BaseException], ...]:
     """What a command may raise; anything else is a defect, and ends in a traceback."""
-    return _EXPECTED + _usd_errors()
-
-
-def _usd_errors() -> tuple[type[BaseException], ...]:
-    """USD's exception, or nothing if USD is not loaded, so that it is not loaded for this."""
-    usd = sys.modules.get("pxr.Tf")
-    return (usd.ErrorException,) if usd else ()
+    return _EXPECTED + usd_errors()
 
 
 def prepare_streams() -> None:
@@ -124,7 +119,7 @@ def failed(error: BaseException, json: bool, done: str = "", words: Sequence[str
 
 
 def _verdict(error: BaseException, done: str, words: Sequence[str]) -> tuple[int, Sequence[Problem]]:
-    if isinstance(error, _usd_errors()):
+    if isinstance(error, usd_errors()):
         return FAILED, [_plain(f"USD: {usd_message(error)}")]
     match error:
         case StageProblems():

@@ -13,15 +13,17 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from skinslide.picture.page import render
 from skinslide.problems import Problem, UsageError, counted, lines_text, problem_lines
 from skinslide.shot.report import RECORD, far_apart, roughness_text, stretch_text, time_text
-from skinslide.stage.given import StrPath
 from skinslide.write.place import check_output, given_output
 from skinslide.write.replacing import replacing, writing
+
+if TYPE_CHECKING:
+    from skinslide.stage.given import StrPath
 
 _PAGE = "shots.html"
 

@@ -6,11 +6,14 @@ import errno
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from skinslide.arrays.schema import say
 from skinslide.problems import PATH_TOO_LONG, UsageError
-from skinslide.stage.given import StrPath
 from skinslide.write.replacing import partial_name
+
+if TYPE_CHECKING:
+    from skinslide.stage.given import StrPath
 
 _MOST_BYTES = 255  # of a name
 _OF_USD = 7  # bytes by which a name is longer that USD writes under before it has the partial file's

@@ -13,9 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TypeAlias
 
-from pxr import Tf
-
-from skinslide.problems import StageError, usd_message
+from skinslide.problems import StageError, usd_errors, usd_message
 from skinslide.write.signals import signals_as_exceptions
 
 _ABANDONED = 24 * 60 * 60  # seconds
@@ -79,10 +77,11 @@ def check_writable(output: Path) -> None:
 @contextmanager
 def writing(output: Path) -> Iterator[None]:
     """Reports whatever fails in the block as the output's fault."""
+    faults: tuple[type[BaseException], ...] = (OSError, *usd_errors())
     try:
         yield
-    except (OSError, Tf.ErrorException) as error:
-        reason = usd_message(error) if isinstance(error, Tf.ErrorException) else str(error.strerror or error)
+    except faults as error:
+        reason = str(error.strerror or error) if isinstance(error, OSError) else usd_message(error)
         target = output.resolve()
         raise StageError(f"output {output}: {re.sub(_partial_names(target), lambda _: target.name, reason)}") from error
 
