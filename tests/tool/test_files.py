@@ -13,6 +13,7 @@ from pxr import Sdf, Usd, UsdGeom
 import stages
 from skinslide import StageError, UsageError, bake_to_file, setup_to_file
 from skinslide.command.cli import main
+from skinslide.write import overs
 from stages import FRAMES, MESH
 
 
@@ -272,6 +273,17 @@ def test_bytes_are_on_the_disk_before_the_name_is(shot, tmp_path, monkeypatch):
     bake_to_file(shot, tmp_path / "out.usda")
     setup_to_file(shot, tmp_path / "patches.skinslide", MESH, "more", faces="0-3")
     assert calls == ["fsync", "replace"] * 2
+
+
+def test_the_disk_begins_with_what_is_saved_while_the_rest_is_baked(shot, tmp_path, monkeypatch):
+    """Each part where the last one ended, so that nothing is said of bytes twice, and little is left for the end."""
+    asked = []
+    monkeypatch.setattr(overs, "_UNSAVED_BYTES", 1)
+    monkeypatch.setattr(os, "posix_fadvise", lambda file, start, _count, _what: asked.append((start, os.fstat(file))))
+    bake_to_file(shot, tmp_path / "out.usdc")
+    starts, ends = zip(*((start, file.st_size) for start, file in asked), strict=True)
+    assert len(starts) > 2 and starts == (0, *ends[:-1])
+    assert {file.st_ino for _, file in asked} == {(tmp_path / "out.usdc").stat().st_ino}
 
 
 @pytest.mark.parametrize("extension", ["skinslide", "usda", "usdc"])

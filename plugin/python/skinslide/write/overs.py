@@ -14,7 +14,7 @@ from skinslide.arrays.attributes import extent
 from skinslide.stage.marks import mark
 from skinslide.write.earlier import EarlierBake
 from skinslide.write.inputs import check_not_read
-from skinslide.write.replacing import replacing, saved, writing
+from skinslide.write.replacing import begin_flush, replacing, saved, writing
 
 EXTENSIONS = (".usda", ".usdc", ".usd")
 _TEXT = ".usda"
@@ -36,7 +36,7 @@ class OverLayer:
         What is in it is marked as a bake's, unless it is a cache.
         """
         self.layer, self._output, self._marked = layer, output, marked
-        self._unsaved = 0
+        self._unsaved = self._flushed = 0
 
     def set(self, attribute: Usd.Attribute, value: Any, time: Usd.TimeCode) -> None:
         """Authors a sample, or the default value where time is the default time."""
@@ -82,7 +82,7 @@ class OverLayer:
 
     def save(self) -> None:
         self._check(self.layer.Save)
-        self._unsaved = 0
+        self._unsaved, self._flushed = 0, begin_flush(self.layer.realPath, self._flushed)
 
     def export(self, file: Path) -> None:
         """Writes the layer into another file, in the format of that file's name."""
