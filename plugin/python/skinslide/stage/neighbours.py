@@ -45,9 +45,11 @@ class Neighbours:
     def meeting(self, prim: Usd.Prim) -> Iterator[Neighbour]:
         """Those with a point in the place of one of its own, but for those whose points are all the same."""
         space, paths = self._beside(prim)
+        if len(paths) < 2:
+            return
         if space not in self._meetings:
             self._meetings[space] = Meetings(map(self._points, paths))
-        for number in self._meetings[space].of(paths.index(prim.GetPath())) if paths else ():
+        for number in self._meetings[space].of(paths.index(prim.GetPath())):
             yield Neighbour(str(paths[number]), self._points(paths[number]))
 
     def _beside(self, prim: Usd.Prim) -> tuple[Gf.Matrix4d, list[Sdf.Path]]:
