@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import Field, fields
 from typing import Any, NoReturn
 
@@ -43,7 +43,7 @@ def parse(words: list[str]) -> dict[str, Any]:
             joined[-1] += f"={word}"
         else:
             joined.append(word)
-    return vars(_parser().parse_args(joined))
+    return vars(_parser("".join(joined[:1])).parse_args(joined))
 
 
 def device_of_environment() -> int | None:
@@ -82,30 +82,19 @@ class _Version(argparse.Action):
         raise SystemExit(print_result(f"skinslide {skinslide.__version__}", DONE))
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(given: str) -> argparse.ArgumentParser:
+    """Of a command alone, for the others' options take as long as some frames; of all where none is given."""
     parser = _Parser(
         prog="skinslide",
         description="Lets the skin of a cached character slide over its deformed shape instead of sticking to it.",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    _add_bake(_add_command(commands, "bake", "slide every frame and write a layer of corrected points"))
-    _add_check(_add_command(commands, "check", "say what would be slid, and list every problem"))
-    _add_preview(_add_command(commands, "preview", "draw pictures of every patch, before and after sliding"))
-    _add_maps(_add_command(commands, "maps", "draw stretch, slide and force density in texture coordinates"))
-    _add_setup(_add_command(commands, "setup", "write a layer that makes a patch of some faces of a mesh"))
-    _add_paint(_add_command(commands, "paint", "write a layer that gives edges of a patch a force density"))
-    _add_mirror(_add_command(commands, "mirror", "write a layer that copies a patch to a mesh's other side"))
-    _add_cache(_add_command(commands, "cache", "write the points that UsdSkel skins to a layer, as samples"))
-    _add_stitch(_add_command(commands, "stitch", "join chunks of frames, baked separately, in one layer"))
-    _add_farm(_add_command(commands, "farm", "write a job that bakes chunks of frames on a farm and stitches them"))
-    _add_report(_add_command(commands, "report", "write one page of many shots, from what --json printed for each"))
+    for name, (summary, add) in _COMMANDS.items():
+        if name == given or given not in _COMMANDS:
+            description = summary[0].upper() + summary[1:] + "."
+            add(commands.add_parser(name, help=summary, description=description))
     return parser
-
-
-def _add_command(commands: argparse._SubParsersAction[_Parser], name: str, summary: str) -> argparse.ArgumentParser:
-    description = summary[0].upper() + summary[1:] + "."
-    return commands.add_parser(name, help=summary, description=description)
 
 
 def _add_stage(command: argparse.ArgumentParser) -> None:
@@ -353,3 +342,19 @@ def _add_report(command: argparse.ArgumentParser) -> None:
 
 def _processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+# What each does, and what adds its arguments.
+_COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
+    "bake": ("slide every frame and write a layer of corrected points", _add_bake),
+    "check": ("say what would be slid, and list every problem", _add_check),
+    "preview": ("draw pictures of every patch, before and after sliding", _add_preview),
+    "maps": ("draw stretch, slide and force density in texture coordinates", _add_maps),
+    "setup": ("write a layer that makes a patch of some faces of a mesh", _add_setup),
+    "paint": ("write a layer that gives edges of a patch a force density", _add_paint),
+    "mirror": ("write a layer that copies a patch to a mesh's other side", _add_mirror),
+    "cache": ("write the points that UsdSkel skins to a layer, as samples", _add_cache),
+    "stitch": ("join chunks of frames, baked separately, in one layer", _add_stitch),
+    "farm": ("write a job that bakes chunks of frames on a farm and stitches them", _add_farm),
+    "report": ("write one page of many shots, from what --json printed for each", _add_report),
+}
