@@ -118,6 +118,41 @@ def test_a_page_of_shots_needs_no_usd(tmp_path):
     assert said.splitlines()[-1] == "2" and "json" in said
 
 
+def test_schemas_are_read_while_a_command_is_loaded(tmp_path):
+    """By a thread beside, and before its function is called, since USD is loaded and at work by turns."""
+    said = run_python(f"""
+        import sys, threading
+        from pxr import Usd
+        from skinslide.command.start import main
+        read, calls = Usd.SchemaRegistry, []
+
+        def reading():
+            threading.Event().wait(0.2)
+            calls.append(threading.current_thread() is threading.main_thread())
+            return read()
+
+        Usd.SchemaRegistry = reading
+        import skinslide.shot.check as home
+        home.check = lambda *_stage, **_options: sys.exit(len(calls))
+        sys.argv = ["skinslide", "check", {str(tmp_path / "shot.usda")!r}]
+        print(main(), *calls)
+    """)
+    assert said.split() == ["1", "False"]
+
+
+def test_schemas_that_cannot_be_read(tmp_path):
+    said = run_python(f"""
+        import sys
+        from pxr import Tf, Usd
+        from skinslide.command.start import main
+        Usd.SchemaRegistry = lambda: Tf.RaiseRuntimeError("two of one name")
+        sys.argv = ["skinslide", "check", {str(tmp_path / "shot.usda")!r}]
+        sys.stderr = sys.stdout
+        print(main())
+    """)
+    assert said.splitlines() == ["error: USD: Python runtime error: two of one name", "1"]
+
+
 def test_a_slider_needs_no_usd():
     said = run_python("""
         import sys

@@ -21,13 +21,19 @@ def apart(make: Callable[..., T], *arguments: Any) -> T:
     """Calls `make`, and returns what it returns. The arguments are kept alive for as long as it runs."""
     if threading.current_thread() is not threading.main_thread():
         return make(*arguments)
-    future: Future[T] = Future()
-    if not _starts(lambda: _fulfil(future, make, *arguments)):
-        return make(*arguments)
+    future = beside(make, *arguments)
     # In short waits, since a signal does not end one where another thread takes it, or where it comes just before.
     while not future.done():
         wait([future], ANSWERED)
     return future.result()
+
+
+def beside(make: Callable[..., T], *arguments: Any) -> Future[T]:
+    """Calls `make` on another thread, or on this one where the machine gives no more of them."""
+    future: Future[T] = Future()
+    if not _starts(lambda: _fulfil(future, make, *arguments)):
+        _fulfil(future, make, *arguments)
+    return future
 
 
 def together(make: Callable[[int], T], count: int, jobs: int) -> list[T]:

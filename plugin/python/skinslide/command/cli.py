@@ -10,10 +10,10 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import fields
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from skinslide.command.arguments import device_of_environment, parse
+from skinslide.command.loading import loaded
 from skinslide.command.outcome import (
     DONE,
     PROBLEMS,
@@ -24,7 +24,7 @@ from skinslide.command.outcome import (
     print_error,
     print_result,
 )
-from skinslide.problems import StageError, UsageError, listed, one_line
+from skinslide.problems import UsageError, listed, one_line
 from skinslide.shot.options import PictureOptions
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     run, home, name = _COMMANDS[given.pop("command")]
     before, json = _state(given), given.get("json", False)
     try:
-        function = _loaded(home, name)  # uninterrupted, as USD must be while it loads
+        function = loaded(home, name, opens_stage="stage" in given)  # uninterrupted, as USD must be while it loads
         gc.freeze()
         gc.enable()  # disabled by start.py
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # blocked by start.py
@@ -56,17 +56,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         return print_result(*result)
     except expected() as error:
         return failed(error, json, _outcome(given, before), words)
-
-
-def _loaded(home: str, name: str) -> Callable[..., Any]:
-    """A function of a module. Raises StageError if there is no USD, which skinslide does not bring."""
-    try:
-        return getattr(import_module(f"skinslide.{home}"), name)
-    except ModuleNotFoundError as missing:
-        if missing.name != "pxr":
-            raise
-        hint = "set the show's up, or install skinslide[live], which brings its own"
-        raise StageError(f"there is no USD in this Python: {hint}") from missing
 
 
 def _is_json(word: str) -> bool:
