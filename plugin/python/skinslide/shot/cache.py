@@ -38,7 +38,7 @@ from skinslide.shot.workers import Progress
 from skinslide.stage.given import StageLike, StrPath
 from skinslide.stage.mesh import PatchedMesh
 from skinslide.stage.reading import read_skinned
-from skinslide.stage.skinning import SkinnedVectors
+from skinslide.stage.skinned import SkinnedVectors
 from skinslide.write.inputs import check_not_input
 from skinslide.write.overs import EXTENSIONS, OverLayer, layer_in_place
 from skinslide.write.place import check_output, given_output

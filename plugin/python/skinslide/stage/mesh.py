@@ -31,7 +31,8 @@ from skinslide.problems import (
 from skinslide.stage.following import carried, offered
 from skinslide.stage.neighbours import Neighbours
 from skinslide.stage.patch import Animation
-from skinslide.stage.skinning import SkinnedVectors, Skinning
+from skinslide.stage.skinned import SkinnedVectors
+from skinslide.stage.skinning import Skinning
 from skinslide.stage.taking import source_of, take_mesh, take_subdivision
 from skinslide.stage.values import FIRST, Source, Span, read_value
 

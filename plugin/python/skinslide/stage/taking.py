@@ -10,7 +10,8 @@ from pxr import Usd, UsdGeom
 from skinslide.arrays.meaning import MeshMeaning
 from skinslide.arrays.schema import Input, inputs
 from skinslide.problems import Fault, noting
-from skinslide.stage.skinning import SkinnedPoints, Skinning
+from skinslide.stage.skinned import SkinnedPoints
+from skinslide.stage.skinning import Skinning
 from skinslide.stage.values import FIRST, Source, take
 
 
