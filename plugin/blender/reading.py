@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from skinslide.arrays.records import PatchResult
 
 from skinslide.arrays.fetched import NOTHING, File, Value
 from skinslide.arrays.meaning import ControlsMeaning, MeshMeaning, Names, PatchMeaning, Taker
+from skinslide.arrays.records import PatchResult
 from skinslide.arrays.schema import DEFAULT_TIME, Input, inputs
 from skinslide.arrays.setups import PatchSetup
 from skinslide.arrays.slider import Slider

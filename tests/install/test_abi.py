@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from skinslide._core import ffi
 
 import skinslide
 from repository import ROOT
+from skinslide._core import ffi
 
 PACKAGE = Path(skinslide.__file__).parent
 PROGRAM = ROOT / "tests" / "consumer" / "abi.c"

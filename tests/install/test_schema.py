@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 from pxr import Plug, Sdf, Usd, UsdGeom
-from skinslide._core import ffi, lib
 
 import stages
 from repository import ROOT
+from skinslide._core import ffi, lib
 from skinslide.arrays.schema import inputs
 from skinslide.stage import schema
 

@@ -19,11 +19,11 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.wait import WebDriverWait
-from skinslide.arrays.records import PatchResult
 
 import skinslide
 import stages
 from skinslide import BakeReport, bake
+from skinslide.arrays.records import PatchResult
 from skinslide.command.cli import main
 from skinslide.picture.page import Strip, bytes_of_each, compressed, page
 from skinslide.problems import Problem

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from skinslide._core import ffi, lib
 
 from skinslide import Sample
+from skinslide._core import ffi, lib
 from skinslide.arrays.checks import as_array
 from skinslide.arrays.images import Corners, layout_of
 from skinslide.arrays.native import call, enum_value, new_array, text, token_of, writable

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from skinslide.arrays.records import PatchInfo
 
 import skinslide
 import stages
+from skinslide.arrays.records import PatchInfo
 from skinslide.command.cli import main
 from skinslide.shot.report import far_apart, shape_text
 from stages import MESH, PATCH

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Sdf, UsdGeom, UsdValidation, Vt
-from skinslide.arrays.records import PatchResult
 
 import stages
 from shots import (
@@ -25,6 +24,7 @@ from shots import (
     pose,
 )
 from skinslide import bake_to_file
+from skinslide.arrays.records import PatchResult
 from skinslide.command import progress
 from skinslide.shot.rows import Rows
 from skinslide.write import overs
