@@ -40,7 +40,7 @@ def test_pieces_are_listed():
         (PATCH, 1, 2),
         (PATCH, 2, 2),
     ]
-    assert f"{PATCH} (2 of 2): vertices 21, " in report.text()
+    assert f"{PATCH} (2 of 2): unit, linear, vertices 21, " in report.text()
 
 
 def test_nothing_free_is_a_warning():

@@ -287,7 +287,7 @@ def test_the_command(tmp_path, capsys):
     options = ["--prim", MESH, "--patch", LEFT, "--to", "other", "--axis", "x", "--plane", "0", "--tolerance", "0.001"]
     assert main(["mirror", str(path), "-o", str(output), *options]) == 0
     said = capsys.readouterr().out
-    assert "  other: vertices 20" in said and f"{output}: written" in said
+    assert "  other: unit, linear, vertices 20" in said and f"{output}: written" in said
     assert [patch.name for patch in check(output).meshes[0].patches] == ["other", LEFT]
 
 

@@ -157,3 +157,36 @@ def test_a_long_list_is_summed_up(tmp_path, capfd):
     assert sum(line.startswith("error: ") for line in printed) == 21 and ": 40 errors" in printed[-1]
     assert main(["check", str(shot), "--json"]) == 3
     assert len(json.loads(capfd.readouterr().out)["problems"]) >= 40
+
+
+def test_what_to_do_first_is_a_command_that_runs(tmp_path, monkeypatch, capfd):
+    """Of a stage on which nothing is set up: as it stands, but for the name of what it is to write."""
+    stage = stages.new_stage()
+    mesh = stages.add_mesh(stage, stages.grid())
+    mesh.GetPointsAttr().Set(stages.vectors(2 * stages.grid().points), stages.FRAMES[-1])
+    stages.save(stage, tmp_path / "cache.usda")
+    monkeypatch.chdir(tmp_path)
+    assert main(["bake", "cache.usda", "-o", "out.usda"]) == 3
+    command = capfd.readouterr().err.strip().partition("start with: ")[2]
+    assert command == "skinslide setup cache.usda -o X.skinslide --whole"
+    assert main(command.split()[1:]) == 0
+
+
+def test_a_chunk_is_to_be_stitched(shot, tmp_path, capfd):
+    for words, what in (([], "sublayer it above the character"), (["--chunk", "1/2"], "part 1/2; skinslide stitch ")):
+        assert main(["bake", str(shot), "-o", str(tmp_path / "out.usdc"), *words]) == 0
+        assert what in capfd.readouterr().out.splitlines()[-1]
+
+
+def test_a_set_up_says_how_it_slides_and_not_by_which_lookup(shot, tmp_path, capfd):
+    assert main(["setup", str(shot), "-o", str(tmp_path / "out.usda"), *ON, "--faces", "0-8"]) == 0
+    said = capfd.readouterr().out
+    assert "  other: even, linear, vertices " in said and "lookup" not in said
+    assert main(["check", str(tmp_path / "out.usda")]) == 0
+    assert "lookup " in capfd.readouterr().out
+
+
+def test_resume_is_named_as_it_is_typed(shot, tmp_path, capfd):
+    words = ["bake", str(shot), "-o", str(tmp_path / "out.usdc"), "--resume", "--html", str(tmp_path / "p.html")]
+    assert main(words) == 2
+    assert capfd.readouterr().err == "error: --resume is for a layer alone, without pictures and maps\n"

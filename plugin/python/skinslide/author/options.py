@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 from skinslide.problems import UsageError
 from skinslide.shot import checks
-from skinslide.shot.checks import Options, option, or_none
+from skinslide.shot.checks import Options, fault, option, or_none
 from skinslide.shot.options import RULES
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ class FaceOptions(Options):
         self._go_with(("reach", "mirror"), "joint")
         self._go_with(("frames",), "whole")
         if not self.whole and (self.prim is None or self.patch is None):
-            raise self._fault("{prim} and {patch} are needed, unless {whole} is asked for")
+            raise fault(type(self), "{prim} and {patch} are needed, unless {whole} is asked for")
 
     @property
     def place(self) -> tuple[PrimLike, str]:
@@ -298,7 +298,7 @@ class PaintOptions(MeshOptions):
         self._needs_one_of(EDGES)
         self._go_with(("distance", "direction"), "curve")
         if self.curve is not None and self.distance is None:
-            raise self._fault("{curve} needs {distance}, in the mesh's units")
+            raise fault(type(self), "{curve} needs {distance}, in the mesh's units")
 
 
 class PaintKeywords(TypedDict, total=False):

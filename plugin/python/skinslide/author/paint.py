@@ -59,11 +59,18 @@ class PaintReport:
         """The same for JSON."""
         return asdict(self)
 
-    def text(self) -> str:
-        """What `check` says, and a line of what was painted."""
+    def text(self, *, lookup: bool = True) -> str:
+        """What `check` says, and a line of what was painted.
+
+        Args:
+            lookup: As for `CheckReport.text`.
+
+        Returns:
+            The lines.
+        """
         out = f", {self.left_out} left out that are not of the patch" if self.left_out else ""
         edges = f"{counted(self.painted, 'edge')} painted with {self.value:g}{out}; {self.total} painted in all"
-        return f"{self.check.text()}\n{one_line(f'{self.patch}: {edges}')}"
+        return f"{self.check.text(lookup=lookup)}\n{one_line(f'{self.patch}: {edges}')}"
 
 
 @dataclass(frozen=True)

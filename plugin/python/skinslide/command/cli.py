@@ -117,7 +117,8 @@ def _bake(
 ) -> Result:
     also = _also(pictures, html, maps, options)
     report = _slide(bake_to_file, quiet, stage, output, also=also, **options)
-    written = [_layer_there(output)] if report.resumed else [*_written(pictures, html), _layer_written(output)]
+    layer = _layer_there(output) if report.resumed else _layer_written(output, options.get("chunk"))
+    written = [layer] if report.resumed else [*_written(pictures, html), layer]
     lines = [report.text(), *written]
     return _reported(report, {"stage": stage, "output": output}, lines, json, quiet), DONE
 
@@ -174,12 +175,13 @@ def _cache(
     cache: Callable[..., Any], stage: str, output: str, *, json: bool = False, quiet: bool = False, **options: Any
 ) -> Result:
     report = _with_progress(cache, quiet, stage, output, **options)
-    lines = [report.text(), _layer_written(output, "character")]
+    lines = [report.text(), _layer_written(output)]
     return _reported(report, {"stage": stage, "output": output}, lines, json, quiet), DONE
 
 
 def _author(function: Callable[..., Any], stage: str, output: str, **options: Any) -> Result:
-    lines = [function(stage, output, **options).text(), *_written(output, options.get("payload"))]
+    report = function(stage, output, **options)
+    lines = [report.text(lookup=False), *_written(output, options.get("payload"))]
     return "\n".join(lines), DONE
 
 
@@ -252,8 +254,10 @@ def _layer_there(output: str) -> str:
     return one_line(f"{output}: is whole already, and was not baked again")
 
 
-def _layer_written(output: str, below: str = "cache") -> str:
-    return one_line(f"{output}: written; sublayer it above the {below}")
+def _layer_written(output: str, chunk: str | None = None) -> str:
+    if chunk:
+        return one_line(f"{output}: written, part {chunk}; skinslide stitch joins it with the others")
+    return one_line(f"{output}: written; sublayer it above the character")
 
 
 # Each with the function that it calls: the module and the name.

@@ -17,8 +17,9 @@ from pxr import Sdf, Usd, UsdGeom
 from skinslide.arrays.lookup import Lookup
 from skinslide.arrays.native import version
 from skinslide.arrays.records import PatchResult
-from skinslide.problems import FrameProblem, Problem, UsageError
+from skinslide.problems import FrameProblem, Problem
 from skinslide.shot.advice import advice
+from skinslide.shot.checks import fault
 from skinslide.shot.derived import Cached, Derived
 from skinslide.shot.diagnostics import MeshDiagnostics, Primvar
 from skinslide.shot.frames import AUTHORED
@@ -113,7 +114,7 @@ def bake_to_file(
         given_products("also", also),
     )
     if others and part.resume:
-        raise UsageError("resume is for a layer alone, without pictures and maps")
+        raise fault(ChunkOptions, "{resume} is for a layer alone, without pictures and maps")
     layer = _Layer(LayerOptions(*limits, share, diagnostics), part, given_output("output", output))
     return slide(Shot.of(stage), options, [layer, *_searches(layer.options), *others], progress, part.chunk)
 

@@ -13,6 +13,7 @@ from pxr import Usd
 from skinslide.arrays.lookup import Lookup, choose_lookup
 from skinslide.arrays.meaning import Texture
 from skinslide.arrays.records import PatchInfo
+from skinslide.arrays.setups import PatchSetup
 from skinslide.arrays.slider import Slider
 from skinslide.problems import (
     Problem,
@@ -60,6 +61,8 @@ class CheckedPatch:
         zero_length_edges: Of no length at rest.
         collapsed_faces: Of no area in the rest embedding.
         folded_faces: Turned over in the rest embedding.
+        rule: By which it slides.
+        interpolation: linear, meanValue or limit.
     """
 
     name: str
@@ -74,6 +77,8 @@ class CheckedPatch:
     zero_length_edges: int
     collapsed_faces: int
     folded_faces: int
+    rule: str
+    interpolation: str
 
 
 @dataclass(frozen=True)
@@ -223,12 +228,20 @@ class CheckReport:
         """The same for JSON."""
         return asdict(self)
 
-    def text(self) -> str:
-        """A line for each mesh, patch and problem, and the verdict."""
+    def text(self, *, lookup: bool = True) -> str:
+        """A line for each mesh, patch and problem, and the verdict.
+
+        Args:
+            lookup: Whether there are lines of what would be looked up with, too.
+
+        Returns:
+            The lines.
+        """
         lines = [line for mesh in self.meshes for line in _mesh_lines(mesh)]
         lines += [line for mesh in self.candidates for line in mesh.lines()]
         lines += [f"{each.prim}: {each.patch}: {share_text(each.least, each.median)}" for each in self.shares]
-        return lines_text([*lines, *self.lookup.lines(), *problem_lines(self.problems), self._verdict()])
+        lines += self.lookup.lines() if lookup else ()
+        return lines_text([*lines, *problem_lines(self.problems), self._verdict()])
 
     def _verdict(self) -> str:
         counts = {kind: sum(p.severity == kind for p in self.problems) for kind in ("error", "warning", "note")}
@@ -266,7 +279,8 @@ def _patch_lines(name: str, pieces: Sequence[CheckedPatch]) -> Iterator[str]:
         return
     for piece in pieces:
         label = name if piece.pieces == 1 else f"{name} ({piece.piece} of {piece.pieces})"
-        yield f"  {label}: " + ", ".join(f"{count} {getattr(piece, count)}" for count in counts)
+        how = f"{piece.rule}, {piece.interpolation}"
+        yield f"  {label}: {how}, " + ", ".join(f"{count} {getattr(piece, count)}" for count in counts)
 
 
 def check(
@@ -322,7 +336,8 @@ def _share(prim: str, patch: PatchReport) -> CheckedShare:
 
 def _check_mesh(mesh: PatchedMesh, slider: Slider | None, problems: list[Problem]) -> CheckedMesh:
     pieces = [info for each in ([slider] if slider else _good_sliders(mesh)) for info in each.patches]
-    patches = [_checked(info) for info in pieces]
+    named = {patch.name: patch for patch in mesh.patches}
+    patches = [_checked(info, named[info.name], mesh) for info in pieces]
     for name in dict.fromkeys(patch.name for patch in patches):
         problems += _patch_problems(mesh, [patch for patch in patches if patch.name == name])
     problems += advice(mesh, pieces, slider)
@@ -360,7 +375,7 @@ def _good_sliders(mesh: PatchedMesh) -> Iterator[Slider]:
         yield slider
 
 
-def _checked(info: PatchInfo) -> CheckedPatch:
+def _checked(info: PatchInfo, patch: PatchSetup, mesh: PatchedMesh) -> CheckedPatch:
     return CheckedPatch(
         name=info.name,
         piece=info.piece + 1,
@@ -374,6 +389,8 @@ def _checked(info: PatchInfo) -> CheckedPatch:
         zero_length_edges=info.zero_length_edges,
         collapsed_faces=info.collapsed_faces,
         folded_faces=info.folded_faces,
+        rule=patch.rule,
+        interpolation=mesh.interpolation_of(patch),
     )
 
 

@@ -53,24 +53,23 @@ class Options:
     def _needs_one_of(self, names: Sequence[str]) -> None:
         """Raises UsageError unless one of some options is given, and no other of these."""
         if len([name for name in names if self._is_given(name)]) != 1:
-            raise self._fault(f"one of {listed([f'{{{name}}}' for name in names])} is needed")
+            raise fault(type(self), f"one of {listed([f'{{{name}}}' for name in names])} is needed")
 
     def _go_with(self, names: Sequence[str], other: str) -> None:
         """Raises UsageError where one of some options is given, but not the other with which they have a meaning."""
         if not self._is_given(other) and any(map(self._is_given, names)):
             verb = "go" if len(names) > 1 else "goes"
-            raise self._fault(f"{listed([f'{{{name}}}' for name in names])} {verb} with {{{other}}}")
+            raise fault(type(self), f"{listed([f'{{{name}}}' for name in names])} {verb} with {{{other}}}")
 
     def _is_given(self, name: str) -> bool:
         value, default = getattr(self, name), self.__dataclass_fields__[name].default
         return value is not default and not (isinstance(value, str) and value == default)
 
-    @classmethod
-    def _fault(cls, template: str) -> UsageError:
-        """An error that names several of the options, which are in braces."""
-        return UsageError.of_options(
-            template, {each.name: each.metadata["flags"] or (each.name,) for each in fields(cls)}
-        )
+
+def fault(table: type[Options], template: str) -> UsageError:
+    """An error that names options of a table, which are in braces."""
+    flags = {each.name: each.metadata["flags"] or (each.name,) for each in fields(table)}
+    return UsageError.of_options(template, flags)
 
 
 def takes(table: type[Options]) -> Callable[[F], F]:

@@ -42,7 +42,7 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
         if finding.patches and finding.slides:
             meshes.append(FoundMesh(prim, finding.patches, finding.is_skinned))
     if not meshes and not any(problem.severity == "error" for problem in problems):
-        problems.append(Problem("error", "", None, None, _nothing(prim_paths)))
+        problems.append(Problem("error", "", None, None, _nothing(stage, prim_paths)))
     return meshes, problems
 
 
@@ -251,8 +251,10 @@ def _strongest_points(prim: Usd.Prim) -> Sdf.PropertySpec | None:
     return next(filter(has_values, points.GetPropertyStack() if points else []), None)
 
 
-def _nothing(prim_paths: Sequence[str] | None) -> str:
-    return f"{nothing_to_slide(_where(prim_paths))}; start with: skinslide setup STAGE -o X.skinslide --whole"
+def _nothing(stage: Usd.Stage, prims: Sequence[str] | None) -> str:
+    root = stage.GetRootLayer()
+    file = "STAGE" if root.anonymous else root.identifier
+    return f"{nothing_to_slide(_where(prims))}; start with: skinslide setup {file} -o X.skinslide --whole"
 
 
 def _where(prim_paths: Sequence[str] | None) -> str:
