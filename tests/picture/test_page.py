@@ -25,7 +25,8 @@ import stages
 from skinslide import BakeReport, bake
 from skinslide.arrays.records import PatchResult
 from skinslide.command.cli import main
-from skinslide.picture.page import Strip, bytes_of_each, compressed, page
+from skinslide.picture.embedded import bytes_of_each, compressed
+from skinslide.picture.page import Strip, page
 from skinslide.problems import Problem
 from skinslide.shot.report import PatchReport
 from skinslide.shot.rows import Rows

@@ -18,8 +18,9 @@ from skinslide.arrays.canvas import Canvas
 from skinslide.arrays.slider import Slider
 from skinslide.picture import encoding
 from skinslide.picture.canvases import Canvases
+from skinslide.picture.embedded import compressed
 from skinslide.picture.encoders import Encoders
-from skinslide.picture.page import Strip, compressed
+from skinslide.picture.page import Strip
 from skinslide.picture.series import Column, Moment, Series, Skin
 from skinslide.picture.settings import settings_of
 from skinslide.problems import Fault, FrameProblem, Problem, SliderError, StageProblems, counted, errors

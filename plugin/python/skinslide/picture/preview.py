@@ -25,9 +25,10 @@ from skinslide.arrays.lookup import Lookup, choose_lookup
 from skinslide.arrays.native import version
 from skinslide.picture.canvases import Canvases
 from skinslide.picture.drawing import Budget, DrawnPictures, Easel, MeshPictures
+from skinslide.picture.embedded import bytes_of_each
 from skinslide.picture.encoders import Encoders
 from skinslide.picture.lettering import contact_sheets
-from skinslide.picture.page import bytes_of_each, page
+from skinslide.picture.page import page
 from skinslide.picture.series import targets_of
 from skinslide.problems import Problem, StageProblems, UsageError, frame_text
 from skinslide.shot.checks import documented

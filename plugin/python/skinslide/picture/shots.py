@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from skinslide.picture.page import render
+from skinslide.picture.rendering import render
 from skinslide.problems import Problem, UsageError, counted, lines_text, problem_lines
 from skinslide.shot.report import RECORD, far_apart, roughness_text, stretch_text, time_text
 from skinslide.write.place import check_output, given_output
