@@ -462,6 +462,13 @@ def test_a_signature_has_the_options(function, table):
     assert "--" not in function.__doc__ and all(len(line) <= 120 for line in function.__doc__.splitlines())
 
 
+@pytest.mark.parametrize("function", [skinslide.setup, skinslide.paint, skinslide.mirror, skinslide.setup_to_file])
+def test_a_keyword_that_is_misspelt(function):
+    """As in Python, but that what is like it is named."""
+    with pytest.raises(TypeError, match=rf"^{function.__name__}\(\) takes no prm; there are prim, "):
+        function(prm=MESH)
+
+
 def test_words_of_the_schema_are_its_own():
     tokens = {"forceDensityRule": options.RULES, "holes": options.HOLES, "interpolation": options.INTERPOLATIONS}
     for name, words in tokens.items():

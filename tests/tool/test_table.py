@@ -5,9 +5,10 @@ import pytest
 
 import skinslide
 import stages
-from skinslide.arrays.records import PatchInfo
+from skinslide.arrays.records import PatchInfo, PatchResult
 from skinslide.command.cli import main
-from skinslide.shot.report import far_apart, shape_text
+from skinslide.shot.report import PatchReport, far_apart, shape_text
+from skinslide.shot.rows import Rows
 from stages import MESH, PATCH
 
 
@@ -127,3 +128,14 @@ def test_shapes(faces, holes, says):
         **{**nothing, "vertex_count": vertices, "edge_count": edges, "face_count": count, "hole_count": holes}
     )
     assert shape_text(info) == says
+
+
+@pytest.mark.parametrize(("rule", "is_told"), [("unit", True), ("even", False)])
+def test_added_stretch_has_a_remedy(rule, is_told):
+    """Of a patch that is laid out in a plane; no other rule does better than even."""
+    nothing = PatchInfo(**{**dict.fromkeys(PatchInfo._fields, 0), "name": PATCH, "piece_count": 1})
+    zero = PatchResult(**dict.fromkeys(PatchResult._fields, 0))
+    report = PatchReport(nothing, [1.0, 2.0], Rows(PatchResult, [zero, zero._replace(stretch_after=0.5)]), rule=rule)
+    (problem,) = report.problems(MESH)
+    assert "sliding adds stretch: 0.0000 in the cache, 0.5000 slid (at 1 of 2 frames" in problem.message
+    assert problem.message.endswith("; the rule even may take some out") == is_told

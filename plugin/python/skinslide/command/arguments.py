@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import Field, fields
 from typing import Any, NoReturn
 
-from skinslide.author.options import EDGES, FACES, MirrorOptions, PaintOptions, SetupOptions
 from skinslide.command.outcome import DONE, EXIT_CODES, print_error, print_result
 from skinslide.problems import UsageError
 from skinslide.shot.checks import Options, count_text, described, positive_text
@@ -86,7 +85,8 @@ def _parser(given: str) -> argparse.ArgumentParser:
     """Of a command alone, for the others' options take as long as some frames; of all where none is given."""
     parser = _Parser(
         prog="skinslide",
-        description="Lets the skin of a cached character slide over its deformed shape instead of sticking to it.",
+        description="Lets the skin of a cached character slide over its deformed shape instead of sticking to it. "
+        "To begin: skinslide setup STAGE -o X.skinslide --whole, then skinslide bake X.skinslide -o OUT.",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -251,6 +251,8 @@ def _add_layer(command: argparse.ArgumentParser) -> None:
 
 
 def _add_setup(command: argparse.ArgumentParser) -> None:
+    from skinslide.author.options import FACES, SetupOptions
+
     _add_layer(command)
     command.add_argument(
         "--payload",
@@ -262,6 +264,8 @@ def _add_setup(command: argparse.ArgumentParser) -> None:
 
 
 def _add_paint(command: argparse.ArgumentParser) -> None:
+    from skinslide.author.options import EDGES, PaintOptions
+
     _add_layer(command)
     _add_choice(command, PaintOptions, EDGES)
 
@@ -275,6 +279,8 @@ def _add_choice(command: argparse.ArgumentParser, table: type[Options], choices:
 
 
 def _add_mirror(command: argparse.ArgumentParser) -> None:
+    from skinslide.author.options import MirrorOptions
+
     _add_layer(command)
     _add_options(command, MirrorOptions)
 
@@ -346,13 +352,13 @@ def _processors() -> int:
 
 # What each does, and what adds its arguments.
 _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
-    "bake": ("slide every frame and write a layer of corrected points", _add_bake),
-    "check": ("say what would be slid, and list every problem", _add_check),
-    "preview": ("draw pictures of every patch, before and after sliding", _add_preview),
-    "maps": ("draw stretch, slide and force density in texture coordinates", _add_maps),
     "setup": ("write a layer that makes a patch of some faces of a mesh", _add_setup),
     "paint": ("write a layer that gives edges of a patch a force density", _add_paint),
     "mirror": ("write a layer that copies a patch to a mesh's other side", _add_mirror),
+    "check": ("say what would be slid, and list every problem", _add_check),
+    "preview": ("draw pictures of every patch, before and after sliding", _add_preview),
+    "bake": ("slide every frame and write a layer of corrected points", _add_bake),
+    "maps": ("draw stretch, slide and force density in texture coordinates", _add_maps),
     "cache": ("write the points that UsdSkel skins to a layer, as samples", _add_cache),
     "stitch": ("join chunks of frames, baked separately, in one layer", _add_stitch),
     "farm": ("write a job that bakes chunks of frames on a farm and stitches them", _add_farm),

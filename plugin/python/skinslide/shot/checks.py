@@ -10,9 +10,10 @@ import textwrap
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import Field, dataclass, field, fields
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from skinslide.problems import SliderError, UsageError, listed, not_one_of
+from skinslide.problems import SliderError, UsageError, in_place_of, listed, not_one_of
 from skinslide.shot.frames import AUTHORED, Chunk, checked_frames
 
 if TYPE_CHECKING:
@@ -83,10 +84,19 @@ def takes(table: type[Options]) -> Callable[[F], F]:
             inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, default=each.default, annotation=each.type)
             for each in options
         ]
-        vars(function)["__signature__"] = signature.replace(parameters=[*fixed, *keywords])
+        known = [each.name for each in (*fixed, *keywords)]
+
+        @wraps(function)
+        def checked(*arguments: Any, **given: Any) -> Any:
+            for name in given:
+                if name not in known:
+                    raise TypeError(f"{function.__name__}() takes no {name}; {in_place_of(name, known)}")
+            return function(*arguments, **given)
+
+        vars(checked)["__signature__"] = signature.replace(parameters=[*fixed, *keywords])
         lines = "\n".join(_argument(each, table) for each in options)
-        function.__doc__ = re.sub(r" +\*\*\w+: .*", lambda _: lines, function.__doc__ or "")
-        return function
+        checked.__doc__ = re.sub(r" +\*\*\w+: .*", lambda _: lines, function.__doc__ or "")
+        return cast(F, checked)
 
     return decorate
 

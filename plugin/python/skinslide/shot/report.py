@@ -30,6 +30,7 @@ _AT_REST = {
 
 
 _NO_STRETCH = 1e-4  # less is not to be seen
+_PLANAR = ("unit", "fast")  # rules by which a patch is laid out in a plane
 
 
 RECORD = 1  # the version of what --json prints: more where a name goes or means something else
@@ -223,7 +224,8 @@ class PatchReport:
         worst = added.argmax()
         before = stretch_text(self.results[worst].stretch_before)
         after = stretch_text(self.results[worst].stretch_after)
-        message = f"sliding adds stretch: {before} in the cache, {after} slid{_share(added > _NO_STRETCH)}"
+        remedy = "; the rule even may take some out" if self.rule in _PLANAR else ""
+        message = f"sliding adds stretch: {before} in the cache, {after} slid{_share(added > _NO_STRETCH)}{remedy}"
         return [Problem("warning", prim, self.label, self.frames[worst], message)]
 
     def _degraded(self) -> Iterator[tuple[float | None, str]]:
