@@ -103,6 +103,33 @@ bool ss_find_met(const float *points, int32_t count, const float *others, int32_
 int32_t ss_root(int32_t *parent, int32_t vertex);
 void ss_join(int32_t *parent, int32_t a, int32_t b);
 
+/* ---- sew.c: which points in one place are one vertex ---- */
+
+/* A corner of a face of a patch, and the next: at least one of the two points shares its place at rest. */
+typedef struct ss_seam_corner {
+    int32_t face, vertex, next;
+} ss_seam_corner;
+
+typedef struct ss_seams {
+    int32_t vertex_count;
+    int32_t *place;    /* [vertex_count] the lowest vertex in the same place */
+    uint8_t *in_patch; /* [vertex_count] a face of a patch has it */
+    int32_t shared_count;
+    int32_t *shared; /* [shared_count] vertices that share a place at rest with one of a patch, ascending */
+    int32_t corner_count;
+    ss_seam_corner *corners; /* [corner_count] in the order of faces */
+} ss_seams;
+
+typedef struct ss_sewn {
+    ss_memory memory;
+    int32_t *vertex;  /* [vertex_count] the vertex that each is one with: the lowest one of a patch in that place */
+    uint8_t *refused; /* [vertex_count] by place: it cannot be one vertex */
+    char why[160];    /* the first of these cannot; or empty */
+} ss_sewn;
+
+/* Fills out, whose memory is the caller's to free. False if memory is short. */
+bool ss_sew(const ss_seams *seams, ss_sewn *out);
+
 /* ---- winding.c ---- */
 
 /* A side of a face, by the ends of its edge. */
