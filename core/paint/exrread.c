@@ -1,5 +1,5 @@
-/* Reads OpenEXR files, in memory or open, by OpenEXR's own C library, which only this file and exrwrite.c know. Headers are
- * untrusted: what they claim is held against limits and against the size of the file before memory is taken. */
+/* Reads the texels of OpenEXR files, in memory or open, by OpenEXR's own C library, which only this file, exrheader.c and exrwrite.c
+ * know. */
 #define _POSIX_C_SOURCE 200809L /* pread */
 #include "base.h"
 #include "paint.h"
@@ -12,9 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LARGEST_CHUNK  ((uint64_t)1 << 30)
 #define LARGEST_HEADER ((int64_t)1 << 26)
-#define MOST_CHUNKS    (1 << 22)
 
 /* What OpenEXR reads from, and the first error that it reports, which it would otherwise print to stderr. */
 typedef struct source {
@@ -25,17 +23,6 @@ typedef struct source {
     bool out_of_memory;
     char said[256];
 } source;
-
-/* One channel of one part that is not deep. */
-typedef struct selection {
-    int part, part_count;
-    const exr_attr_chlist_t *channels;
-    int32_t channel; /* -1: none */
-} selection;
-
-typedef struct window {
-    int64_t x, y, width, height;
-} window;
 
 typedef struct owned_image {
     skinslide_image image; /* the first member, so that a pointer to it is one to the whole */
@@ -97,229 +84,12 @@ static void *allocate(size_t size) {
     return calloc(1, size ? size : 1);
 }
 
-/* ---- Which channel ---- */
-
-static bool is_deep(exr_const_context_t file, int part) {
-    exr_storage_t storage;
-    return exr_get_storage(file, part, &storage) != EXR_ERR_SUCCESS ||
-           (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED);
-}
-
-static const char *part_name(exr_const_context_t file, int part) {
-    const char *name = NULL;
-    return exr_get_name(file, part, &name) == EXR_ERR_SUCCESS && name ? name : "";
-}
-
-static int32_t channel_named(const exr_attr_chlist_t *channels, const char *name) {
-    for (int32_t c = 0; c < channels->num_channels; c++)
-        if (strcmp(channels->entries[c].name.str, name) == 0)
-            return c;
-    return -1;
-}
-
-/* The name of a channel without that of its layer: "R" of "paint.R". */
-static const char *own_name(const exr_attr_chlist_t *channels, int32_t channel) {
-    const char *name = channels->entries[channel].name.str, *dot = strrchr(name, '.');
-    return dot ? dot + 1 : name;
-}
-
-/* The length of the name of the layer that all channels are of; 0 where they are of none, or of several. */
-static size_t layer_length(const exr_attr_chlist_t *channels) {
-    const char *first = channels->entries[0].name.str;
-    size_t length = (size_t)(own_name(channels, 0) - first);
-    for (int32_t c = 1; c < channels->num_channels; c++) {
-        const char *name = channels->entries[c].name.str;
-        if ((size_t)(own_name(channels, c) - name) != length || strncmp(name, first, length) != 0)
-            return 0;
-    }
-    return length;
-}
-
-/* R, else Y, else the first that is not A: of the layer, where all channels are of one. */
-static int32_t default_channel(const exr_attr_chlist_t *channels) {
-    static const char *const preferred[] = {"R", "Y"};
-    size_t layer = channels->num_channels ? layer_length(channels) : 0;
-    for (size_t i = 0; i < sizeof preferred / sizeof *preferred; i++)
-        for (int32_t c = 0; c < channels->num_channels; c++)
-            if (strcmp(channels->entries[c].name.str + layer, preferred[i]) == 0)
-                return c;
-    for (int32_t c = 0; c < channels->num_channels; c++)
-        if (strcmp(channels->entries[c].name.str + layer, "A") != 0)
-            return c;
-    return channels->num_channels - 1;
-}
-
-/* The channel of a part that has a name: CHANNEL, or PART.CHANNEL. */
-static int32_t channel_of_part(exr_const_context_t file, int part, const exr_attr_chlist_t *channels, const char *wanted,
-                               bool dotted) {
-    if (!wanted[0])
-        return default_channel(channels);
-    if (!dotted)
-        return channel_named(channels, wanted);
-    const char *name = part_name(file, part);
-    size_t length = strlen(name);
-    bool names_part = length && strncmp(wanted, name, length) == 0 && wanted[length] == '.';
-    return names_part ? channel_named(channels, wanted + length + 1) : -1;
-}
-
-/* Appends ", NAME" or ", PART.NAME" for every channel, as far as there is room. */
-static void list_channels(exr_const_context_t file, int part_count, char *text, size_t size) {
-    size_t used = 0;
-    text[0] = 0;
-    for (int part = 0; part < part_count; part++) {
-        const exr_attr_chlist_t *channels = NULL;
-        const char *name = part_count > 1 ? part_name(file, part) : "";
-        if (is_deep(file, part) || exr_get_channels(file, part, &channels) != EXR_ERR_SUCCESS)
-            continue;
-        for (int32_t c = 0; c < channels->num_channels && used < size; c++)
-            used += (size_t)snprintf(text + used, size - used, "%s%s%s%s", used ? ", " : "", name, name[0] ? "." : "",
-                                     channels->entries[c].name.str);
-    }
-}
-
-static skinslide_status no_channel(exr_const_context_t file, int part_count, bool all_deep, const char *wanted,
-                                   skinslide_error *error) {
-    char listed[256];
-    if (all_deep)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the image is deep; flatten it");
-    list_channels(file, part_count, listed, sizeof listed);
-    return ss_fail(error, SKINSLIDE_BAD_IMAGE, "there is no channel %.95s; the file has %s", wanted,
-                   listed[0] ? listed : "no channels");
-}
-
-static skinslide_status choose_channel(exr_const_context_t file, const char *wanted, selection *chosen,
-                                       skinslide_error *error) {
-    bool all_deep = true;
-    if (exr_get_count(file, &chosen->part_count) != EXR_ERR_SUCCESS)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the file has no parts");
-    for (int dotted = 0; dotted < 2; dotted++)
-        for (int part = 0; part < chosen->part_count; part++) {
-            if (is_deep(file, part) || exr_get_channels(file, part, &chosen->channels) != EXR_ERR_SUCCESS)
-                continue;
-            all_deep = false;
-            chosen->part = part;
-            chosen->channel = channel_of_part(file, part, chosen->channels, wanted, dotted);
-            if (chosen->channel >= 0)
-                return SKINSLIDE_OK;
-        }
-    return no_channel(file, chosen->part_count, all_deep, wanted, error);
-}
-
-/* OpenEXR 3.1.5 cannot read DWA in C, and takes a chunk of B44 that is as large as its texels for an uncompressed one. */
-static skinslide_status check_compression(exr_const_context_t file, const selection *chosen, skinslide_error *error) {
-    static const char *const lossy[] = {"B44", "B44A", "DWAA", "DWAB"};
-    exr_compression_t compression = EXR_COMPRESSION_LAST_TYPE;
-    bool known =
-        exr_get_compression(file, chosen->part, &compression) == EXR_ERR_SUCCESS && compression <= EXR_COMPRESSION_DWAB;
-    if (known && compression <= EXR_COMPRESSION_PXR24)
-        return SKINSLIDE_OK;
-    char which[32] = "a compression that is not known";
-    if (known)
-        snprintf(which, sizeof which, "compression %s is not read", lossy[compression - EXR_COMPRESSION_B44]);
-    return ss_fail(error, SKINSLIDE_UNSUPPORTED, "%s; write the file as ZIP or PIZ", which);
-}
-
-static skinslide_status check_channel(const selection *chosen, skinslide_error *error) {
-    const exr_attr_chlist_entry_t *channel = &chosen->channels->entries[chosen->channel];
-    const char *name = channel->name.str;
-    if (channel->pixel_type != EXR_PIXEL_HALF && channel->pixel_type != EXR_PIXEL_FLOAT)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "channel %.95s holds whole numbers (uint); it must be half or float",
-                       name);
-    if (channel->x_sampling != 1 || channel->y_sampling != 1)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "channel %.95s has fewer texels than the image (sampling %d, %d)", name,
-                       channel->x_sampling, channel->y_sampling);
-    return SKINSLIDE_OK;
-}
-
-/* ---- What the header claims ---- */
-
-static window window_of(exr_attr_box2i_t box) {
-    return (window){box.min.x, box.min.y, (int64_t)box.max.x - box.min.x + 1, (int64_t)box.max.y - box.min.y + 1};
-}
-
-static skinslide_status check_window(const char *what, window w, skinslide_error *error) {
-    if (w.width < 1 || w.height < 1)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the %s window has no texels (%lld x %lld)", what, (long long)w.width,
-                       (long long)w.height);
-    if (w.width > SS_LARGEST_IMAGE * (int64_t)SS_LARGEST_IMAGE || w.height > SS_LARGEST_IMAGE * (int64_t)SS_LARGEST_IMAGE ||
-        w.width * w.height > SS_LARGEST_IMAGE * (int64_t)SS_LARGEST_IMAGE)
-        return ss_fail(error, SKINSLIDE_UNSUPPORTED, "the %s window is %lld x %lld; more texels than %d x %d are refused", what,
-                       (long long)w.width, (long long)w.height, SS_LARGEST_IMAGE, SS_LARGEST_IMAGE);
-    return SKINSLIDE_OK;
-}
-
-static skinslide_status read_windows(exr_const_context_t file, int part, window *data, window *display,
-                                     skinslide_error *error) {
-    exr_attr_box2i_t data_box, display_box;
-    if (exr_get_data_window(file, part, &data_box) != EXR_ERR_SUCCESS ||
-        exr_get_display_window(file, part, &display_box) != EXR_ERR_SUCCESS)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the header has no data window or no display window");
-    *data = window_of(data_box), *display = window_of(display_box);
-    skinslide_status status = check_window("data", *data, error);
-    return status ? status : check_window("display", *display, error);
-}
-
-skinslide_status ss_check_most(const char *before, uint64_t count, const char *of, uint64_t most, skinslide_status status,
-                               skinslide_error *error) {
-    if (count <= most)
-        return SKINSLIDE_OK;
-    return ss_fail(error, status, "%s%llu %s; more than %llu are refused", before, (unsigned long long)count, of,
-                   (unsigned long long)most);
-}
-
-static skinslide_status refuse_storage(skinslide_error *error) {
-    return ss_fail(error, SKINSLIDE_BAD_IMAGE, "the header does not say how the texels are stored");
-}
-
-/* Every chunk has eight bytes in the table of offsets and eight of its own at least, so a header cannot claim more of them than
- * the file has room for. */
-static skinslide_status check_chunks(exr_const_context_t file, int part, const source *from, skinslide_error *error) {
-    int32_t count = 0;
-    uint64_t unpacked = 0;
-    if (exr_get_chunk_count(file, part, &count) != EXR_ERR_SUCCESS || count < 1 ||
-        exr_get_chunk_unpacked_size(file, part, &unpacked) != EXR_ERR_SUCCESS)
-        return refuse_storage(error);
-    if (count > from->size / 16)
-        return ss_fail(error, SKINSLIDE_BAD_IMAGE,
-                       "truncated: the header promises %d chunks of texels, the file has %lld bytes", count,
-                       (long long)from->size);
-    skinslide_status status = ss_check_most("", (uint64_t)count, "chunks of texels", MOST_CHUNKS, SKINSLIDE_UNSUPPORTED, error);
-    return status ? status : ss_check_most("chunks of ", unpacked, "bytes", LARGEST_CHUNK, SKINSLIDE_UNSUPPORTED, error);
-}
-
-static skinslide_wrap wrap_word(const char *word, size_t length) {
-    static const struct {
-        const char *word;
-        skinslide_wrap wrap;
-    } known[] = {{"periodic", SKINSLIDE_WRAP_PERIODIC}, {"mirror", SKINSLIDE_WRAP_MIRROR}, {"black", SKINSLIDE_WRAP_BLACK}};
-    while (length && *word == ' ')
-        word++, length--;
-    while (length && word[length - 1] == ' ')
-        length--;
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-        if (strlen(known[k].word) == length && strncmp(word, known[k].word, length) == 0)
-            return known[k].wrap;
-    return SKINSLIDE_WRAP_CLAMP;
-}
-
-/* "periodic", or "periodic,clamp" for width and height. */
-static void read_wraps(exr_const_context_t file, int part, skinslide_image *image) {
-    int32_t length = 0;
-    const char *text = NULL;
-    if (exr_attr_get_string(file, part, "wrapmodes", &length, &text) != EXR_ERR_SUCCESS || !text || length < 0)
-        return;
-    const char *comma = memchr(text, ',', (size_t)length), *end = text + length;
-    image->wrap_s = wrap_word(text, (size_t)((comma ? comma : end) - text));
-    image->wrap_t = comma ? wrap_word(comma + 1, (size_t)(end - comma - 1)) : image->wrap_s;
-}
-
 /* ---- Texels ---- */
 
 /* Where the texels of chunks are written: to those of the display window. */
 typedef struct target {
-    window data, display;
-    float *pixels; /* of the display window */
-    const selection *chosen;
+    const ss_exr_header *header;
+    float *pixels;      /* of the display window */
     int64_t chunk_size; /* texels of the largest chunk */
     source *from;
 } target;
@@ -336,7 +106,7 @@ static float texel(const uint8_t *bytes, bool is_half) {
 
 /* Takes one row of the chosen channel to the display window's row. */
 static void copy_row(const target *to, const uint8_t *bytes, bool is_half, int64_t x, int64_t y, int64_t width) {
-    const window *display = &to->display;
+    const ss_exr_window *display = &to->header->display;
     if (y < display->y || y >= display->y + display->height)
         return;
     int64_t begin = x > display->x ? x : display->x;
@@ -361,7 +131,7 @@ static bool unpack_chunk(const exr_decode_pipeline_t *decode, const target *to, 
             uint64_t size = (uint64_t)channel->width * (uint64_t)channel->bytes_per_element;
             if (channel->width < 0 || size > left)
                 return false;
-            if (c == to->chosen->channel)
+            if (c == to->header->channel)
                 copy_row(to, bytes, channel->data_type == EXR_PIXEL_HALF, x, row, channel->width);
             bytes += size, left -= size;
         }
@@ -379,7 +149,7 @@ static void free_buffer(exr_transcoding_pipeline_buffer_id_t id, void *buffer) {
 }
 
 static bool decode_chunk(exr_const_context_t file, const exr_chunk_info_t *chunk, const target *to, int64_t x, int64_t y) {
-    int part = to->chosen->part;
+    int part = to->header->part;
     exr_decode_pipeline_t decode = EXR_DECODE_PIPELINE_INITIALIZER;
     bool good = succeeds(to->from, exr_decoding_initialize(file, part, chunk, &decode));
     decode.alloc_fn = allocate_buffer;
@@ -398,28 +168,30 @@ static bool chunk_fits(const exr_chunk_info_t *chunk, const target *to) {
     bool packed = chunk->compression != EXR_COMPRESSION_NONE;
     uint64_t size = (uint64_t)to->from->size;
     return chunk->width > 0 && chunk->height > 0 && (int64_t)chunk->width * chunk->height <= to->chunk_size &&
-           chunk->unpacked_size <= LARGEST_CHUNK && chunk->packed_size <= chunk->unpacked_size &&
+           chunk->unpacked_size <= SS_LARGEST_CHUNK && chunk->packed_size <= chunk->unpacked_size &&
            (packed ? chunk->packed_size > 0 : chunk->packed_size == chunk->unpacked_size) && chunk->data_offset <= size &&
            chunk->packed_size <= size - chunk->data_offset;
 }
 
 /* Returns the first row that cannot be decoded, or a row beyond the last. */
-static int64_t decode_scanlines(exr_const_context_t file, int32_t lines, const target *to) {
-    int64_t y = to->data.y, end = to->data.y + to->data.height;
-    for (exr_chunk_info_t chunk; y < end; y += lines)
-        if (!succeeds(to->from, exr_read_scanline_chunk_info(file, to->chosen->part, (int)y, &chunk)) ||
-            !chunk_fits(&chunk, to) || chunk.width != to->data.width || !decode_chunk(file, &chunk, to, to->data.x, y))
+static int64_t decode_scanlines(exr_const_context_t file, const target *to) {
+    const ss_exr_window *data = &to->header->data;
+    int64_t y = data->y;
+    for (exr_chunk_info_t chunk; y < data->y + data->height; y += to->header->chunk_height)
+        if (!succeeds(to->from, exr_read_scanline_chunk_info(file, to->header->part, (int)y, &chunk)) ||
+            !chunk_fits(&chunk, to) || chunk.width != data->width || !decode_chunk(file, &chunk, to, data->x, y))
             break;
     return y;
 }
 
-static int64_t decode_tiles(exr_const_context_t file, int32_t width, int32_t height, const target *to) {
-    int64_t y = to->data.y, end = to->data.y + to->data.height;
-    for (int row = 0; y < end; row++, y += height)
-        for (int column = 0; (int64_t)column * width < to->data.width; column++) {
+static int64_t decode_tiles(exr_const_context_t file, const target *to) {
+    const ss_exr_window *data = &to->header->data;
+    int64_t y = data->y, width = to->header->chunk_width;
+    for (int row = 0; y < data->y + data->height; row++, y += to->header->chunk_height)
+        for (int column = 0; column * width < data->width; column++) {
             exr_chunk_info_t chunk;
-            if (!succeeds(to->from, exr_read_tile_chunk_info(file, to->chosen->part, column, row, 0, 0, &chunk)) ||
-                !chunk_fits(&chunk, to) || !decode_chunk(file, &chunk, to, to->data.x + (int64_t)column * width, y))
+            if (!succeeds(to->from, exr_read_tile_chunk_info(file, to->header->part, column, row, 0, 0, &chunk)) ||
+                !chunk_fits(&chunk, to) || !decode_chunk(file, &chunk, to, data->x + column * width, y))
                 return y;
         }
     return y;
@@ -430,68 +202,49 @@ static int64_t least(int64_t a, int64_t b) {
 }
 
 static skinslide_status decode_texels(exr_const_context_t file, target *to, skinslide_error *error) {
-    int32_t width = (int32_t)to->data.width, height = 0;
-    exr_storage_t storage;
-    int part = to->chosen->part;
-    bool known = exr_get_storage(file, part, &storage) == EXR_ERR_SUCCESS;
-    if (known && storage == EXR_STORAGE_TILED)
-        known = exr_get_tile_sizes(file, part, 0, 0, &width, &height) == EXR_ERR_SUCCESS;
-    else if (known)
-        known = exr_get_scanlines_per_chunk(file, part, &height) == EXR_ERR_SUCCESS;
-    if (!known || width < 1 || height < 1)
-        return refuse_storage(error);
-    to->chunk_size = least(width, to->data.width) * least(height, to->data.height);
+    const ss_exr_header *header = to->header;
+    const ss_exr_window *data = &header->data;
+    to->chunk_size = least(header->chunk_width, data->width) * least(header->chunk_height, data->height);
     to->from->said[0] = 0;
-    int64_t end = storage == EXR_STORAGE_TILED ? decode_tiles(file, width, height, to) : decode_scanlines(file, height, to);
+    int64_t end = header->tiled ? decode_tiles(file, to) : decode_scanlines(file, to);
     if (to->from->out_of_memory)
         return ss_out_of_memory(error);
-    if (end < to->data.y + to->data.height)
+    if (end < data->y + data->height)
         return ss_fail(error, SKINSLIDE_BAD_IMAGE, "truncated or corrupt: row %lld of %lld cannot be decoded%s%s",
-                       (long long)(end - to->data.y), (long long)to->data.height, to->from->said[0] ? ": " : "",
-                       to->from->said);
+                       (long long)(end - data->y), (long long)data->height, to->from->said[0] ? ": " : "", to->from->said);
     return SKINSLIDE_OK;
 }
 
 /* ---- Decoding ---- */
 
-static char *copy_name(ss_memory *memory, exr_const_context_t file, const selection *chosen) {
-    const char *name = chosen->channels->entries[chosen->channel].name.str;
-    const char *part = chosen->part_count > 1 ? part_name(file, chosen->part) : "";
-    size_t size = strlen(part) + 1 + strlen(name) + 1;
+static char *copy_name(ss_memory *memory, const ss_exr_header *header) {
+    size_t size = strlen(header->part_name) + 1 + strlen(header->channel_name) + 1;
     char *copy = SS_NEW(memory, char, (int64_t)size);
     if (copy)
-        snprintf(copy, size, "%s%s%s", part, part[0] ? "." : "", name);
+        snprintf(copy, size, "%s%s%s", header->part_name, header->part_name[0] ? "." : "", header->channel_name);
     return copy;
 }
 
-static skinslide_status decode_selection(exr_const_context_t file, const selection *chosen, source *from, skinslide_image **out,
-                                         skinslide_error *error) {
-    target to = {.chosen = chosen, .from = from};
-    skinslide_status status = check_channel(chosen, error);
-    if (!status)
-        status = check_compression(file, chosen, error);
-    if (!status)
-        status = read_windows(file, chosen->part, &to.data, &to.display, error);
-    if (!status)
-        status = check_chunks(file, chosen->part, from, error);
-    if (status)
-        return status;
+static skinslide_status decode_image(exr_const_context_t file, const ss_exr_header *header, source *from, skinslide_image **out,
+                                     skinslide_error *error) {
+    target to = {.header = header, .from = from};
     ss_memory memory = {0};
     owned_image *owned = SS_NEW(&memory, owned_image, 1);
-    to.pixels = SS_NEW(&memory, float, to.display.width *to.display.height);
-    char *name = copy_name(&memory, file, chosen);
-    status = memory.failed ? ss_out_of_memory(error) : decode_texels(file, &to, error);
+    to.pixels = SS_NEW(&memory, float, header->display.width * header->display.height);
+    char *name = copy_name(&memory, header);
+    skinslide_status status = memory.failed ? ss_out_of_memory(error) : decode_texels(file, &to, error);
     if (status) {
         ss_free(&memory);
         return status;
     }
     owned->memory = memory;
     owned->image = (skinslide_image){.size = sizeof owned->image,
-                                     .width = (int32_t)to.display.width,
-                                     .height = (int32_t)to.display.height,
+                                     .width = (int32_t)header->display.width,
+                                     .height = (int32_t)header->display.height,
+                                     .wrap_s = header->wrap_s,
+                                     .wrap_t = header->wrap_t,
                                      .pixels = to.pixels,
                                      .channel = name};
-    read_wraps(file, chosen->part, &owned->image);
     *out = &owned->image;
     return SKINSLIDE_OK;
 }
@@ -509,7 +262,7 @@ static skinslide_status decode(source *from, const char *channel, skinslide_imag
     from->readable = least(from->size, LARGEST_HEADER);
     bool opened = succeeds(from, exr_start_read(&file, "image", &setup));
     from->readable = from->size;
-    selection chosen = {.channel = -1};
+    ss_exr_header header;
     skinslide_status status;
     if (from->out_of_memory)
         status = ss_out_of_memory(error);
@@ -517,9 +270,9 @@ static skinslide_status decode(source *from, const char *channel, skinslide_imag
         status = ss_fail(error, SKINSLIDE_BAD_IMAGE, "not an OpenEXR file, or a truncated or corrupt one%s%s",
                          from->said[0] ? ": " : "", from->said);
     else
-        status = choose_channel(file, channel ? channel : "", &chosen, error);
+        status = ss_exr_read_header(file, channel ? channel : "", from->size, &header, error);
     if (!status)
-        status = decode_selection(file, &chosen, from, out, error);
+        status = decode_image(file, &header, from, out, error);
     exr_finish(&file);
     return status;
 }

@@ -36,7 +36,29 @@ skinslide_status ss_take_layout(const skinslide_texture_layout **layout, ss_take
 /* Texture coordinates of a corner of a face must be finite. */
 skinslide_status ss_check_st(const float st[2], int32_t face, skinslide_error *error);
 
-/* ---- exrread.c ---- */
+/* ---- exrheader.c ---- */
+
+#define SS_LARGEST_CHUNK ((uint64_t)1 << 30) /* bytes */
+
+typedef struct ss_exr_window {
+    int64_t x, y, width, height;
+} ss_exr_window;
+
+/* What the header of an OpenEXR file says of the channel that is read. */
+typedef struct ss_exr_header {
+    int part;
+    int32_t channel;                      /* of the part */
+    const char *part_name, *channel_name; /* the file's; the part's is "" if there is one part */
+    ss_exr_window data, display;
+    bool tiled;
+    int32_t chunk_width, chunk_height; /* of tiles, or of chunks of scanlines */
+    skinslide_wrap wrap_s, wrap_t;
+} ss_exr_header;
+
+/* Reads and checks the header of an open file, OpenEXR's exr_const_context_t. wanted is a channel, as for skinslide_exr_decode, or
+ * "". Takes no memory. */
+skinslide_status ss_exr_read_header(const void *file, const char *wanted, int64_t file_size, ss_exr_header *out,
+                                    skinslide_error *error);
 
 /* Fails with a status where a count that a file claims is too large: "has " 5000000000 "bytes". */
 skinslide_status ss_check_most(const char *before, uint64_t count, const char *of, uint64_t most, skinslide_status status,
