@@ -5,47 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum layout { LAYOUT_NONE, LAYOUT_VERTEX, LAYOUT_FACE, LAYOUT_EDGE } layout;
-
-/* What an input's values have become. They are in memory of these controls, which is kept from frame to frame, or of the
- * base. */
-typedef struct control {
-    double number;
-    layout layout; /* of values */
-    const float *values;
-    float *own;
-    double *plain;        /* paint converted to one number for each element */
-    const float *product; /* paint by vertex times its map; NULL: not multiplied yet */
-    float *own_product;
-    const ss_texture *texture;
-    const ss_texture *base_texture; /* the base's texture, until another is taken */
-    ss_texture *own_texture;
-    bool unplaced; /* own_texture must find its tiles anew, since its asset or the coordinates are new */
-    bool refused;
-} control;
-
-struct skinslide_stage_controls {
-    ss_memory memory;
-    const skinslide_stage_patch *patch;
-    control controls[SS_CONTROL_ROWS];
-    const float *st; /* [index_count][2] of this or of the base; NULL: none was taken */
-    float *own_st;
-    skinslide_status st_status; /* why there is no st, for when a map needs it */
-    skinslide_error st_error;
-    skinslide_controls given; /* what skinslide_stage_controls_get gave last */
-};
-
-static const ss_input *inputs(void) {
+const ss_input *ss_control_input(int32_t row) {
     int32_t count;
-    return ss_inputs(SKINSLIDE_STAGE_CONTROLS, &count);
+    return &ss_inputs(SKINSLIDE_STAGE_CONTROLS, &count)[row];
 }
 
 /* ---- Life ---- */
 
 static void start(skinslide_stage_controls *controls, const skinslide_stage_controls *base) {
     for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
-        control *own = &controls->controls[row];
-        own->number = inputs()[row].fallback;
+        ss_control *own = &controls->controls[row];
+        own->number = ss_control_input(row)->fallback;
         if (!base)
             continue;
         *own = base->controls[row];
@@ -81,7 +51,7 @@ void skinslide_stage_controls_destroy(skinslide_stage_controls *controls) {
 /* ---- Paint ---- */
 
 static skinslide_status check_paint(const skinslide_stage_patch *patch, const ss_input *input, const ss_record *record,
-                                    layout *found, skinslide_error *error) {
+                                    ss_paint_layout *found, skinslide_error *error) {
     const char *interpolation = ss_interpolation(record);
     skinslide_status status = ss_check_paint_type(patch, record, false, SKINSLIDE_BAD_CONTROL, error);
     if (status)
@@ -91,17 +61,17 @@ static skinslide_status check_paint(const skinslide_stage_patch *patch, const ss
         return ss_fail(error, SKINSLIDE_BAD_CONTROL,
                        SS_NAMED " has interpolation " SS_NAMED "; it must be vertex, faceVarying%s or constant",
                        SS_NAME(record->value.name), SS_NAME(interpolation), input->face_place ? ", uniform" : "");
-    *found = is_constant ? LAYOUT_NONE : by_face ? LAYOUT_FACE : LAYOUT_VERTEX;
+    *found = is_constant ? SS_LAYOUT_NONE : by_face ? SS_LAYOUT_FACE : SS_LAYOUT_VERTEX;
     if (!ss_has_value(record))
         return ss_refuse_empty(record, SKINSLIDE_BAD_CONTROL, error);
     return ss_check_indices(record, SKINSLIDE_BAD_CONTROL, error);
 }
 
-static skinslide_status check_count(const skinslide_stage_patch *patch, const ss_record *record, layout found,
+static skinslide_status check_count(const skinslide_stage_patch *patch, const ss_record *record, ss_paint_layout found,
                                     skinslide_error *error) {
-    if (found == LAYOUT_VERTEX)
+    if (found == SS_LAYOUT_VERTEX)
         return ss_check_painted_vertices(patch->mesh, record, SKINSLIDE_BAD_CONTROL, error);
-    if (found == LAYOUT_FACE)
+    if (found == SS_LAYOUT_FACE)
         return ss_check_length(record, patch->mesh->taken[SS_ROW_FACE_COUNTS].array.count, "faces", SKINSLIDE_BAD_CONTROL,
                                error);
     if (record->length != 1)
@@ -114,7 +84,7 @@ static skinslide_status check_count(const skinslide_stage_patch *patch, const ss
 static float *own_values(skinslide_stage_controls *controls, int32_t row) {
     const skinslide_stage_mesh *mesh = controls->patch->mesh;
     int32_t faces = mesh->taken[SS_ROW_FACE_COUNTS].array.count;
-    control *own = &controls->controls[row];
+    ss_control *own = &controls->controls[row];
     if (!own->own)
         own->own = SS_NEW(&controls->memory, float, mesh->vertex_count > faces ? mesh->vertex_count : faces);
     return own->own;
@@ -122,7 +92,7 @@ static float *own_values(skinslide_stage_controls *controls, int32_t row) {
 
 /* Gives paint one number for each point or face: the record as it is, or a converted one, in memory that is kept as well. */
 static skinslide_status make_plain(skinslide_stage_controls *controls, int32_t row, ss_record *record, skinslide_error *error) {
-    control *own = &controls->controls[row];
+    ss_control *own = &controls->controls[row];
     if (ss_is_plain_paint(record))
         return SKINSLIDE_OK;
     if (!own->plain)
@@ -173,10 +143,10 @@ static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t r
                                    skinslide_error *error) {
     ss_record own_record = *given, *record = &own_record;
     const skinslide_stage_patch *patch = controls->patch;
-    const ss_input *input = &inputs()[row];
-    layout found = LAYOUT_NONE;
-    control *own = &controls->controls[row];
-    own->values = NULL, own->layout = LAYOUT_NONE;
+    const ss_input *input = ss_control_input(row);
+    ss_paint_layout found = SS_LAYOUT_NONE;
+    ss_control *own = &controls->controls[row];
+    own->values = NULL, own->layout = SS_LAYOUT_NONE;
     if (record->value.type == SKINSLIDE_VALUE_NONE)
         return SKINSLIDE_OK;
     skinslide_status status = check_paint(patch, input, record, &found, error);
@@ -189,12 +159,12 @@ static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t r
         status = ss_out_of_memory(error);
     if (status)
         return status;
-    bool is_constant = found == LAYOUT_NONE;
-    const ss_array *inside = found == LAYOUT_FACE ? &patch->faces : &patch->vertices;
+    bool is_constant = found == SS_LAYOUT_NONE;
+    const ss_array *inside = found == SS_LAYOUT_FACE ? &patch->faces : &patch->vertices;
     status = is_constant ? expand_constant(input, record, patch->mesh->vertex_count, values, error)
                          : expand(input, record, patch->faces.count ? inside : NULL, values, error);
     if (!status && !(is_constant && input->drops_constant))
-        own->values = values, own->layout = is_constant ? LAYOUT_VERTEX : found;
+        own->values = values, own->layout = is_constant ? SS_LAYOUT_VERTEX : found;
     return status;
 }
 
@@ -202,12 +172,12 @@ static skinslide_status take_paint(skinslide_stage_controls *controls, int32_t r
 
 static skinslide_status take_factors(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
                                      skinslide_error *error) {
-    const ss_input *input = &inputs()[row];
+    const ss_input *input = ss_control_input(row);
     const ss_array *edges = &controls->patch->taken[SS_ROW_EDGES].array;
     const char *name = record->value.name;
     char edges_name[256];
-    control *own = &controls->controls[row];
-    own->values = NULL, own->layout = LAYOUT_NONE;
+    ss_control *own = &controls->controls[row];
+    own->values = NULL, own->layout = SS_LAYOUT_NONE;
     ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_EDGES, controls->patch->name, edges_name);
     skinslide_status status = ss_check_floats(record, SKINSLIDE_BAD_CONTROL, error);
     if (controls->patch->taken[SS_ROW_EDGES].refused) /* its error was reported when it was taken */
@@ -227,32 +197,14 @@ static skinslide_status take_factors(skinslide_stage_controls *controls, int32_t
     if (!own->own)
         return ss_out_of_memory(error);
     ss_copy_floats(record, own->own);
-    own->values = own->own, own->layout = LAYOUT_EDGE;
+    own->values = own->own, own->layout = SS_LAYOUT_EDGE;
     return SKINSLIDE_OK;
 }
 
 /* ---- Any input ---- */
 
-/* Makes a texture its own. */
-static skinslide_status own_texture(skinslide_stage_controls *controls, int32_t row, skinslide_error *error) {
-    control *own = &controls->controls[row];
-    if (!own->own_texture)
-        own->own_texture = ss_texture_create(&inputs()[row], controls->patch);
-    own->texture = own->own_texture;
-    own->unplaced = true;
-    return own->own_texture ? SKINSLIDE_OK : ss_out_of_memory(error);
-}
-
-static skinslide_status take_texture(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
-                                     skinslide_error *error) {
-    control *own = &controls->controls[row];
-    own->base_texture = NULL;
-    skinslide_status status = own_texture(controls, row, error);
-    return status ? status : ss_texture_take(own->own_texture, record, error);
-}
-
 static skinslide_status take(skinslide_stage_controls *controls, int32_t row, const ss_record *record, skinslide_error *error) {
-    const ss_input *input = &inputs()[row];
+    const ss_input *input = ss_control_input(row);
     controls->controls[input->kind == SS_KIND_TEXTURE ? input->multiplies : row].product = NULL;
     switch (input->kind) {
     case SS_KIND_NUMBER:
@@ -260,71 +212,10 @@ static skinslide_status take(skinslide_stage_controls *controls, int32_t row, co
     case SS_KIND_FACTORS:
         return take_factors(controls, row, record, error);
     case SS_KIND_TEXTURE:
-        return take_texture(controls, row, record, error);
+        return ss_take_texture(controls, row, record, error);
     default:
         return take_paint(controls, row, record, error);
     }
-}
-
-/* ---- Maps ---- */
-
-const skinslide_stage_input *skinslide_stage_controls_coordinates(const skinslide_stage_controls *controls) {
-    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++)
-        if (ss_texture_authored(controls->controls[row].texture))
-            return &controls->patch->coordinates;
-    return NULL;
-}
-
-static skinslide_status copy_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
-                                         skinslide_error *error) {
-    const skinslide_stage_mesh *mesh = controls->patch->mesh;
-    ss_record record;
-    skinslide_status status = ss_open(value, &record, error);
-    if (!status && record.value.type == SKINSLIDE_VALUE_NONE) {
-        char setting[256];
-        ss_name_property(SKINSLIDE_STAGE_PATCH, SS_ROW_ST, controls->patch->name, setting);
-        const char *there = skinslide_stage_mesh_coordinates(mesh);
-        return ss_fail(error, SKINSLIDE_BAD_CONTROL,
-                       "has a map, but the mesh has no " SS_NAMED "; name one in %s: there %s" SS_NAMED,
-                       SS_NAME(controls->patch->st), setting, *there ? "are " : "are none", SS_NAME(there));
-    }
-    if (!status && !controls->own_st)
-        controls->own_st = SS_NEW(&controls->memory, float, 2 * (int64_t)ss_faces_of(mesh).index_count);
-    if (!status && !controls->own_st)
-        return ss_out_of_memory(error);
-    return status ? status : skinslide_stage_coordinates(mesh, value, controls->own_st, error);
-}
-
-/* Marks a map as unusable. */
-static void refuse(control *own) {
-    ss_texture_drop(own->own_texture);
-    own->refused = true;
-}
-
-/* Moves a map to other coordinates: the base's map becomes the controls' own. */
-static skinslide_status move_map(skinslide_stage_controls *controls, int32_t row, skinslide_error *error) {
-    control *own = &controls->controls[row];
-    controls->controls[inputs()[row].multiplies].product = NULL;
-    own->unplaced = true;
-    if (!ss_texture_wanted(own->base_texture))
-        return SKINSLIDE_OK;
-    skinslide_status status = own_texture(controls, row, error);
-    if (!status)
-        status = ss_texture_repeat(own->own_texture, own->base_texture, error);
-    own->refused = status != SKINSLIDE_OK;
-    return status;
-}
-
-/* An error in them is kept, and reported only once a map needs them, perhaps at a later time. */
-static skinslide_status take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value,
-                                         skinslide_error *error) {
-    skinslide_status status = SKINSLIDE_OK;
-    controls->st_status = copy_coordinates(controls, value, &controls->st_error);
-    controls->st = controls->st_status ? NULL : controls->own_st;
-    for (int32_t row = 0; !status && row < SS_CONTROL_ROWS; row++)
-        if (controls->controls[row].texture)
-            status = move_map(controls, row, error);
-    return status;
 }
 
 skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *controls, const skinslide_stage_input *input,
@@ -333,7 +224,7 @@ skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *control
     if (!controls || (row < 0 && input != &controls->patch->coordinates))
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no input of them");
     if (row < 0)
-        return take_coordinates(controls, value, error);
+        return ss_take_coordinates(controls, value, error);
     ss_record record;
     skinslide_status status = ss_open(value, &record, error);
     if (!status)
@@ -342,82 +233,12 @@ skinslide_status skinslide_stage_controls_take(skinslide_stage_controls *control
     return status;
 }
 
-static control *needing(const skinslide_stage_controls *controls) {
-    for (int32_t row = 0; row < SS_CONTROL_ROWS; row++)
-        if (ss_texture_need(controls->controls[row].own_texture))
-            return (control *)&controls->controls[row];
-    return NULL;
-}
-
-static skinslide_status place_map(const skinslide_stage_controls *controls, control *own, skinslide_error *error) {
-    own->unplaced = false;
-    if (controls->st)
-        return ss_texture_find_tiles(own->own_texture, controls->st, error);
-    if (error)
-        *error = controls->st_error;
-    return controls->st_status;
-}
-
-/* Finds the tiles of the maps that have a new asset, or new coordinates. */
-static skinslide_status place_maps(skinslide_stage_controls *controls, skinslide_error *error) {
-    skinslide_status first = SKINSLIDE_OK;
-    bool are_taken = controls->st || controls->st_status;
-    for (int32_t row = 0; are_taken && row < SS_CONTROL_ROWS; row++) {
-        control *own = &controls->controls[row];
-        if (!own->unplaced || !ss_texture_wanted(own->own_texture))
-            continue;
-        skinslide_status status = place_map(controls, own, first ? NULL : error);
-        if (status)
-            refuse(own);
-        first = first ? first : status;
-    }
-    return first;
-}
-
-skinslide_status skinslide_stage_controls_need(skinslide_stage_controls *controls, const skinslide_stage_need **need,
-                                               skinslide_error *error) {
-    if (!controls || !need)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no controls, or no place for what they need");
-    skinslide_status status = place_maps(controls, error);
-    if (status)
-        return status;
-    const control *own = needing(controls);
-    *need = own ? ss_texture_need(own->own_texture) : NULL;
-    return SKINSLIDE_OK;
-}
-
-skinslide_bool skinslide_stage_controls_holds(const skinslide_stage_controls *controls, const char *path) {
-    const control *own = needing(controls);
-    return own && path && ss_texture_holds(own->own_texture, path);
-}
-
-skinslide_status skinslide_stage_controls_give(skinslide_stage_controls *controls, const skinslide_stage_file *file,
-                                               skinslide_error *error) {
-    control *own = controls ? needing(controls) : NULL;
-    skinslide_stage_file given = SKINSLIDE_STAGE_FILE_DEFAULT;
-    if (!own)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no file is asked for");
-    skinslide_status status = ss_take(file, "skinslide_stage_file", &given, sizeof given, error);
-    if (status)
-        return status;
-    status = ss_texture_give(own->own_texture, controls->st, &given, error);
-    if (status)
-        refuse(own);
-    return status;
-}
-
-const skinslide_stage_texture *skinslide_stage_controls_texture(const skinslide_stage_controls *controls,
-                                                                const skinslide_stage_input *input) {
-    int32_t row = ss_row_of(SKINSLIDE_STAGE_CONTROLS, input);
-    return row < 0 ? NULL : ss_texture_shown(controls->controls[row].texture);
-}
-
 /* ---- What the slider takes ---- */
 
 static skinslide_status check_complete(const skinslide_stage_controls *controls, skinslide_error *error) {
     for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
-        const control *own = &controls->controls[row];
-        const char *name = inputs()[row].shown.name;
+        const ss_control *own = &controls->controls[row];
+        const char *name = ss_control_input(row)->shown.name;
         if (own->refused)
             return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "%s was refused", name);
         if (ss_texture_wanted(own->texture) && !ss_texture_values(own->texture))
@@ -428,10 +249,10 @@ static skinslide_status check_complete(const skinslide_stage_controls *controls,
 
 /* Multiplies paint by vertex by a map, into the paint's product. */
 static skinslide_status multiply(skinslide_stage_controls *controls, int32_t map_row, skinslide_error *error) {
-    int32_t row = inputs()[map_row].multiplies, count = controls->patch->mesh->vertex_count;
+    int32_t row = ss_control_input(map_row)->multiplies, count = controls->patch->mesh->vertex_count;
     const ss_texture *texture = controls->controls[map_row].texture;
     const float *map = ss_texture_values(texture);
-    control *own = &controls->controls[row];
+    ss_control *own = &controls->controls[row];
     if (own->product)
         return SKINSLIDE_OK;
     if (!own->own_product)
@@ -451,7 +272,7 @@ static skinslide_status multiply_all(skinslide_stage_controls *controls, skinsli
     skinslide_status status = SKINSLIDE_OK;
     for (int32_t row = 0; !status && row < SS_CONTROL_ROWS; row++)
         if (ss_texture_values(controls->controls[row].texture) &&
-            controls->controls[inputs()[row].multiplies].layout == LAYOUT_VERTEX)
+            controls->controls[ss_control_input(row)->multiplies].layout == SS_LAYOUT_VERTEX)
             status = multiply(controls, row, error);
     return status;
 }
@@ -461,15 +282,16 @@ static void put_array(skinslide_controls *out, size_t place, const float *values
 }
 
 static void put(const skinslide_stage_controls *controls, int32_t row, skinslide_controls *out) {
-    const ss_input *input = &inputs()[row];
-    const control *own = &controls->controls[row];
+    const ss_input *input = ss_control_input(row);
+    const ss_control *own = &controls->controls[row];
     if (input->kind == SS_KIND_TEXTURE) {
-        const control *paint = &controls->controls[input->multiplies];
+        const ss_control *paint = &controls->controls[input->multiplies];
         const float *map = ss_texture_values(own->texture);
         if (map)
-            put_array(out, inputs()[input->multiplies].place, paint->layout == LAYOUT_VERTEX ? paint->product : map);
+            put_array(out, ss_control_input(input->multiplies)->place,
+                      paint->layout == SS_LAYOUT_VERTEX ? paint->product : map);
     } else if (input->kind != SS_KIND_NUMBER && own->values) {
-        put_array(out, own->layout == LAYOUT_FACE ? input->face_place : input->place, own->values);
+        put_array(out, own->layout == SS_LAYOUT_FACE ? input->face_place : input->place, own->values);
     }
 }
 
@@ -477,14 +299,14 @@ static void put_numbers(const skinslide_stage_controls *controls, skinslide_cont
     for (int32_t row = 0; row < SS_CONTROL_ROWS; row++) {
         double live = row == SS_ROW_ENVELOPE ? controls->patch->live.envelope : 1;
         float number = (float)(controls->controls[row].number * live);
-        if (inputs()[row].kind == SS_KIND_NUMBER)
-            memcpy((char *)out + inputs()[row].place, &number, sizeof number);
+        if (ss_control_input(row)->kind == SS_KIND_NUMBER)
+            memcpy((char *)out + ss_control_input(row)->place, &number, sizeof number);
     }
 }
 
 bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row) {
-    const control *own = &controls->controls[row];
-    return own->values || ss_texture_wanted(own->texture) || own->number != inputs()[row].fallback;
+    const ss_control *own = &controls->controls[row];
+    return own->values || ss_texture_wanted(own->texture) || own->number != ss_control_input(row)->fallback;
 }
 
 skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given,

@@ -346,11 +346,6 @@ skinslide_status ss_settle_faces(skinslide_stage_patch *patch, skinslide_error *
 /* The same if the distance by which it grows has changed. */
 skinslide_status ss_settle_way(skinslide_stage_patch *patch, skinslide_error *error);
 
-/* controls.c: whether an input has an effect at the time of the controls. */
-bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row);
-/* The controls as the slider takes them, owned by the handle. */
-skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given, skinslide_error *error);
-
 /* ---- textures.c: one map ---- */
 
 typedef struct ss_texture ss_texture;
@@ -383,6 +378,53 @@ void ss_texture_drop(ss_texture *texture);
 /* By vertex, 1 off the patch; NULL if there is no map, or not yet. */
 const float *ss_texture_values(const ss_texture *texture);
 const skinslide_stage_texture *ss_texture_shown(const ss_texture *texture);
+
+/* ---- controls.c ---- */
+
+typedef enum ss_paint_layout { SS_LAYOUT_NONE, SS_LAYOUT_VERTEX, SS_LAYOUT_FACE, SS_LAYOUT_EDGE } ss_paint_layout;
+
+/* What an input's values have become. They are in memory of these controls, which is kept from frame to frame, or of the
+ * base. */
+typedef struct ss_control {
+    double number;
+    ss_paint_layout layout; /* of values */
+    const float *values;
+    float *own;
+    double *plain;        /* paint converted to one number for each element */
+    const float *product; /* paint by vertex times its map; NULL: not multiplied yet */
+    float *own_product;
+    const ss_texture *texture;
+    const ss_texture *base_texture; /* the base's texture, until another is taken */
+    ss_texture *own_texture;
+    bool unplaced; /* own_texture must find its tiles anew, since its asset or the coordinates are new */
+    bool refused;
+} ss_control;
+
+struct skinslide_stage_controls {
+    ss_memory memory;
+    const skinslide_stage_patch *patch;
+    ss_control controls[SS_CONTROL_ROWS];
+    const float *st; /* [index_count][2] of this or of the base; NULL: none was taken */
+    float *own_st;
+    skinslide_status st_status; /* why there is no st, for when a map needs it */
+    skinslide_error st_error;
+    skinslide_controls given; /* what skinslide_stage_controls_get gave last */
+};
+
+/* The input in a row of the table. */
+const ss_input *ss_control_input(int32_t row);
+/* Whether an input has an effect at the time of the controls. */
+bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row);
+/* The controls as the slider takes them, owned by the handle. */
+skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given, skinslide_error *error);
+
+/* ---- maps.c ---- */
+
+/* Takes a texture's asset. */
+skinslide_status ss_take_texture(skinslide_stage_controls *controls, int32_t row, const ss_record *record,
+                                 skinslide_error *error);
+/* Takes the texture coordinates. */
+skinslide_status ss_take_coordinates(skinslide_stage_controls *controls, const skinslide_value *value, skinslide_error *error);
 
 /* ---- follows.c: primvars that follow the skin ---- */
 
