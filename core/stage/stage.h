@@ -447,6 +447,42 @@ typedef enum ss_following {
 /* Whether a primvar follows the skin, and as what. SS_FOLLOWS_NOT also for other properties, and for inputs of a table. */
 ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *told);
 
+/* ---- derived.c ---- */
+
+/* An output, in a list. */
+typedef struct ss_derivation {
+    skinslide_stage_output output;
+    const ss_input *input;
+    skinslide_normals_layout layout; /* of vectors that are carried */
+    struct ss_derivation *next;
+} ss_derivation;
+
+struct skinslide_stage_derived {
+    ss_memory memory;
+    const skinslide_stage_mesh *mesh;
+    double *point_times; /* [point_time_count] as authored; merged they are fewer */
+    int64_t point_time_count;
+    double *merged; /* point_times merged and, once filled, with the frames between */
+    int64_t merged_count;
+    double rate;
+    bool primvar_counts;          /* primvars:normals win over normals */
+    ss_derivation *first, **last; /* outputs */
+    struct ss_offer *offers;
+    struct ss_warning *warnings, **last_warning;
+};
+
+/* ---- outputs.c ---- */
+
+/* How many elements a value has. */
+int32_t ss_derived_length(const skinslide_stage_mesh *mesh, skinslide_normals_layout layout);
+/* Whether the values of an output are doubles. */
+bool ss_is_written_double(const ss_input *input, const ss_record *record);
+/* Fails if a value of an input cannot be used: its type, its length, indices, vectors that are too long to be turned. */
+skinslide_status ss_check_derived(const skinslide_stage_mesh *mesh, const ss_input *input, const ss_record *record,
+                                  skinslide_normals_layout layout, skinslide_error *error);
+/* Fails: there are too few samples of points for a rate. */
+skinslide_status ss_refuse_poses(int64_t count, int32_t wanted, skinslide_error *error);
+
 /* ---- times.c ---- */
 
 /* Finds up to `count` of the times next to a time, including it where a difference needs it; ascending. */
