@@ -81,7 +81,7 @@ def run_python(code: str) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("words", ["--help", "bake --help", "slide"])
+@pytest.mark.parametrize("words", ["--help", "--version", "bake --help", "slide"])
 def test_help_loads_neither_usd_nor_numpy(words):
     said = run_python(f"""
         import sys

@@ -7,13 +7,14 @@ import re
 import weakref
 from collections.abc import Callable
 from functools import cache, partial
-from typing import Any, TypeVar
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from skinslide._core import ffi, lib
 from skinslide.arrays.records import DeviceInfo, LookupInfo, PatchInfo, PatchResult, Roughness, WeldInfo
 from skinslide.problems import SliderError, not_one_of
+
+if TYPE_CHECKING:
+    import numpy as np
 
 Record = TypeVar("Record", PatchInfo, PatchResult, DeviceInfo, LookupInfo, WeldInfo, Roughness)
 
