@@ -82,7 +82,7 @@ class Meetings:
             kind = kinds.setdefault(sha256(own.data).digest(), len(kinds))
             self._kind.append(kind)
             if kind == len(places):
-                places.append(np.unique(own))
+                places.append(own)
         self._meet = _shared(places)
 
     def of(self, number: int) -> list[int]:
@@ -99,15 +99,18 @@ def _places(points: np.ndarray) -> np.ndarray:
 
 
 def _shared(sets: list[np.ndarray]) -> list[set[int]]:
-    """Of each set of numbers, of which none is there twice, the others that have one of them."""
+    """Of each set of numbers the others that have one of them."""
     found: list[set[int]] = [set() for _ in sets]
     numbers = np.concatenate(sets) if sets else np.empty(0, np.uint64)
-    owners = np.repeat(np.arange(len(sets)), [len(each) for each in sets])
     order = np.argsort(numbers, kind="stable")
-    _, starts, counts = np.unique(numbers[order], return_index=True, return_counts=True)
-    for count in np.unique(counts[counts > 1]):
+    numbers, owners = numbers[order], np.repeat(np.arange(len(sets)), [len(each) for each in sets])[order]
+    again = np.append(False, (numbers[1:] == numbers[:-1]) & (owners[1:] == owners[:-1]))[: len(numbers)]
+    numbers, owners = numbers[~again], owners[~again]
+    # Nothing more of np.unique is used, which would load numpy.ma: that takes as long as some frames.
+    _, starts, counts = np.unique(numbers, return_index=True, return_counts=True)
+    for count in set(counts[counts > 1].tolist()):
         runs = starts[counts == count][:, None] + np.arange(count)
-        for several in np.unique(owners[order][runs], axis=0).tolist():
+        for several in set(map(tuple, owners[runs].tolist())):
             for each in several:
                 found[each].update(several)
     for number, others in enumerate(found):
