@@ -29,6 +29,7 @@ def root(tmp_path_factory):
     made = root / "build" / "examples"
     made.mkdir(parents=True)
     (root / "build" / "venv").symlink_to(sys.prefix)
+    (root / "examples").symlink_to(EXAMPLES)
     for example in ("body", "character"):
         run([sys.executable, EXAMPLES / example / "make.py", made / example], root)
     (made / "body" / "bake.json").write_text('{"problems": []}')  # of a bake that failed, which is quick
@@ -52,9 +53,9 @@ def python_snippets() -> list[str]:
     return re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 
 
-def shell_commands() -> list[str]:
+def shell_commands(page: str = README) -> list[str]:
     """The lines of indented blocks, and inline code that begins with a command and goes on, in their order."""
-    found = re.findall(r"^    (.+)$|`((?:skinslide|python|pip|cmake|openjd|cd|\./\S+) [^`\n]+)`", README, re.MULTILINE)
+    found = re.findall(r"^    (.+)$|`((?:skinslide|python|pip|cmake|openjd|cd|\./\S+) [^`\n]+)`", page, re.MULTILINE)
     return [re.sub(r"\s+#.*", "", block or inline) for block, inline in found]
 
 
@@ -80,6 +81,16 @@ def test_shell_commands_in_order(root):
     folder = root / re.match(r"cd (\S+)", commands[0])[1]
     written = [each for command in commands for each in re.findall(r"(?:-o|--html|--payload) (\S+)", command)]
     assert len(written) > 10 and all((folder / each).exists() for each in written)
+
+
+def test_the_commands_of_the_examples(root):
+    """One is made in full; another, of which only what is particular to it is said, is made before that."""
+    text = (EXAMPLES / "README.md").read_text()
+    commands = [each for each in shell_commands(text) if "/" in each and not each.startswith("./")]
+    assert len(commands) == 5 and "out/character" in commands[-1]
+    commands.insert(4, commands[1].replace("body", "character"))
+    run(["bash", "-euxc", "\n".join(commands)], root)
+    assert (root / "out/body/slid.usdc").exists() and (root / "out/character/stage.usda").exists()
 
 
 @pytest.mark.parametrize("command", ELSEWHERE)
