@@ -8,13 +8,6 @@ typedef struct even_rest {
     ss_sheet *sheet;
 } even_rest;
 
-typedef struct even_slide {
-    ss_slide head;
-    ss_memory memory;
-    ss_room *room;
-    ss_evener *evener;
-} even_slide;
-
 /* ---- Once a shot ---- */
 
 static void destroy(ss_rest *rest) {
@@ -49,33 +42,35 @@ skinslide_status ss_multiply_rest(ss_rest *rest, skinslide_error *error) {
 
 /* ---- Once a thread ---- */
 
-skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error) {
-    slide->rest = rest;
-    slide->flat = (ss_flat){.corner = (const double(*)[2])ss_sheet_of(rest)->flat};
-    slide->places = SS_NEW(memory, ss_place, rest->patch->free_count);
-    return memory->failed ? ss_out_of_memory(error) : SKINSLIDE_OK;
+skinslide_status ss_open_even(const ss_rest *rest, bool bonds_needed, ss_room *room, ss_even_slide *slide,
+                              skinslide_error *error) {
+    slide->room = room;
+    slide->head.rest = rest;
+    slide->head.flat = (ss_flat){.corner = (const double(*)[2])ss_sheet_of(rest)->flat};
+    slide->head.places = SS_NEW(&slide->memory, ss_place, rest->patch->free_count);
+    if (slide->memory.failed)
+        return ss_out_of_memory(error);
+    return ss_evener_create(ss_sheet_of(rest), bonds_needed, room, &slide->evener, error);
+}
+
+void ss_close_even(ss_even_slide *slide) {
+    ss_evener_destroy(slide->evener);
+    ss_free(&slide->memory);
+    free(slide);
 }
 
 static void close_slide(ss_slide *slide) {
-    even_slide *own = (even_slide *)slide;
-    ss_evener_destroy(own->evener);
-    ss_free(&own->memory);
-    free(own);
+    ss_close_even((ss_even_slide *)slide);
 }
 
 static skinslide_status open_slide(const ss_rest *rest, ss_room *room, struct ss_idbuffer *idbuffer, int32_t number,
                                    ss_slide **out, skinslide_error *error) {
     (void)idbuffer, (void)number; /* nothing is looked up */
-    even_slide *own = calloc(1, sizeof *own);
-    if (!own)
-        return ss_out_of_memory(error);
-    own->room = room;
-    skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
+    ss_even_slide *own = calloc(1, sizeof *own);
+    skinslide_status status = own ? ss_open_even(rest, false, room, own, error) : ss_out_of_memory(error);
+    if (status && own)
+        ss_close_even(own);
     if (!status)
-        status = ss_evener_create(ss_sheet_of(rest), false, room, &own->evener, error);
-    if (status)
-        close_slide(&own->head);
-    else
         *out = &own->head;
     return status;
 }
@@ -90,7 +85,7 @@ void ss_end_slide(ss_evener *evener, const ss_frame *frame, ss_slide *slide, ski
 }
 
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
-    even_slide *own = (even_slide *)slide;
+    ss_even_slide *own = (ss_even_slide *)slide;
     double time = ss_now();
     ss_begin_turn(own->room);
     ss_evener_lay_out(own->evener, own->room);

@@ -199,8 +199,18 @@ int32_t ss_count_turned_over(const ss_sheet *sheet, const ss_place *places, doub
 const ss_sheet *ss_sheet_of(const ss_rest *rest);
 /* Does ss_sheet_multiply for its sheet. */
 skinslide_status ss_multiply_rest(ss_rest *rest, skinslide_error *error);
-/* Fills what every slide begins with. */
-skinslide_status ss_begin_slide(const ss_rest *rest, ss_memory *memory, ss_slide *slide, skinslide_error *error);
+/* A slide, as it begins under each of these rules. */
+typedef struct ss_even_slide {
+    ss_slide head;
+    ss_memory memory;
+    ss_room *room;
+    ss_evener *evener;
+} ss_even_slide;
+/* Opens a slide that is all zeros; if it fails, the slide is still to be closed. bonds_needed as for ss_evener_create. */
+skinslide_status ss_open_even(const ss_rest *rest, bool bonds_needed, ss_room *room, ss_even_slide *slide,
+                              skinslide_error *error);
+/* Frees the slide too. */
+void ss_close_even(ss_even_slide *slide);
 /* Writes where the vertices are, no farther than the frame allows, and counts the faces that turned over. */
 void ss_end_slide(ss_evener *evener, const ss_frame *frame, ss_slide *slide, skinslide_patch_result *result);
 /* For a rule that is done once it has started, and keeps nothing of a frame in the room. */

@@ -21,14 +21,13 @@ void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room) {
     relaxer->anchor = SS_TAKE(room, double, vertices);
 }
 
-skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_room *room, ss_relaxer **out, skinslide_error *error) {
+skinslide_status ss_relaxer_create(ss_evener *evener, ss_room *room, ss_relaxer **out, skinslide_error *error) {
     ss_relaxer *relaxer = calloc(1, sizeof *relaxer);
     if (!relaxer)
         return ss_out_of_memory(error);
     ss_room counted = {0};
-    skinslide_status status = ss_evener_create(sheet, true, room, &relaxer->evener, error);
-    if (!status)
-        status = ss_blocks_create(sheet->system, false, room, &relaxer->blocks, error);
+    relaxer->evener = evener;
+    skinslide_status status = ss_blocks_create(evener->sheet->system, false, room, &relaxer->blocks, error);
     if (status) {
         ss_relaxer_destroy(relaxer);
         return status;
@@ -43,7 +42,6 @@ void ss_relaxer_destroy(ss_relaxer *relaxer) {
     if (!relaxer)
         return;
     ss_blocks_destroy(relaxer->blocks);
-    ss_evener_destroy(relaxer->evener);
     free(relaxer);
 }
 

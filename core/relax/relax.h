@@ -17,7 +17,7 @@
 
 /* Memory of one thread for one patch. */
 typedef struct ss_relaxer {
-    ss_evener *evener;        /* where skin is */
+    ss_evener *evener;        /* where skin is: the slide's */
     ss_blocks *blocks;        /* of the model; what it holds, and what follows, lasts for one frame */
     double (*gradient)[3][3]; /* [vertex_count] derivative of a point on the pose by its place on rest */
     ss_pair (*axis)[3];       /* [vertex_count] how the vertex moves on the pose with its two unknowns */
@@ -25,8 +25,8 @@ typedef struct ss_relaxer {
     double *anchor;           /* [vertex_count] a */
 } ss_relaxer;
 
-/* Asks the room for the memory of a frame. */
-skinslide_status ss_relaxer_create(const ss_sheet *sheet, ss_room *room, ss_relaxer **out, skinslide_error *error);
+/* Asks the room for the memory of a frame. The evener, which must have bonds, outlives it. */
+skinslide_status ss_relaxer_create(ss_evener *evener, ss_room *room, ss_relaxer **out, skinslide_error *error);
 void ss_relaxer_destroy(ss_relaxer *relaxer);
 /* Lays out the memory of a frame: begins a turn. */
 void ss_relaxer_lay_out(ss_relaxer *relaxer, ss_room *room);

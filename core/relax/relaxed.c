@@ -4,9 +4,7 @@
 #include <stdlib.h>
 
 typedef struct relaxed_slide {
-    ss_slide head;
-    ss_memory memory;
-    ss_room *room;
+    ss_even_slide even;
     ss_relaxer *relaxer;
 } relaxed_slide;
 
@@ -35,24 +33,20 @@ static void destroy(ss_rest *rest) {
 static void close_slide(ss_slide *slide) {
     relaxed_slide *own = (relaxed_slide *)slide;
     ss_relaxer_destroy(own->relaxer);
-    ss_free(&own->memory);
-    free(own);
+    ss_close_even(&own->even);
 }
 
 static skinslide_status open_slide(const ss_rest *rest, ss_room *room, struct ss_idbuffer *idbuffer, int32_t number,
                                    ss_slide **out, skinslide_error *error) {
     (void)idbuffer, (void)number; /* nothing is looked up */
     relaxed_slide *own = calloc(1, sizeof *own);
-    if (!own)
-        return ss_out_of_memory(error);
-    own->room = room;
-    skinslide_status status = ss_begin_slide(rest, &own->memory, &own->head, error);
+    skinslide_status status = own ? ss_open_even(rest, true, room, &own->even, error) : ss_out_of_memory(error);
     if (!status)
-        status = ss_relaxer_create(ss_sheet_of(rest), room, &own->relaxer, error);
-    if (status)
-        close_slide(&own->head);
-    else
-        *out = &own->head;
+        status = ss_relaxer_create(own->even.evener, room, &own->relaxer, error);
+    if (status && own)
+        close_slide(&own->even.head);
+    if (!status)
+        *out = &own->even.head;
     return status;
 }
 
@@ -61,11 +55,11 @@ static skinslide_status open_slide(const ss_rest *rest, ss_room *room, struct ss
 static skinslide_status start(ss_slide *slide, const ss_frame *frame, skinslide_patch_result *result, skinslide_error *error) {
     relaxed_slide *own = (relaxed_slide *)slide;
     double time = ss_now();
-    ss_begin_turn(own->room);
-    ss_relaxer_lay_out(own->relaxer, own->room);
+    ss_begin_turn(own->even.room);
+    ss_relaxer_lay_out(own->relaxer, own->even.room);
     skinslide_status status = ss_relax(own->relaxer, frame, &result->relax_steps, &result->cut_steps, error);
     if (!status && !ss_is_set(frame->stop))
-        ss_end_slide(own->relaxer->evener, frame, slide, result);
+        ss_end_slide(own->even.evener, frame, slide, result);
     ss_lap(&time, &result->relax_seconds);
     return status;
 }

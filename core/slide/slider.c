@@ -218,21 +218,27 @@ static skinslide_status enter(const skinslide_slider *slider, const float **poin
     return slider->space ? ss_check_reads(slider, *points, "points where lengths are taken", error) : SKINSLIDE_OK;
 }
 
-skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points, const skinslide_controls *controls,
-                                 float *slid, skinslide_patch_result *results, skinslide_error *error) {
-    if (!workspace || !points || !slid)
-        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, points, or place for the slid points");
+/* Checks what a frame is given, takes its controls, and its points to where lengths are measured. */
+static skinslide_status begin_frame(skinslide_workspace *workspace, const float **points, const skinslide_controls *controls,
+                                    const skinslide_patch_result *results, skinslide_error *error) {
     const skinslide_slider *slider = workspace->slider;
-    skinslide_status status = ss_check_reads(slider, points, "points", error);
+    skinslide_status status = ss_check_reads(slider, *points, "points", error);
     if (!status && controls)
         status = ss_take_frame_controls(slider, controls, workspace->controls, error);
     if (!status && controls)
         status = ss_need_controls(workspace, error);
     if (!status && results && slider->part_count > 0)
         status = ss_check_size(results, "skinslide_patch_result", error);
+    return status ? status : enter(slider, points, workspace->before, error);
+}
+
+skinslide_status skinslide_slide(skinslide_workspace *workspace, const float *points, const skinslide_controls *controls,
+                                 float *slid, skinslide_patch_result *results, skinslide_error *error) {
+    if (!workspace || !points || !slid)
+        return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no workspace, points, or place for the slid points");
+    const skinslide_slider *slider = workspace->slider;
     const float *before = points;
-    if (!status)
-        status = enter(slider, &before, workspace->before, error);
+    skinslide_status status = begin_frame(workspace, &before, controls, results, error);
     if ((status = ss_go_on(workspace, status, error)))
         return status;
     workspace->has_frame = false;

@@ -36,14 +36,15 @@ static void axes_of_a_linear_map(void **state) {
             points[3 * v + k] = (float)(map[k][0] * mesh.points[3 * v] + map[k][1] * mesh.points[3 * v + 1]);
     ss_patch *patch = patch_of(&mesh, relaxed());
     ss_sheet *sheet;
+    ss_evener *evener;
     ss_relaxer *relaxer;
     skinslide_error error;
     assert_ok(ss_sheet_create(patch, mesh.points, &sheet, &error), &error);
     ss_room room = {0};
-    assert_ok(ss_relaxer_create(sheet, &room, &relaxer, &error), &error);
+    assert_ok(ss_evener_create(sheet, true, &room, &evener, &error), &error);
+    assert_ok(ss_relaxer_create(evener, &room, &relaxer, &error), &error);
     assert_true(ss_make_room(&room));
     ss_relaxer_lay_out(relaxer, &room);
-    ss_evener *evener = relaxer->evener;
     ss_posed_set(&evener->pose, points);
     for (int32_t v = 0; v < patch->vertex_count; v++) {
         evener->weight[v] = !sheet->held[v];
@@ -61,6 +62,7 @@ static void axes_of_a_linear_map(void **state) {
         }
     free(points);
     ss_relaxer_destroy(relaxer);
+    ss_evener_destroy(evener);
     ss_free(&room.memory);
     ss_sheet_destroy(sheet);
     ss_patch_destroy(patch);
