@@ -44,7 +44,7 @@ typedef struct ss_room {
 static inline void ss_begin_turn(ss_room *room) {
     room->taken = 0;
 }
-/* The next array of a turn. */
+/* The next array of a turn, from the beginning of a cache line on. */
 void *ss_take_room(ss_room *room, int64_t count, size_t size);
 #define SS_TAKE(room, type, count) ((type *)ss_take_room((room), (count), sizeof(type)))
 /* Asks for at least as much as was counted. */

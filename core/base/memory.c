@@ -40,8 +40,9 @@ void ss_adopt(ss_memory *memory, ss_memory *other) {
     other->blocks = NULL;
 }
 
+enum { LINE = 64 }; /* bytes of a cache line, which no two arrays of a room share */
+
 void *ss_take_room(ss_room *room, int64_t count, size_t size) {
-    enum { LINE = 64 }; /* bytes of a cache line, which no two arrays share */
     char *array = room->bytes ? room->bytes + room->taken : NULL;
     room->taken += (count * (int64_t)size + LINE - 1) / LINE * LINE;
     return array;
@@ -52,7 +53,8 @@ void ss_ask_room(ss_room *room, const ss_room *counted) {
 }
 
 bool ss_make_room(ss_room *room) {
-    room->bytes = SS_NEW(&room->memory, char, room->size);
+    char *bytes = SS_NEW(&room->memory, char, room->size + LINE);
+    room->bytes = bytes ? bytes + LINE - (uintptr_t)bytes % LINE : NULL;
     return room->bytes != NULL;
 }
 
