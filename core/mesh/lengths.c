@@ -20,10 +20,14 @@ int32_t ss_edge_lengths(const ss_patch *patch, const float *points, double *leng
 #ifdef __x86_64__
 typedef int64_t bits __attribute__((vector_size(32)));
 
-static void lay_out(const ss_patch *patch, const float *points, double (*out)[4]) {
-    for (int32_t v = 0; v < patch->vertex_count; v++) {
-        const float *from = points + 3 * (int64_t)patch->mesh_vertex[v];
-        out[v][0] = from[0], out[v][1] = from[1], out[v][2] = from[2], out[v][3] = 0;
+typedef float four_floats __attribute__((vector_size(16)));
+
+__attribute__((target("avx2"))) static void lay_out(const ss_patch *patch, const float *points, double (*restrict out)[4]) {
+    const int32_t *mesh_vertex = patch->mesh_vertex, count = patch->vertex_count;
+    for (int32_t v = 0; v < count; v++) {
+        const float *from = points + 3 * (int64_t)mesh_vertex[v];
+        four_floats point = {from[0], from[1], from[2], 0};
+        *(ss_loose_four *)out[v] = __builtin_convertvector(point, ss_four);
     }
 }
 
