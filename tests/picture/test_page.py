@@ -779,6 +779,14 @@ def test_frames_as_far_apart_as_numbers_go(show, report):
     assert [tick.text for tick in shown.all(".chart:first-child .x.tick text")] == ["-1.5e+308", "1.5e+308"]
 
 
+def test_how_rough_skin_is_is_not_said_of_frames_far_apart(show, report):
+    patch = report.meshes[0].patches[0]
+    sparse = PatchReport(patch.info, [1001.0, 1003.0, 1005.0], rows(patch.results[:3]), patch.motion)
+    assert sparse.roughness is not None
+    cells = show([strip(SHEET, sparse)]).one(".summary tbody tr").text.split()
+    assert cells[7] == "-" and cells[8] == f"{sparse.column('largest_slide').max():.4g}"
+
+
 def test_no_patches(show):
     warned = BakeReport([Problem("warning", "", None, None, "there is no mesh with a patch")])
     shown = show([], warned)

@@ -25,6 +25,10 @@ COMMANDS = {
     "pin": (f"setup shot.usda -o o.usda {NEW} --faces 0-8 --pin bicepp", f"nor a primvar bicepp on it; {PINS}"),
     "pin of any": ("setup shot.usda -o o.usda --whole --pin bicepp", f"GeomSubset or a primvar bicepp; {PINS}"),
     "mesh": (f"setup shot.usda -o o.usda --prim {MESH}s --patch other --faces 0-8", f"no such prim; {MESHES}"),
+    "no mesh": (
+        "setup shot.usda -o o.usda --prim /World --patch other --faces 0-8",
+        "not a Mesh; of type Mesh there are /World/hat_GEO and ",
+    ),
     "painted primvar": (f"paint shot.usda -o o.usda {AIM} --value 2 --primvar ElbowMsk", PRIMVARS),
     "painted subset": (f"paint shot.usda -o o.usda {AIM} --value 2 --subset biceps", SUBSETS),
     "painted patch": (
@@ -37,7 +41,7 @@ COMMANDS = {
     ),
     "no curve": (
         f"paint shot.usda -o o.usda {AIM} --value 2 --curve {CAMERA} --within 1",
-        f"curve {CAMERA}: is a Camera, not a BasisCurves",
+        f"curve {CAMERA}: is a Camera, not a BasisCurves; of type BasisCurves there is {CURVE}",
     ),
     "mirrored patch": (
         f"mirror shot.usda -o o.usda --prim {MESH} --patch kne_L",

@@ -139,3 +139,8 @@ def test_added_stretch_has_a_remedy(rule, is_told):
     (problem,) = report.problems(MESH)
     assert "sliding adds stretch: 0.0000 in the cache, 0.5000 slid (at 1 of 2 frames" in problem.message
     assert problem.message.endswith("; the rule even may take some out") == is_told
+
+
+def test_progress_of_one_frame(shot, tmp_path, capsys):
+    assert main(["bake", str(shot()), "-o", str(tmp_path / "out.usda"), "--frames", "1001"]) == 0
+    assert capsys.readouterr().err.startswith("1 of 1 frame, ")

@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from skinslide.command.outcome import print_error
+from skinslide.problems import counted
 from skinslide.shot.workers import Progress
 
 if TYPE_CHECKING:
@@ -48,6 +49,6 @@ def _lines() -> Progress:
         if done != total and (done % math.ceil(total / _LINES) or now - last < _SECONDS):
             return
         last, rate = now, done / max(now - start, 1e-9)
-        print_error(f"{done} of {total} frames, {rate:.1f} frames/s, {(total - done) / rate:.0f} s left")
+        print_error(f"{done} of {counted(total, 'frame')}, {rate:.1f} frames/s, {(total - done) / rate:.0f} s left")
 
     return report

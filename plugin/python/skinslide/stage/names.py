@@ -18,15 +18,20 @@ def prim_of_type(stage: Usd.Stage, path: str, kind: type[Usd.SchemaBase], named:
     if not prim:
         raise Fault(named + no_such_prim(stage, path, kind))
     if not prim.IsA(kind):
-        raise Fault(f"{named}is a {prim.GetTypeName() or say('no_type')}, not a {kind.__name__}")
+        other = f"is a {prim.GetTypeName() or say('no_type')}, not a {kind.__name__}"
+        raise Fault(f"{named}{other}; {_of_kind(stage, path, kind)}")
     return prim
 
 
 def no_such_prim(stage: Usd.Stage, path: str, kind: type[Usd.SchemaBase] = UsdGeom.Mesh) -> str:
     """What to say of a path that leads nowhere, with the prims of the kind that there are."""
+    return f"{NO_SUCH_PRIM}; {_of_kind(stage, path, kind)}"
+
+
+def _of_kind(stage: Usd.Stage, path: str, kind: type[Usd.SchemaBase]) -> str:
     prims = Usd.PrimRange(stage.GetPseudoRoot(), Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIsDefined))
     there = [str(prim.GetPath()) for prim in prims if prim.IsA(kind)]
-    return f"{NO_SUCH_PRIM}; of type {kind.__name__} {in_place_of(path, there)}"
+    return f"of type {kind.__name__} {in_place_of(path, there)}"
 
 
 def subset_names(prim: Usd.Prim) -> list[str]:
