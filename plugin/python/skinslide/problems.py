@@ -148,7 +148,7 @@ class SliderError(RuntimeError):
 
 
 class Fault(Exception):
-    """What is wrong with a value, said by code that need not know the prim, patch and frame it is read for."""
+    """What is wrong with a value, by code that need not know the prim, patch and frame it is read for."""
 
 
 @contextmanager
@@ -237,10 +237,10 @@ def usd_errors() -> tuple[type[BaseException], ...]:
 def usd_message(error: Tf.ErrorException) -> str:
     """What USD says, in one line. Of several errors the first is the cause."""
     try:
-        said = error.args[0].commentary if error.args else str(error)
+        text = error.args[0].commentary if error.args else str(error)
     except UnicodeDecodeError as undecoded:  # it quotes a file
-        said = undecoded.object.decode(errors="backslashreplace")
-    return " ".join(said.split()) or "USD failed and does not say why"
+        text = undecoded.object.decode(errors="backslashreplace")
+    return " ".join(text.split()) or "USD failed and does not say why"
 
 
 def frame_text(frame: float) -> str:

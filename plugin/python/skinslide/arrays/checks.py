@@ -17,8 +17,8 @@ Kind = TypeVar("Kind")
 def all_of(what: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
     """The elements of a sequence. Raises SliderError unless all are of a kind."""
     if isinstance(given, str) or not isinstance(given, Iterable):
-        said = f"{what} is of the type {type(given).__name__}; a sequence of {kind.__name__} is wanted"
-        raise SliderError("BAD_ARGUMENT", said)
+        message = f"{what} is of the type {type(given).__name__}; a sequence of {kind.__name__} is wanted"
+        raise SliderError("BAD_ARGUMENT", message)
     each = tuple(given)
     for i, one in enumerate(each):
         check_kind(f"{what}[{i}]", one, kind)
@@ -27,8 +27,8 @@ def all_of(what: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
 
 def check_kind(what: str, given: Any, kind: type) -> None:
     if not isinstance(given, kind):
-        said = f"{what} is of the type {type(given).__name__}; {kind.__name__} is wanted"
-        raise SliderError("BAD_ARGUMENT", said)
+        message = f"{what} is of the type {type(given).__name__}; {kind.__name__} is wanted"
+        raise SliderError("BAD_ARGUMENT", message)
 
 
 def check_count(status: str, what: str, counted: tuple[int, str], of: tuple[int, str]) -> None:

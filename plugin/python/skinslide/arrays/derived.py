@@ -64,8 +64,8 @@ class DerivedMeaning:
 
     def warnings(self) -> list[str]:
         found: list[str] = []
-        while said := lib.skinslide_stage_derived_warning(self.handle.pointer, len(found)):
-            found.append(text(said))
+        while warning := lib.skinslide_stage_derived_warning(self.handle.pointer, len(found)):
+            found.append(text(warning))
         return found
 
     def times(self, output: Output, time: float) -> list[float]:
@@ -76,9 +76,9 @@ class DerivedMeaning:
 
     def look(self, output: Output, cached: Value | None) -> str:
         """What to warn of in a value of the cache: what is not finite and passes as it is; or nothing."""
-        faults, told = ffi.new("int32_t *"), ffi.new("skinslide_error *")
-        call_stage(lib.skinslide_stage_derived_look, self.handle, output.pointer, cached, faults, told)
-        return text(told.message) if faults[0] else ""
+        faults, warning = ffi.new("int32_t *"), ffi.new("skinslide_error *")
+        call_stage(lib.skinslide_stage_derived_look, self.handle, output.pointer, cached, faults, warning)
+        return text(warning.message) if faults[0] else ""
 
     def value(self, output: Output, cached: Value | None, poses: Sequence[Pose]) -> np.ndarray:
         """The value at a time, (n, 3) of float32 or, where the output is double, float64. Raises Fault."""

@@ -10,7 +10,7 @@ from skinslide.arrays.fetched import PrimFacts
 from skinslide.arrays.native import text, token_of
 
 
-class Said(NamedTuple):
+class PrimProblem(NamedTuple):
     """One thing to say about a prim."""
 
     severity: str  # error or warning
@@ -23,7 +23,7 @@ class Finding(NamedTuple):
 
     patches: list[str]
     slides: bool
-    said: list[Said]
+    problems: list[PrimProblem]
     is_skinned: bool
 
 
@@ -32,13 +32,12 @@ def find(facts: PrimFacts) -> Finding:
     out = ffi.new("skinslide_stage_finding **")
     call_stage(lib.skinslide_stage_find, facts, out)
     found = ffi.gc(out[0], lib.skinslide_stage_finding_destroy)
-    problems = (found.problems[i] for i in range(found.problem_count))
-    said = [
-        Said(token_of("severity", each.severity), text(each.patch) if each.patch else None, text(each.message))
-        for each in problems
+    problems = [
+        PrimProblem(token_of("severity", each.severity), text(each.patch) if each.patch else None, text(each.message))
+        for each in (found.problems[i] for i in range(found.problem_count))
     ]
     patches = [text(found.patches[i]) for i in range(found.patch_count)]
-    return Finding(patches, bool(found.slides), said, bool(found.skinned_by))
+    return Finding(patches, bool(found.slides), problems, bool(found.skinned_by))
 
 
 def nothing_to_slide(where: str) -> str:

@@ -36,7 +36,7 @@ class Taker:
         call_stage(self._check, self.handle, source, value, frame)
 
 
-def _said(sentence: Any) -> str:
+def _sentence(sentence: Any) -> str:
     return text(sentence) if sentence else ""
 
 
@@ -74,17 +74,17 @@ class MeshMeaning(Taker):
     @property
     def rest_warning(self) -> str:
         """What to warn of in the rest points as they are authored, or nothing."""
-        return _said(lib.skinslide_stage_mesh_rest_warning(self.handle.pointer))
+        return _sentence(lib.skinslide_stage_mesh_rest_warning(self.handle.pointer))
 
     @property
     def warning(self) -> str:
         """What to warn of, or nothing."""
-        return _said(lib.skinslide_stage_mesh_warning(self.handle.pointer))
+        return _sentence(lib.skinslide_stage_mesh_warning(self.handle.pointer))
 
     @property
     def space_warning(self) -> str:
         """What to warn of in the transforms above, or nothing."""
-        return _said(lib.skinslide_stage_mesh_space_warning(self.handle.pointer))
+        return _sentence(lib.skinslide_stage_mesh_space_warning(self.handle.pointer))
 
     def offer(self, name: str, type_name: str, interpolation: str | None) -> None:
         """Offers a primvar, so that errors can list those that may be texture coordinates."""
@@ -237,8 +237,8 @@ class PatchMeaning(Taker):
     def describe(self, source: Input, value: Value) -> str:
         """What there is to say of paint that is not as the schema has it, or nothing."""
         native, words = StageRecords(), ffi.new("char[512]")
-        said = lib.skinslide_stage_patch_describe(self.handle.pointer, source.pointer, native.of(value), words)
-        return text(words) if said else ""
+        has_note = lib.skinslide_stage_patch_describe(self.handle.pointer, source.pointer, native.of(value), words)
+        return text(words) if has_note else ""
 
     @property
     def needs_subdivision(self) -> bool:
@@ -247,7 +247,7 @@ class PatchMeaning(Taker):
     @property
     def warning(self) -> str:
         """What to warn of, or nothing."""
-        return _said(lib.skinslide_stage_patch_warning(self.handle.pointer))
+        return _sentence(lib.skinslide_stage_patch_warning(self.handle.pointer))
 
     @property
     def wants_neighbours(self) -> bool:

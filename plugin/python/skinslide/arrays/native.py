@@ -35,9 +35,9 @@ def degradations() -> tuple[str, ...]:
 
 def degradation_text(kind: int, count: int) -> str:
     """So many of a kind in words."""
-    told = ffi.new("skinslide_error *")
-    lib.skinslide_degradation(kind, count, told)
-    return text(told.message)
+    sentence = ffi.new("skinslide_error *")
+    lib.skinslide_degradation(kind, count, sentence)
+    return text(sentence.message)
 
 
 def call(function: Any, *arguments: Any) -> None:

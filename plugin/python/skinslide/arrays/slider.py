@@ -229,10 +229,10 @@ class Slider:
         Raises:
             SliderError: The points cannot be slid; the message names the element.
         """
-        native, passed, told = Arguments(), ffi.new("int32_t *"), ffi.new("skinslide_error *")
+        native, passed, warning = Arguments(), ffi.new("int32_t *"), ffi.new("skinslide_error *")
         given = native.points(points, self._sizes.vertices, "points")
-        call(lib.skinslide_slider_check_points, self._slider.pointer, given, passed, told)
-        return text(told.message) if passed[0] else ""
+        call(lib.skinslide_slider_check_points, self._slider.pointer, given, passed, warning)
+        return text(warning.message) if passed[0] else ""
 
     def roughness(self, samples: Sequence[Sample]) -> tuple[Roughness, ...]:
         """Measures how roughly each patch moves at the middle of three times.

@@ -213,7 +213,7 @@ class PatchReport:
         """
         counts = [(getattr(self.info, name), words, text) for name, (words, text) in _AT_REST.items()]
         at_rest = [(None, f"{counted(count, *words)} {text}") for count, words, text in counts if count]
-        warned = [Problem("warning", prim, self.label, *said) for said in [*at_rest, *self._degraded()]]
+        warned = [Problem("warning", prim, self.label, *warning) for warning in [*at_rest, *self._degraded()]]
         return warned + self._stretched(prim)
 
     def _stretched(self, prim: str) -> list[Problem]:

@@ -167,9 +167,9 @@ def check_transforms(animation: UsdSkel.AnimQuery, time: Usd.TimeCode) -> None:
             raise Fault(f"{name} of {animation.GetPrim().GetPath()} has {len(values)} values for {wanted} joints")
 
 
-def _check_known(said: str, joints: list[str], own: list[str], skeleton: str) -> None:
+def _check_known(what: str, joints: list[str], own: list[str], skeleton: str) -> None:
     known = set(own)
     unknown = [joint for joint in joints if joint not in known]
     if unknown:
         more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
-        raise Fault(f"{said} {unknown[0]}{more}, which the skeleton {skeleton} does not have")
+        raise Fault(f"{what} {unknown[0]}{more}, which the skeleton {skeleton} does not have")

@@ -85,8 +85,8 @@ def is_skinned(prim: Usd.Prim) -> bool:
 
 
 def _said(prim: Usd.Prim, finding: Finding) -> Iterator[Problem]:
-    for said in finding.said:
-        yield Problem(said.severity, str(prim.GetPath()), said.patch, None, said.message)
+    for problem in finding.problems:
+        yield Problem(problem.severity, str(prim.GetPath()), problem.patch, None, problem.message)
 
 
 def patched_prims(stage: Usd.Stage) -> list[Usd.Prim]:
@@ -114,8 +114,8 @@ def composition_problems(stage: Usd.Stage, prim_paths: Sequence[str] | None = No
         path = error.rootSite.path
         near = any(path.HasPrefix(root) or root.HasPrefix(path) for root in asked)
         severity = "error" if near and _may_hold_meshes(stage.GetPrimAtPath(path)) else "warning"
-        for said in find(PrimFacts(uncomposed=" ".join(str(error).split()))).said:
-            yield Problem(severity, "" if path.IsAbsoluteRootPath() else str(path), None, None, said.message)
+        for problem in find(PrimFacts(uncomposed=" ".join(str(error).split()))).problems:
+            yield Problem(severity, "" if path.IsAbsoluteRootPath() else str(path), None, None, problem.message)
 
 
 def _may_hold_meshes(prim: Usd.Prim | None) -> bool:

@@ -278,8 +278,8 @@ class PatchedMesh:
 
     def warnings(self) -> Iterator[Problem]:
         """What rest points and patches are warned of."""
-        for said in filter(None, (self.meaning.rest_warning, self.meaning.warning, self.meaning.space_warning)):
-            yield Problem("warning", self.path, None, None, said)
+        for warning in filter(None, (self.meaning.rest_warning, self.meaning.warning, self.meaning.space_warning)):
+            yield Problem("warning", self.path, None, None, warning)
         for patch, each in zip(self.patches, self.animation, strict=True):
             if each.warning:
                 yield Problem("warning", self.path, patch.name, None, each.warning)

@@ -64,8 +64,8 @@ class Animation:
     def described(self) -> Iterator[str]:
         """What there is to say of paint that is not as the schema has it, at the first time."""
         for source in (self._faces, *self._controls):
-            if said := self._meaning.describe(source.wanted, source.first()):
-                yield said
+            if note := self._meaning.describe(source.wanted, source.first()):
+                yield note
 
     @property
     def warning(self) -> str:
