@@ -23,6 +23,10 @@ def shot(tmp_path):
         (["--max-stretch", "-1"], "--max-stretch is -1; "),
         (["--squares", "0", "--html", "p.html"], "--squares is 0; it must be above 0, from "),
         (["--html", ""], "html is an empty name"),
+        (
+            ["--html", "p.html", "--compare", "unit,evn"],
+            "--compare: rule 'evn' is not one of unit, fast, relaxed, even",
+        ),
         (["--html", "/proc/p.html", "--size", "64x32"], "output /proc/p.html: "),
     ],
 )
@@ -190,3 +194,23 @@ def test_resume_is_named_as_it_is_typed(shot, tmp_path, capfd):
     words = ["bake", str(shot), "-o", str(tmp_path / "out.usdc"), "--resume", "--html", str(tmp_path / "p.html")]
     assert main(words) == 2
     assert capfd.readouterr().err == "error: --resume is for a layer alone, without pictures and maps\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (
+            ["bake", "--max-strech", "3"],
+            "there is no option --max-strech; there are --max-stretch, --max-added-stretch, ",
+        ),
+        (["setup", "--primvr=mask"], "there is no option --primvr; there are --primvar, --prim, "),
+        (["maps", "--sise", "8"], "there is no option --sise; there are "),
+    ],
+)
+def test_an_option_that_is_misspelt(words, says, shot, tmp_path, capfd):
+    """The likest of the command's are named; those of before are not."""
+    rest = ["--whole"] if words[0] == "setup" else []
+    assert main([words[0], str(shot), "-o", str(tmp_path / "out.usda"), *words[1:], *rest]) == 2
+    said = capfd.readouterr().err.splitlines()
+    assert said[0].startswith(f"usage: skinslide {words[0]} ") and said[-1].startswith(f"error: {says}")
+    assert "--size" not in said[-1] and not (tmp_path / "out.usda").exists()

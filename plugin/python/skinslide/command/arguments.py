@@ -10,7 +10,7 @@ from dataclasses import Field, fields
 from typing import Any, NoReturn
 
 from skinslide.command.outcome import DONE, EXIT_CODES, print_error, print_result
-from skinslide.problems import UsageError
+from skinslide.problems import UsageError, in_place_of
 from skinslide.shot.checks import Options, count_text, described, positive_text
 from skinslide.shot.options import ChunkOptions, FarmOptions, LayerOptions, MapOptions, PictureOptions, SlideOptions
 
@@ -62,6 +62,15 @@ class _Parser(argparse.ArgumentParser):
 
     def __init__(self, **words: Any):
         super().__init__(**words, epilog=EXIT_CODES, argument_default=argparse.SUPPRESS)
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse has it for a command; an option that is not one of its own is likely misspelt."""
+        found, left = super().parse_known_args(args, namespace)
+        for word in (each.partition("=")[0] for each in left if each.startswith("--")):
+            shown = (each.option_strings for each in self._actions if each.help != argparse.SUPPRESS)
+            flags = [flag for strings in shown for flag in strings if flag.startswith("--")]
+            self.error(f"there is no option {word}; {in_place_of(word, flags)}")
+        return found, left
 
     def print_help(self, _file: Any = None) -> NoReturn:
         raise SystemExit(print_result(self.format_help().rstrip("\n"), DONE))

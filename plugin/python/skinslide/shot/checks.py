@@ -197,9 +197,9 @@ def texts(name: str, words: Sequence[str] | str) -> list[str]:
 
 
 def one_of(what: str, words: Sequence[str]) -> Check:
-    def check(_name: str, word: str) -> str:
+    def check(name: str, word: str) -> str:
         if word not in words:
-            raise UsageError(not_one_of(what, word, words))
+            raise UsageError(("" if what == name else f"{name}: ") + not_one_of(what, word, words))
         return word
 
     return check
