@@ -116,8 +116,8 @@ struct skinslide_workspace {
 
 /* How much the displacement of a free vertex, or its normal, counts where patches overlap. A vertex of weight 0 follows its
  * neighbours so that its limit point stays, but then counts next to nothing. */
-static inline double ss_blend_weight(const ss_patch_work *work, int32_t i) {
-    return ss_most(work->frame.weights[i], 1e-30);
+static inline double ss_blend_weight(double weight) {
+    return ss_most(weight, 1e-30);
 }
 
 /* The vertex that a vertex of the mesh is one with. */

@@ -50,11 +50,12 @@ static skinslide_status start_patch(skinslide_workspace *workspace, int32_t p, c
 
 /* Sums weight times displacement, and weight, over the patches of each vertex. */
 static void add_displacement(const ss_patch *patch, const ss_patch_work *work, double (*sum)[4]) {
-    for (int32_t i = 0; i < patch->free_count; i++) {
-        const double *own = work->displacement[i];
-        double weight = ss_blend_weight(work, i);
-        ss_loose_two *total = (ss_loose_two *)sum[patch->mesh_vertex[patch->free_vertex[i]]];
-        total[0] += weight * (ss_two){own[0], own[1]}, total[1] += weight * (ss_two){own[2], 1};
+    const int32_t *mesh_vertex = patch->mesh_vertex, *free_vertex = patch->free_vertex, count = patch->free_count;
+    const double(*own)[3] = (const double(*)[3])work->displacement, *weights = work->frame.weights;
+    for (int32_t i = 0; i < count; i++) {
+        double weight = ss_blend_weight(weights[i]);
+        ss_loose_two *total = (ss_loose_two *)sum[mesh_vertex[free_vertex[i]]];
+        total[0] += weight * (ss_two){own[i][0], own[i][1]}, total[1] += weight * (ss_two){own[i][2], 1};
     }
 }
 
@@ -172,11 +173,13 @@ static skinslide_status write_points(const skinslide_workspace *workspace, const
 
 static void measure_slide(const ss_patch *patch, const double (*displacement)[4], skinslide_patch_result *result) {
     double largest = 0; /* squared */
+    int32_t slid = 0;
     for (int32_t i = 0; i < patch->free_count; i++) {
         const double *d = displacement[patch->mesh_vertex[patch->free_vertex[i]]];
-        result->slid_vertices += along_axes(d) != 0;
+        slid += along_axes(d) != 0;
         largest = ss_most(ss_dot(d, d), largest);
     }
+    result->slid_vertices = slid;
     result->largest_slide = sqrt(largest);
 }
 

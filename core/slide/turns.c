@@ -38,7 +38,7 @@ static void add_targets(const skinslide_workspace *workspace, int32_t p) {
             memcpy(normal, workspace->normal[vertex], sizeof normal);
         else
             blend_normal(workspace, patch, place, normal);
-        ss_add(ss_blend_weight(work, i), normal, workspace->target[vertex]);
+        ss_add(ss_blend_weight(work->frame.weights[i]), normal, workspace->target[vertex]);
     }
 }
 
