@@ -140,6 +140,22 @@ def test_schemas_are_read_while_a_command_is_loaded(tmp_path):
     assert said.split() == ["1", "False"]
 
 
+def test_no_module_of_usd_is_loaded_while_schemas_are_read():
+    """By any command that opens a stage: each thread might come to wait for what the other one holds."""
+    said = run_python("""
+        import sys
+        from importlib import import_module
+        from pxr import Usd, UsdGeom, UsdSkel
+        from skinslide.command.cli import _COMMANDS
+        known = set(sys.modules)
+        for name, (_, home, _) in _COMMANDS.items():
+            if name not in ("stitch", "report"):
+                import_module(f"skinslide.{home}")
+        print(*(name for name in sys.modules.keys() - known if name.startswith("pxr.")))
+    """)
+    assert said.split() == []
+
+
 def test_schemas_that_cannot_be_read(tmp_path):
     said = run_python(f"""
         import sys

@@ -5,14 +5,19 @@ from __future__ import annotations
 import io
 from collections import deque
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
-from pxr import Ar, Sdf, Usd, UsdShade
+from pxr import Ar, Sdf, Usd
 
 from skinslide.arrays.images import FIRST_TILE
 from skinslide.problems import Fault
+from skinslide.stage.seldom import usd_shade
 from skinslide.stage.values import FIRST, layer_of
+
+if TYPE_CHECKING:
+    from pxr import UsdShade
 
 _INPUTS = ("diffuseColor", "baseColor", "base_color")  # of UsdPreviewSurface, and of what others make of it
 _LARGEST = 2048  # texels along a side: a picture shows no more
@@ -20,7 +25,7 @@ _LARGEST = 2048  # texels along a side: a picture shows no more
 
 def base_colour(prim: Usd.Prim) -> dict[int, np.ndarray]:
     """The tiles of the texture by their numbers, uint8 (height, width, 4). Raises Fault where there is none to show."""
-    material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+    material = usd_shade().MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     if not material:
         raise Fault("has no material, whose texture could be shown")
     surface = material.ComputeSurfaceSource()[0]
@@ -32,16 +37,16 @@ def base_colour(prim: Usd.Prim) -> dict[int, np.ndarray]:
 
 def _files(input_: UsdShade.Input) -> Iterator[Usd.Attribute]:
     """The attributes of files that feed an input, the nearest first."""
-    waiting, seen = deque([input_] if input_ else []), set[Sdf.Path]()
+    shade, waiting, seen = usd_shade(), deque([input_] if input_ else []), set[Sdf.Path]()
     while waiting:
-        for attribute in UsdShade.Utils.GetValueProducingAttributes(waiting.popleft()):
-            shader = UsdShade.Shader(attribute.GetPrim())
+        for attribute in shade.Utils.GetValueProducingAttributes(waiting.popleft()):
+            shader = shade.Shader(attribute.GetPrim())
             if not shader or shader.GetPath() in seen:
                 continue
             seen.add(shader.GetPath())
             file = shader.GetInput("file")
             if file:
-                yield from UsdShade.Utils.GetValueProducingAttributes(file)
+                yield from shade.Utils.GetValueProducingAttributes(file)
             else:
                 waiting.extend(shader.GetInputs())
 
@@ -50,8 +55,9 @@ def _tiles(file: Usd.Attribute) -> list[tuple[int, str]]:
     asset = file.Get(FIRST)
     if not isinstance(asset, Sdf.AssetPath) or not asset.path:
         raise Fault(f"{file.GetPath()} names no file")
-    if UsdShade.UdimUtils.IsUdimIdentifier(asset.path):
-        found = UsdShade.UdimUtils.ResolveUdimTilePaths(asset.path, layer_of(file, FIRST))
+    udims = usd_shade().UdimUtils
+    if udims.IsUdimIdentifier(asset.path):
+        found = udims.ResolveUdimTilePaths(asset.path, layer_of(file, FIRST))
         tiles = [(int(number), str(path)) for path, number in found]
     else:
         tiles = [(FIRST_TILE, asset.resolvedPath)] if asset.resolvedPath else []
