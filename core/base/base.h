@@ -62,7 +62,7 @@ __attribute__((format(printf, 3, 4))) skinslide_status ss_fail(skinslide_error *
                                                                const char *format, ...);
 skinslide_status ss_out_of_memory(skinslide_error *error);
 
-/* ---- A flag that another thread sets, to have long work left. Whoever sees it returns early, and what it made is not used. ---- */
+/* ---- A flag that another thread sets, to have long work left. Who sees it returns early: what it made is not used ---- */
 
 static inline bool ss_is_set(const int *flag) {
     return __atomic_load_n(flag, __ATOMIC_RELAXED) != 0;

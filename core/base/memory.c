@@ -1,4 +1,5 @@
-/* An object's arrays, chained so that one call frees them: allocation is checked once, after all of it. And room that objects share. */
+/* An object's arrays, chained so that one call frees them: allocation is checked once, after all of it. And room that objects
+ * share. */
 #include "base.h"
 
 #include <stdlib.h>

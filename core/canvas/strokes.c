@@ -1,5 +1,5 @@
-/* Lines and dots on a surface: the sides of a patch's faces, its outline, edges in colours, the ways that its vertices slid, and
- * pins. What is nearer hides them. */
+/* Lines and dots on a surface: the sides of a patch's faces, its outline, edges in colours, the ways that its vertices slid,
+ * and pins. What is nearer hides them. */
 #include "canvas.h"
 
 #include <math.h>

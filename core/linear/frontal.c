@@ -176,7 +176,8 @@ typedef struct extension {
     bool dominant;
 } extension;
 
-/* A column of a child's update, or the first of a block's two: where it is, where it goes, and how far the other is from each. */
+/* A column of a child's update, or the first of a block's two: where it is, where it goes, and how far the other is from
+ * each. */
 typedef struct column {
     const double *from, *extra;
     double *to, *extras;

@@ -46,8 +46,8 @@ __attribute__((target("avx2"))) SS_INLINE ss_four squares(const int32_t (*edge)[
            __builtin_shuffle(first[0], first[1], (bits){2, 3, 6, 7});
 }
 
-/* Of the first edges, whose count is a multiple of four. It has no calls: GCC 12 does not clear the upper halves of registers before
- * one here, and SSE code that runs next is slow then. */
+/* Of the first edges, whose count is a multiple of four. It has no calls: GCC 12 does not clear the upper halves of registers
+ * before one here, and SSE code that runs next is slow then. */
 __attribute__((target("avx2"))) static int32_t measure_avx2(const ss_patch *patch, const double (*points)[4], int32_t count,
                                                             double *lengths) {
     const ss_four shortest = {patch->shortest, patch->shortest, patch->shortest, patch->shortest};

@@ -64,8 +64,8 @@ skinslide_status ss_check_points(const float *points, int32_t vertex_count, cons
 skinslide_status ss_check_used(const skinslide_mesh *mesh, const float *points, const char *what, skinslide_error *error);
 /* The sides of the box around the rest points that are finite. */
 void ss_measure_rest(const skinslide_mesh *mesh, double size[3]);
-/* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. face_start is as ss_start_faces has it; NULL: it
- * is found. label begins messages. */
+/* The chosen faces of a mesh, with mesh vertices at their corners, twins and edges. face_start is as ss_start_faces has it;
+ * NULL: it is found. label begins messages. */
 skinslide_status ss_take_faces(const skinslide_mesh *mesh, const int32_t *face_start, const int32_t *chosen, int32_t count,
                                const char *label, ss_memory *memory, ss_faces *faces, skinslide_error *error);
 /* Fills corner_edge and edge_count; any number of faces may share an edge. False if memory is short. */
@@ -183,7 +183,8 @@ typedef struct ss_around {
 } ss_around;
 /* All faces at chosen vertices: chosen is [vertex_count]. False if memory is short. */
 bool ss_take_around(const skinslide_mesh *mesh, const uint8_t *chosen, ss_memory *memory, ss_around *out);
-/* normal [vertex_count] of unit length; 0 where no face at the vertex has an area. Only those of the chosen vertices are whole. */
+/* normal [vertex_count] of unit length; 0 where no face at the vertex has an area. Only those of the chosen vertices are
+ * whole. */
 void ss_smooth_normals(const ss_around *around, const float *points, int32_t vertex_count, double (*normal)[3]);
 
 /* ---- carry.c: what lives on the skin turns with it ---- */

@@ -269,7 +269,8 @@ static bool holds_loop(const ss_patch *patch, int32_t loop) {
     return loop == 0 ? patch->setup->holes != SKINSLIDE_HOLES_FREE_ALL : patch->setup->holes == SKINSLIDE_HOLES_PINNED;
 }
 
-/* Faces that meet only in a point, be they of one piece or of several, cannot each move it. In a plane, what is held is on loops. */
+/* Faces that meet only in a point, be they of one piece or of several, cannot each move it. In a plane, what is held is on
+ * loops. */
 static bool touches_others(const ss_patch *patch, int32_t vertex) {
     return patch->split[vertex] || (patch->shared[vertex] && (patch->vertex_loop[vertex] >= 0 || splits_vertices(patch)));
 }

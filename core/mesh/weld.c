@@ -1,7 +1,7 @@
 /* Which vertices of a mesh are one: points in one place, in every pose, whose faces meet there edge to edge.
  *
- * Places come first: sets of points that coincide at rest and in each pose shown. Then faces of the patches are sewn together by
- * sew.c. */
+ * Places come first: sets of points that coincide at rest and in each pose shown. Then faces of the patches are sewn together
+ * by sew.c. */
 #include "mesh.h"
 
 #include <math.h>

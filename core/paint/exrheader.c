@@ -1,5 +1,5 @@
-/* Reads the header of an OpenEXR file: which channel is meant, and how its texels are stored. Headers are untrusted: what they claim
- * is held against limits and against the size of the file before memory is taken. */
+/* Reads the header of an OpenEXR file: which channel is meant, and how its texels are stored. Headers are untrusted: what they
+ * claim is held against limits and against the size of the file before memory is taken. */
 #include "paint.h"
 
 #include <openexr.h>

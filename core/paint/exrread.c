@@ -1,5 +1,5 @@
-/* Reads the texels of OpenEXR files, in memory or open, by OpenEXR's own C library, which only this file, exrheader.c and exrwrite.c
- * know. */
+/* Reads the texels of OpenEXR files, in memory or open, by OpenEXR's own C library, which only this file, exrheader.c and
+ * exrwrite.c know. */
 #define _POSIX_C_SOURCE 200809L /* pread */
 #include "base.h"
 #include "paint.h"
@@ -117,9 +117,9 @@ static void copy_row(const target *to, const uint8_t *bytes, bool is_half, int64
 }
 
 /* A decompressed chunk holds row after row; a row holds the texels of channel after channel, in the file's order. A channel of
- * fewer texels than the image has them on some rows only. False where the bytes are too few: OpenEXR takes what is not compressed
- * as it comes. It would unpack by itself, but 3.1.5 takes routines for it that write through the null pointers of channels that are
- * not wanted. */
+ * fewer texels than the image has them on some rows only. False where the bytes are too few: OpenEXR takes what is not
+ * compressed as it comes. It would unpack by itself, but 3.1.5 takes routines for it that write through the null pointers of
+ * channels that are not wanted. */
 static bool unpack_chunk(const exr_decode_pipeline_t *decode, const target *to, int64_t x, int64_t y) {
     const uint8_t *bytes = decode->unpacked_buffer;
     uint64_t left = decode->unpacked_buffer == decode->packed_buffer ? decode->chunk.packed_size : decode->unpacked_alloc_size;

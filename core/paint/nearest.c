@@ -1,8 +1,9 @@
-/* The other side of a mesh whose faces are not symmetric, though its surface is: quads cut along other diagonals, say. A face is of
- * the other side where the mirror image of its middle is nearest to a face of this one, and its points are where theirs are nearest
- * to the mesh.
+/* The other side of a mesh whose faces are not symmetric, though its surface is: quads cut along other diagonals, say. A face
+ * is of the other side where the mirror image of its middle is nearest to a face of this one, and its points are where theirs
+ * are nearest to the mesh.
  *
- * Faces are sorted along an axis of the plane, and looked at from where a place is outwards, as far as any nearer one can be. */
+ * Faces are sorted along an axis of the plane, and looked at from where a place is outwards, as far as any nearer one can
+ * be. */
 #include "paint.h"
 
 #include <math.h>

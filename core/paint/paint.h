@@ -55,8 +55,8 @@ typedef struct ss_exr_header {
     skinslide_wrap wrap_s, wrap_t;
 } ss_exr_header;
 
-/* Reads and checks the header of an open file, OpenEXR's exr_const_context_t. wanted is a channel, as for skinslide_exr_decode, or
- * "". Takes no memory. */
+/* Reads and checks the header of an open file, OpenEXR's exr_const_context_t. wanted is a channel, as for skinslide_exr_decode,
+ * or "". Takes no memory. */
 skinslide_status ss_exr_read_header(const void *file, const char *wanted, int64_t file_size, ss_exr_header *out,
                                     skinslide_error *error);
 

@@ -5,8 +5,8 @@
  *
  *     C = F^T F = E^-T [d_i . d_j] E^-1        E: e1 and e2 in the frame
  *
- * is the identity where nothing is stretched, whatever the mesh's shape. Of a vertex C is the mean over its corners, by their areas
- * at rest, and
+ * is the identity where nothing is stretched, whatever the mesh's shape. Of a vertex C is the mean over its corners, by their
+ * areas at rest, and
  *
  *     largest, smallest = sqrt(eigenvalues of C)        area ratio = sqrt(det C)
  *
@@ -73,8 +73,8 @@ static void frame_of(const double normal[3], double frame[2][3]) {
     ss_cross(normal, frame[0], frame[1]);
 }
 
-/* By the least rotation that takes a normal to another, which is less than a right angle away: x - (x . to) / (1 + n . to) (n + to)
- * where x . n = 0. */
+/* By the least rotation that takes a normal to another, which is less than a right angle away:
+ * x - (x . to) / (1 + n . to) (n + to) where x . n = 0. */
 static void turn_frame(const double normal[3], const double to[3], double frame[2][3]) {
     double whole = 1 + ss_dot(normal, to);
     for (int i = 0; i < 2; i++) {

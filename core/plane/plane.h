@@ -55,7 +55,8 @@ void ss_force_density(const ss_patch *patch, const double *lengths, const double
 
 /* The edges of a patch; fixed is [vertex_count]. Both must outlive the net. */
 ss_net ss_net_of(const ss_patch *patch, const uint8_t *fixed);
-/* Solves for the free vertices of uv [vertex_count][2], whose fixed ones are given. The factor's entries are the densities, > 0. */
+/* Solves for the free vertices of uv [vertex_count][2], whose fixed ones are given. The factor's entries are the densities,
+ * > 0. */
 skinslide_status ss_embed(const ss_system *system, ss_factor *factor, double (*uv)[2], skinslide_error *error);
 /* The same for a system that is not needed again, and density [edge_count]; label begins messages. */
 skinslide_status ss_embed_once(const ss_net *net, const char *label, const double *density, double (*uv)[2],

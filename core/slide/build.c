@@ -1,4 +1,5 @@
-/* Builds a slider: what its set-ups share, then the parts of each, by any thread, and in the end what is known of all of them. */
+/* Builds a slider: what its set-ups share, then the parts of each, by any thread, and in the end what is known of all of
+ * them. */
 #include "slide.h"
 
 #include <stdlib.h>

@@ -3,8 +3,8 @@
  *
  *     2 |(1 - s) p0 + s p2 - p1|,   s = (t1 - t0) / (t2 - t0)
  *
- * A cache that is a blend of two shapes has next to none, under skin that goes a little curve. So there is a least that counts: a
- * hundredth of the mean edge at rest, or what rounding may come to. */
+ * A cache that is a blend of two shapes has next to none, under skin that goes a little curve. So there is a least that counts:
+ * a hundredth of the mean edge at rest, or what rounding may come to. */
 #include "slide.h"
 
 #include <float.h>

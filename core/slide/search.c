@@ -1,5 +1,5 @@
-/* The least stretch that skin can have on a pose, as far as a search finds it: every free vertex may go anywhere on the patch, and
- * faces may turn over. From where the cache has vertices and from where a frame left them, it goes downhill along
+/* The least stretch that skin can have on a pose, as far as a search finds it: every free vertex may go anywhere on the patch,
+ * and faces may turn over. From where the cache has vertices and from where a frame left them, it goes downhill along
  *
  *     K^-1 g,   g_v = sum over the edges at v of log(L / l) / L^2 times the edge,   K = the springs of 1 / l^2 of the edges
  *

@@ -137,7 +137,8 @@ skinslide_status ss_check_controls(const skinslide_mesh *mesh, const char *name,
 void ss_paint(const ss_patch *patch, const skinslide_controls *controls, ss_edge_paint *edges, double *paint);
 /* weight times envelope of every free vertex, in their order: [free_count]. Returns how many values were outside 0..1. */
 int32_t ss_control_weights(const ss_patch *patch, const skinslide_controls *controls, double *weights);
-/* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any has. */
+/* How far every free vertex may slide, in their order: [free_count], infinite where there is no limit. Returns whether any
+ * has. */
 bool ss_control_limits(const ss_patch *patch, const skinslide_controls *controls, double *limits);
 /* How closely every vertex follows its neighbours: [vertex_count]. */
 void ss_control_holds(const ss_patch *patch, const skinslide_controls *controls, double *holds);

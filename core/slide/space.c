@@ -1,5 +1,5 @@
-/* Where lengths are taken: in the mesh's own space or, by a linear map, in another, such as the world's, in which the skin of a mesh
- * that is scaled more one way than another is seen. A slide is all in that space, and what comes of it goes back:
+/* Where lengths are taken: in the mesh's own space or, by a linear map, in another, such as the world's, in which the skin of a
+ * mesh that is scaled more one way than another is seen. A slide is all in that space, and what comes of it goes back:
  *
  *     p' = p M,   d = d' M^-1      rows; d the displacement of a vertex */
 #include "slide.h"

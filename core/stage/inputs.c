@@ -18,7 +18,9 @@
 #define USD(name, type, tokens, group, when) .shown = {name, type, NULL, tokens, group, "", when, 0, 0}
 #define OF_MESH(name, type, when)            USD(name, type, NULL, SKINSLIDE_STAGE_MESH, when)
 #define OF_SUBDIVISION(name, type)           USD(name, type, NULL, SKINSLIDE_STAGE_SUBDIVISION, SKINSLIDE_STAGE_STILL)
-#define MESH_SETTING(declared)               .shown = {declared, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
+
+#define MESH_SETTING(declared) .shown = {declared, SKINSLIDE_STAGE_MESH, SS_NAMESPACE, SKINSLIDE_STAGE_STILL, 0, 0}
+
 #define REST_PRIMVAR(name)                                                                                                     \
     .kind = SS_KIND_REST,                                                                                                      \
     .shown = {name, "point3f[]", NULL, NULL, SKINSLIDE_STAGE_MESH, SS_PRIMVARS, SKINSLIDE_STAGE_STILL, 1, 0}

@@ -1,5 +1,5 @@
-/* The maps of controls: textures that multiply paint, the texture coordinates at which they are sampled, and the files that they
- * need. A map that is the base's becomes the controls' own when its asset or its coordinates change. */
+/* The maps of controls: textures that multiply paint, the texture coordinates at which they are sampled, and the files that
+ * they need. A map that is the base's becomes the controls' own when its asset or its coordinates change. */
 #include "stage.h"
 
 /* Makes a texture its own. */

@@ -57,8 +57,8 @@ class Attribute {
     bool hasDefault() const; // even if samples hide it
     bool varies() const;     // may have different values at different times
     std::vector<double> times() const;
-    // The value at a time, interpolated linearly between samples as Usd does; empty where there is none. The path of an asset is
-    // evaluated, and anchored to the layer that authors it.
+    // The value at a time, interpolated linearly between samples as Usd does; empty where there is none. The path of an asset
+    // is evaluated, and anchored to the layer that authors it.
     VtValue at(double time) const;
     // The strongest opinion's layer: null where there is none.
     const SdfLayerRefPtr &layer() const {

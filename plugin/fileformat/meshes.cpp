@@ -50,8 +50,8 @@ Found search(Composition &composition) {
     return found;
 }
 
-// What a prim is below: undefined prims, the outermost instance, a prototype of a point instancer; the nearest SkelRoot, and the
-// Skeleton that is bound there or below.
+// What a prim is below: undefined prims, the outermost instance, a prototype of a point instancer; the nearest SkelRoot, and
+// the Skeleton that is bound there or below.
 struct Place {
     bool defined = true;
     std::string instance, instancer, skelRoot, skeleton;

@@ -11,8 +11,8 @@
 
 namespace skinslide {
 
-// The way of a prim to the world over time: points are rows. Operations that Usd would not know count for nothing. Composed once,
-// and free of the composition.
+// The way of a prim to the world over time: points are rows. Operations that Usd would not know count for nothing. Composed
+// once, and free of the composition.
 class ToWorld {
   public:
     ToWorld(Composition &composition, const SdfPath &path);

@@ -1,6 +1,6 @@
 /* What a frame costs in the core, on one thread, by stage, for quads and triangles of about 1,000, 10,000 and 100,000 vertices;
- * what a frame of the rules without a plane costs beside one by force density; and what walking to a face costs beside looking it
- * up in the tree. The median frame of several. Ratios are of one run, so they can be compared where milliseconds cannot. */
+ * what a frame of the rules without a plane costs beside one by force density; and what walking to a face costs beside looking
+ * it up in the tree. The median frame of several. Ratios are of one run, so they can be compared where milliseconds cannot. */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include "meshes.h"
 #include "slide.h"

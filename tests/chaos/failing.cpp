@@ -2,8 +2,8 @@
 //
 //     CHAOS_FOLDER   calls on files below it count, and on no others
 //     CHAOS_STRIKE   "CALL N VALUE": the Nth CALL, from 1, fails with errno VALUE; below 0, the process gets the signal -VALUE
-//     CHAOS_COUNTS   a file that is given how many calls of each kind there were, "struck 1" where one failed, and the most memory
-//                    that there was, in kB of addresses
+//     CHAOS_COUNTS   a file that is given how many calls of each kind there were, "struck 1" where one failed, and the most
+//                    memory that there was, in kB of addresses
 //
 // CALL: open, write, sync, rename, close, mkdir; "ours", an allocation that skinslide's libraries ask for, or those that they
 // compute with; "any", an allocation of anybody once skinslide has computed.

@@ -1,5 +1,5 @@
-/* Slides one frame of a sheet of four quads: its middle vertex, pulled aside, goes most of the way back. And makes ready to draw
- * it, which needs no device yet. And asks what there is to read of a scene. */
+/* Slides one frame of a sheet of four quads: its middle vertex, pulled aside, goes most of the way back. And makes ready to
+ * draw it, which needs no device yet. And asks what there is to read of a scene. */
 #include <skinslide/picture.h>
 #include <skinslide/stage.h>
 #include <stdio.h>

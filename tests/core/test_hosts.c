@@ -1,5 +1,5 @@
-/* Beside a host that draws with EGL itself, on the same thread and on another: what it has current and what it has painted stay, and
- * frames and pictures are those of a thread without a host. Needs an EGL; software Mesa is one. */
+/* Beside a host that draws with EGL itself, on the same thread and on another: what it has current and what it has painted
+ * stay, and frames and pictures are those of a thread without a host. Needs an EGL; software Mesa is one. */
 #define _POSIX_C_SOURCE 200809L /* pthread */
 #include "hosts.h"
 #include "skinslide/picture.h"

@@ -1,6 +1,6 @@
-/* Once a workspace has slid a frame of a kind, no other asks the system for anything: no memory, and no call of the kernel. Frames are
- * slid in a process that the kernel kills at any call but to end, and the program's own malloc counts. Only what a frame's controls
- * name by edges is checked in memory of its own. */
+/* Once a workspace has slid a frame of a kind, no other asks the system for anything: no memory, and no call of the kernel.
+ * Frames are slid in a process that the kernel kills at any call but to end, and the program's own malloc counts. Only what a
+ * frame's controls name by edges is checked in memory of its own. */
 #define _GNU_SOURCE
 #include "support.h"
 

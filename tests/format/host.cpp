@@ -3,9 +3,9 @@
 //     format_host PLUGIN_FOLDER FILE THREADS SECONDS [--interpreter]
 //
 // Without Python, or with an interpreter whose lock nobody holds. FILE is read by one thread first, and every other reading
-// must come to the same values. The first thread, and every other one after it, reads a file of its own, which nobody else keeps
-// open, one that all open and drop, and one that stays open; those between listen to changes of layers and stop listening, as
-// stages do.
+// must come to the same values. The first thread, and every other one after it, reads a file of its own, which nobody else
+// keeps open, one that all open and drop, and one that stays open; those between listen to changes of layers and stop
+// listening, as stages do.
 #include "pxr/pxr.h"
 #include <Python.h>
 

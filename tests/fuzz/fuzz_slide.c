@@ -1,5 +1,6 @@
-/* A mesh, a patch and frames of any bytes: set up or refused, and slid to finite points or refused; by rules without a plane never
- * because of the matrix. What is not finite off the patch passes. Then the same with points put in one place, and welded. */
+/* A mesh, a patch and frames of any bytes: set up or refused, and slid to finite points or refused; by rules without a plane
+ * never because of the matrix. What is not finite off the patch passes. Then the same with points put in one place, and
+ * welded. */
 #include "skinslide/skinslide.h"
 #include "stream.h"
 

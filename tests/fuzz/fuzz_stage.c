@@ -1,5 +1,5 @@
-/* Records of any bytes for every input of a mesh, a patch and its controls: taken or refused in one line, and what is given is what
- * a slider can read. */
+/* Records of any bytes for every input of a mesh, a patch and its controls: taken or refused in one line, and what is given is
+ * what a slider can read. */
 #include "skinslide/stage.h"
 #include "stream.h"
 

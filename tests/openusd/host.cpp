@@ -1,5 +1,5 @@
-// A C++ host with a whole OpenUSD and no Python, whose threads open a stage that payloads a `.skinslide`, each its own, and compare
-// every sample with that of a bake.
+// A C++ host with a whole OpenUSD and no Python, whose threads open a stage that payloads a `.skinslide`, each its own, and
+// compare every sample with that of a bake.
 //
 //     host LAYER.skinslide BAKED.usda THREADS
 //

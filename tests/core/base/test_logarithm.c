@@ -42,8 +42,8 @@ static void several_are_each_to_the_bit(void **state) {
     }
 }
 
-/* Of whatever count, of quotients near 1 and far from it, and with what is not normal among them. Each log is a few units in the
- * last place off, and so is its square; the sums are of at most 100. */
+/* Of whatever count, of quotients near 1 and far from it, and with what is not normal among them. Each log is a few units in
+ * the last place off, and so is its square; the sums are of at most 100. */
 static void squares_are_those_of_logarithms(void **state) {
     (void)state;
     enum { COUNT = 100 };

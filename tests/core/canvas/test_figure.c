@@ -1,5 +1,5 @@
-/* Pixels of figures: which are drawn, in which colour, in front of what. Most are drawn by a camera whose world is in pixels, so
- * that what each pixel has can be told by hand. */
+/* Pixels of figures: which are drawn, in which colour, in front of what. Most are drawn by a camera whose world is in pixels,
+ * so that what each pixel has can be told by hand. */
 #include "canvas.h"
 #include "creases.h"
 #include "support.h"
@@ -73,7 +73,8 @@ typedef struct sheet {
     float *values;
 } sheet;
 
-/* A grid of columns by rows quads over a box of pixels, in z = 0, its st from 0 to 1. Its first `inside` faces are the patch. */
+/* A grid of columns by rows quads over a box of pixels, in z = 0, its st from 0 to 1. Its first `inside` faces are the
+ * patch. */
 static sheet sheet_of(int32_t columns, int32_t rows, const double box[4], int32_t inside, bool st) {
     sheet s = {.mesh = quad_grid(columns, rows)};
     int32_t *faces = all_faces(&s.mesh);
@@ -427,7 +428,8 @@ static void backs_are_left_out(void **state) {
             camera.to_screen[0] *= -1, camera.to_screen[12] *= -1;
         draw_in(canvas, whole, &s.figure, camera);
         read_all(canvas, pixels);
-        /* A mirrored mesh faces as it did: with its shape, its outside is mirrored in x alone. Turned half round, it does not. */
+        /* A mirrored mesh faces as it did: with its shape, its outside is mirrored in x alone. Turned half round, it does
+         * not. */
         bool away = (i & 1) != ((i & 12) == 8);
         assert_int_equal(is_colour(pixels[HEIGHT / 3][WIDTH / 3], blue, 0.01), away && !(i & 2));
         end_sheet(&s);
@@ -465,8 +467,8 @@ static void the_outline_is_on_top(void **state) {
     }
 }
 
-/* Whether a place of the picture, in pixels, is within `most` pixels of a segment, of which what is behind the near plane is cut
- * off: ends in clip space. */
+/* Whether a place of the picture, in pixels, is within `most` pixels of a segment, of which what is behind the near plane is
+ * cut off: ends in clip space. */
 static bool is_near(double x, double y, const double a[4], const double b[4], double most) {
     enum { STEPS = 4000 };
     double from = 0, to = 1, a_ahead = a[2] + a[3], b_ahead = b[2] + b[3];
@@ -523,8 +525,8 @@ static void an_outline_of_its_own(void **state) {
 
 static const float purple[3] = {0.80f, 0.02f, 0.30f}, white[3] = {0.95f, 0.93f, 0.88f};
 
-/* Faces of 24 by 32 pixels, of which the first row is the patch: of its sides those inside it are drawn, thinly; on its outline the
- * outline is. */
+/* Faces of 24 by 32 pixels, of which the first row is the patch: of its sides those inside it are drawn, thinly; on its outline
+ * the outline is. */
 static void sides_of_the_patch_are_drawn(void **state) {
     (void)state;
     static pixel pixels[HEIGHT][WIDTH];
@@ -545,8 +547,8 @@ static void sides_of_the_patch_are_drawn(void **state) {
     end_sheet(&s);
 }
 
-/* Faces of 24 by 32 pixels, of which the first row is the patch. An edge has the colour of its value, on a dark border; the same
- * the other way round; none of those outside the patch, of no face, or of vertices that are none is drawn. */
+/* Faces of 24 by 32 pixels, of which the first row is the patch. An edge has the colour of its value, on a dark border; the
+ * same the other way round; none of those outside the patch, of no face, or of vertices that are none is drawn. */
 static void edges_have_the_colour_of_their_value(void **state) {
     (void)state;
     static pixel pixels[HEIGHT][WIDTH], without[HEIGHT][WIDTH];
@@ -625,8 +627,8 @@ static void pins_and_ways_are_drawn(void **state) {
 
 /* ---- Ghosts ---- */
 
-/* The left half is the patch, and another sheet of the same mesh lies before all of it: it covers what is outside, and darkens the
- * patch by its share alone. Behind, it is not seen. */
+/* The left half is the patch, and another sheet of the same mesh lies before all of it: it covers what is outside, and darkens
+ * the patch by its share alone. Behind, it is not seen. */
 static void what_hides_the_patch_is_a_shadow(void **state) {
     (void)state;
     static pixel pixels[HEIGHT][WIDTH];
@@ -837,8 +839,8 @@ static void many_figures_leave_marks(void **state) {
     end_sheet(&s);
 }
 
-/* From inside a cube, turned any way: every pixel of the outline is at an edge of the patch, and those of edges that reach behind
- * the camera are nowhere else. */
+/* From inside a cube, turned any way: every pixel of the outline is at an edge of the patch, and those of edges that reach
+ * behind the camera are nowhere else. */
 static void from_inside_nothing_smears(void **state) {
     (void)state;
     static pixel pixels[HEIGHT][WIDTH];
@@ -892,8 +894,8 @@ static void from_inside_nothing_smears(void **state) {
     free_mesh(&mesh);
 }
 
-/* A floor that reaches from far ahead of the camera to far behind it, of which the patch has both: it makes no difference where on it
- * is what is behind. Vertices that are next to those ahead stay. */
+/* A floor that reaches from far ahead of the camera to far behind it, of which the patch has both: it makes no difference where
+ * on it is what is behind. Vertices that are next to those ahead stay. */
 static void what_is_behind_is_nowhere(void **state) {
     (void)state;
     enum { ROWS = 16 };
@@ -923,8 +925,8 @@ static void what_is_behind_is_nowhere(void **state) {
 
 /* ---- A part of a picture ---- */
 
-/* A torus with creases and a mesh of polygons in perspective, as a whole; and each of 4 by 4 parts by itself, in which most is out
- * of sight: the same pixels, but for a sample here and there. */
+/* A torus with creases and a mesh of polygons in perspective, as a whole; and each of 4 by 4 parts by itself, in which most is
+ * out of sight: the same pixels, but for a sample here and there. */
 static void compare_parts(test_mesh mesh, const skinslide_subdivision *own) {
     enum { PARTS = 4 };
     static uint8_t all[PARTS * HEIGHT][PARTS * WIDTH][4], part[HEIGHT][WIDTH][4];

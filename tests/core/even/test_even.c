@@ -1,4 +1,5 @@
-/* The rule `even`: what it promises of any patch, and what no rule in a plane can do. Built twice: `relaxed` promises the same. */
+/* The rule `even`: what it promises of any patch, and what no rule in a plane can do. Built twice: `relaxed` promises the
+ * same. */
 #include "distance.h"
 
 #include <math.h>
@@ -261,8 +262,8 @@ static void frames_come_in_any_order(void **state) {
 
 /* ---- In time ---- */
 
-/* A bump that wanders over a sheet, in 40 steps of a fifth of a face: no frame of the slide is much rougher than the roughest of
- * the cache, but that skin which slides over an edge between faces turns there: 2.04 measured. */
+/* A bump that wanders over a sheet, in 40 steps of a fifth of a face: no frame of the slide is much rougher than the roughest
+ * of the cache, but that skin which slides over an edge between faces turns there: 2.04 measured. */
 static void slides_are_smooth_in_time(void **state) {
     (void)state;
     test_mesh mesh = quad_grid(24, 24);
@@ -317,8 +318,8 @@ static double mean_slide(const rig *r, const test_mesh *mesh, const float *point
     return sum / count;
 }
 
-/* A weight leaves its share of the slide, measured through the air: on a mesh of any fineness, painted all over or on a few faces,
- * whose edge alone takes a little of both sides. */
+/* A weight leaves its share of the slide, measured through the air: on a mesh of any fineness, painted all over or on a few
+ * faces, whose edge alone takes a little of both sides. */
 static void weights_are_shares_of_the_slide(void **state) {
     (void)state;
     for (int32_t n = 12; n <= 24; n *= 2)
@@ -480,8 +481,9 @@ static void controls_are_checked(void **state) {
 
 /* ---- Interpolation ---- */
 
-/* Mean values are in the plane of each face at rest. Of triangles they are what linear gives; of a flat sheet of quads, in a pose
- * that is a linear map of rest, too: both have linear precision. In no pose is a vertex farther away than its face is large. */
+/* Mean values are in the plane of each face at rest. Of triangles they are what linear gives; of a flat sheet of quads, in a
+ * pose that is a linear map of rest, too: both have linear precision. In no pose is a vertex farther away than its face is
+ * large. */
 static void mean_values_are_of_faces_at_rest(void **state) {
     (void)state;
     for (int32_t kind = 0; kind < 3; kind++) {
@@ -505,8 +507,8 @@ static void mean_values_are_of_faces_at_rest(void **state) {
 
 /* ---- Bad rest and bad poses ---- */
 
-/* Rest with a face in a point, vertices on a line, a spike, a vertex thrown over its neighbour, all flat, all on a line, sides of no
- * length inside and on the border, and border faces without area: finite, and rest keeps its bits. */
+/* Rest with a face in a point, vertices on a line, a spike, a vertex thrown over its neighbour, all flat, all on a line, sides
+ * of no length inside and on the border, and border faces without area: finite, and rest keeps its bits. */
 static void spoil(test_mesh *mesh, int32_t kind) {
     float *p = mesh->points;
     if (kind == 0)
@@ -685,8 +687,8 @@ static void nothing_free_is_nothing_slid(void **state) {
 
 /* ---- Vertices at which faces meet in a point ---- */
 
-/* A sheet of 8 x 8 faces without two that are across from each other at the middle: its boundary touches itself there. In the other
- * way to have it, the faces of the second have a vertex of their own, beside that of the first. */
+/* A sheet of 8 x 8 faces without two that are across from each other at the middle: its boundary touches itself there. In the
+ * other way to have it, the faces of the second have a vertex of their own, beside that of the first. */
 static test_mesh pinched(bool apart) {
     enum { MIDDLE = 40, FIRST = 28, SECOND = 35 }; /* the faces that stay */
     test_mesh sheet = quad_grid(8, 8);

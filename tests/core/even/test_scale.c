@@ -9,8 +9,8 @@ static int by_z(const void *a, const void *b) {
     return x->z != y->z ? (x->z > y->z) - (x->z < y->z) : (x->k > y->k) - (x->k < y->k);
 }
 
-/* The point of balance of sum k f((z - mu) / width), which is nearly linear about the median where values are dense, after as many
- * steps from the median of the sorted values. */
+/* The point of balance of sum k f((z - mu) / width), which is nearly linear about the median where values are dense, after as
+ * many steps from the median of the sorted values. */
 static double sorted_scale(ss_weighted *values, int32_t count) {
     double half = 0, before = 0, middle = 0;
     qsort(values, (size_t)count, sizeof *values, by_z);

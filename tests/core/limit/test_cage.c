@@ -211,8 +211,8 @@ static void the_limit_surface_stays_where_it_was(void **state) {
     expect_closer(&catmull_clark, SKINSLIDE_RULE_EVEN, 5, 1.07); /* of a fifth less: as much in itself */
 }
 
-/* Rest: 12 x 8 faces over most of a tube of radius 1.6, on one side of it. A pose of it: linear blend skinning by some angle about
- * its middle. Coarse beside the bend, as the body of a game is. */
+/* Rest: 12 x 8 faces over most of a tube of radius 1.6, on one side of it. A pose of it: linear blend skinning by some angle
+ * about its middle. Coarse beside the bend, as the body of a game is. */
 enum { OUTSIDE = 1, INSIDE = -1 };
 
 static float *bend(const test_mesh *tube, double degrees) {
@@ -247,7 +247,8 @@ static void a_coarse_tube_keeps_its_bend(void **state) {
     free_mesh(&mesh);
 }
 
-/* Rest: a sheet that turns back over a rim of two faces, as a lip does. The pose: it is drawn over the rim, most in the middle. */
+/* Rest: a sheet that turns back over a rim of two faces, as a lip does. The pose: it is drawn over the rim, most in the
+ * middle. */
 static test_mesh rim(float **drawn) {
     const double quarter = acos(-1) / 2, radius = 0.4;
     test_mesh mesh = quad_grid(10, 14);
@@ -513,8 +514,8 @@ static void ringing_is_damped_and_counted(void **state) {
     free_mesh(&mesh);
 }
 
-/* The farthest that a vertex goes in one of so many steps of a sweep in which skin slides from narrow faces into wide ones, all of it
- * held back on the way. */
+/* The farthest that a vertex goes in one of so many steps of a sweep in which skin slides from narrow faces into wide ones, all
+ * of it held back on the way. */
 static double farthest_step(const rig *r, const test_mesh *mesh, int steps) {
     float *points = copy_points(mesh), *before = NULL;
     double most = 0;

@@ -495,8 +495,8 @@ static void what_crashes_opensubdiv_is_refused(void **state) {
     free_mesh(&mesh);
 }
 
-/* The time grows with the cube of the faces around a vertex, or the vertices of a face: the most there may be are taken, and what
- * has more is named. A bilinear surface has no such vertices. */
+/* The time grows with the cube of the faces around a vertex, or the vertices of a face: the most there may be are taken, and
+ * what has more is named. A bilinear surface has no such vertices. */
 static void expect_crowd(const test_mesh *mesh, skinslide_scheme scheme, skinslide_status expected, const char *text) {
     skinslide_mesh view = view_of(mesh);
     skinslide_subdivision own = SKINSLIDE_SUBDIVISION_DEFAULT;

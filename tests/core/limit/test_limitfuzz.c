@@ -1,5 +1,5 @@
-/* Limit surfaces of meshes that no one models: edges of many faces, vertices that join them, repeated corners, creases anywhere.
- * Whatever OpenSubdiv cannot take is refused before it is asked, and nothing else comes out than finite points. */
+/* Limit surfaces of meshes that no one models: edges of many faces, vertices that join them, repeated corners, creases
+ * anywhere. Whatever OpenSubdiv cannot take is refused before it is asked, and nothing else comes out than finite points. */
 #include "support.h"
 
 #include <math.h>

@@ -147,8 +147,8 @@ static void fronts_hold_the_factor(void **state) {
     }
 }
 
-/* What the fronts of a grid hold grows as n log n (George 1973); an order by rows has sqrt(n) an unknown, which at 250 x 250 is more
- * than four times as much as is let through here. */
+/* What the fronts of a grid hold grows as n log n (George 1973); an order by rows has sqrt(n) an unknown, which at 250 x 250 is
+ * more than four times as much as is let through here. */
 static void large_grids_fill_little(void **state) {
     (void)state;
     const int32_t sides[2] = {60, 250};

@@ -1,5 +1,5 @@
-/* Incomplete factors of normal equations: where nothing falls outside their entries they solve them, else they come near, whatever
- * order unknowns have; what cannot be solved is refused. */
+/* Incomplete factors of normal equations: where nothing falls outside their entries they solve them, else they come near,
+ * whatever order unknowns have; what cannot be solved is refused. */
 #include "support.h"
 
 #include <math.h>
@@ -117,8 +117,8 @@ static void dependent_columns_are_refused(void **state) {
     }
 }
 
-/* Six columns on a ring, a row for each with the next two. Scaled to ones on its diagonal A'A has no eigenvalue under 0.12, and yet
- * what is left out leaves the fifth pivot below 0. It is mended, and what comes is positive definite. */
+/* Six columns on a ring, a row for each with the next two. Scaled to ones on its diagonal A'A has no eigenvalue under 0.12, and
+ * yet what is left out leaves the fifth pivot below 0. It is mended, and what comes is positive definite. */
 static void a_pivot_that_vanishes_is_mended(void **state) {
     (void)state;
     enum { N = 6 };

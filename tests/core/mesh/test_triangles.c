@@ -20,8 +20,8 @@ static void sides_belong_to_their_triangle(void **state) {
     }
 }
 
-/* Over a side, the next triangle has the same ends the other way round, and leads back; where there is none, the side is one of a
- * loop. */
+/* Over a side, the next triangle has the same ends the other way round, and leads back; where there is none, the side is one of
+ * a loop. */
 static void check_side(const ss_patch *patch, int32_t t, int k) {
     const ss_triangles *triangles = &patch->triangles;
     int32_t a = triangles->vertex[t][k], b = triangles->vertex[t][(k + 1) % 3], next = triangles->neighbour[t][k];

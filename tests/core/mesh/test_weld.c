@@ -1,5 +1,5 @@
-/* A mesh that is split, at every corner or along a seam, slides as the mesh that it was split from, to the bit; what cannot be one
- * stays apart, and is named. */
+/* A mesh that is split, at every corner or along a seam, slides as the mesh that it was split from, to the bit; what cannot be
+ * one stays apart, and is named. */
 #include "support.h"
 
 #include <math.h>
@@ -10,7 +10,8 @@ static skinslide_error error;
 
 /* ---- Split meshes ---- */
 
-/* A mesh and what it was split from: copies of a vertex follow each other, so that welded vertices are in the order of the whole's. */
+/* A mesh and what it was split from: copies of a vertex follow each other, so that welded vertices are in the order of the
+ * whole's. */
 typedef struct split_mesh {
     test_mesh mesh;
     int32_t *whole; /* [vertex_count] */
@@ -149,7 +150,8 @@ static void a_mesh_split_along_a_seam_is_its_twin(void **state) {
     for (int32_t length = 2; length <= 8; length += 3) {
         test_mesh grid = quad_grid(8, 8);
         int32_t group[64];
-        /* Faces left of the middle, in the first rows: the seam's last vertex has faces of both groups only over the row above. */
+        /* Faces left of the middle, in the first rows: the seam's last vertex has faces of both groups only over the row
+         * above. */
         for (int32_t f = 0; f < 64; f++)
             group[f] = f / 8 < length && f % 8 < 4;
         split_mesh split = split_by(&grid, group, 2);
@@ -490,8 +492,8 @@ static void bad_input_is_named(void **state) {
     free_mesh(&grid);
 }
 
-/* As it is found without leaving out those that are far away: places of all points at once, on a lattice that is coarse enough to be
- * shared, with some that are nowhere. */
+/* As it is found without leaving out those that are far away: places of all points at once, on a lattice that is coarse enough
+ * to be shared, with some that are nowhere. */
 static void points_that_others_meet(void **state) {
     (void)state;
     enum { OWN = 40, OTHERS = 60, ALL = OWN + OTHERS };

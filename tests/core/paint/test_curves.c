@@ -49,7 +49,8 @@ static int32_t count_near(const skinslide_curves *curves, double distance, skins
     return count;
 }
 
-/* A line along y = 2, a little above the grid. Edges on it have their middles at its height, those across it half a side away. */
+/* A line along y = 2, a little above the grid. Edges on it have their middles at its height, those across it half a side
+ * away. */
 static void a_line_by_hand(void **state) {
     (void)state;
     const float points[6] = {0, 2, 0.1f, 4, 2, 0.1f};
@@ -117,7 +118,8 @@ static void curves_come_by_a_matrix(void **state) {
 
 /* ---- Cubic curves ---- */
 
-/* The rows multiply t^3, t^2, t, 1; the columns the four control points: as the documentation of UsdGeomBasisCurves has them. */
+/* The rows multiply t^3, t^2, t, 1; the columns the four control points: as the documentation of UsdGeomBasisCurves has
+ * them. */
 static const double bases[4][4][4] = {
     {{0}},
     {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}},

@@ -10,8 +10,8 @@ static skinslide_error error;
 
 enum { SIDE = 40, FACES = SIDE * SIDE, CORNERS = 4 * FACES };
 
-/* A grid of quads of side 1, of which the vertex in the middle of a square of side 2 * half is pulled out of the plane by a little,
- * and all others of the square with it, less towards its rim. */
+/* A grid of quads of side 1, of which the vertex in the middle of a square of side 2 * half is pulled out of the plane by a
+ * little, and all others of the square with it, less towards its rim. */
 static float *pulled(const test_mesh *grid, int32_t half) {
     float *points = copy_points(grid);
     for (int32_t j = 0; j <= SIDE; j++)
@@ -34,8 +34,8 @@ static int32_t mask(const test_mesh *grid, const float *points, const skinslide_
     return count;
 }
 
-/* Vertices inside the square are ends of stretched sides, those of its rim too but for the four at its corners: so the region is one
- * face wider, without the faces at its own corners. */
+/* Vertices inside the square are ends of stretched sides, those of its rim too but for the four at its corners: so the region
+ * is one face wider, without the faces at its own corners. */
 static void a_region_and_what_is_near(void **state) {
     (void)state;
     test_mesh grid = quad_grid(SIDE, SIDE);

@@ -73,8 +73,8 @@ static void a_scale_is_told_of_any_mesh(void **state) {
         }
 }
 
-/* A sheet stretched by two factors along axes at an angle: these factors, their product, and in the texture the angle of the larger
- * one's axis less that by which the texture is turned. */
+/* A sheet stretched by two factors along axes at an angle: these factors, their product, and in the texture the angle of the
+ * larger one's axis less that by which the texture is turned. */
 static void a_uniform_stretch_of_a_sheet(void **state) {
     (void)state;
     const double angles[4] = {0, 0.4, 1.2, 2.9}, turns[3] = {0, 0.5, -1}, factors[3][2] = {{1.6, 0.7}, {1.1, 1.05}, {0.9, 0.4}};

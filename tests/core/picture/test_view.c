@@ -1,5 +1,5 @@
-/* Cameras: that they have all of their subject in sight and little else, from its outside, wherever it is and however large; and
- * the matrices that are drawn with. */
+/* Cameras: that they have all of their subject in sight and little else, from its outside, wherever it is and however large;
+ * and the matrices that are drawn with. */
 #include "picture.h"
 #include "support.h"
 
@@ -214,8 +214,8 @@ static void a_bent_sheet_is_seen_from_its_mean_normal(void **state) {
     end_framing(&f);
 }
 
-/* A sheet that turns about y, in degrees: a quarter turn is seen from its mean normal, (0, 0, 1) twice and (-1, 0, 0). One of 140
- * would show its back there, and is seen from halfway. */
+/* A sheet that turns about y, in degrees: a quarter turn is seen from its mean normal, (0, 0, 1) twice and (-1, 0, 0). One of
+ * 140 would show its back there, and is seen from halfway. */
 static void what_turns_away_is_seen_from_between(void **state) {
     (void)state;
     const double turns[2] = {-90, 140}, degree = acos(-1) / 180, expected[2] = {-atan(0.5), 70 * degree};

@@ -1,5 +1,5 @@
-/* Force densities, by hand on two triangles 0 1 2 and 0 2 3 of a unit square: edges 0-1, 0-2, 0-3, 1-2, 2-3, of which 0-2 is the
- * diagonal. */
+/* Force densities, by hand on two triangles 0 1 2 and 0 2 3 of a unit square: edges 0-1, 0-2, 0-3, 1-2, 2-3, of which 0-2 is
+ * the diagonal. */
 #include "support.h"
 
 #include <math.h>

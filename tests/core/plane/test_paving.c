@@ -64,7 +64,8 @@ static double mean_way(const ss_paving *paving) {
     return sum / (3.0 * paving->patch->triangles.count);
 }
 
-/* A row of 40 quads has 80 triangles, and neighbours are in this row or the next; of 3,200 in no order they would be 1,067 apart. */
+/* A row of 40 quads has 80 triangles, and neighbours are in this row or the next; of 3,200 in no order they would be 1,067
+ * apart. */
 static void neighbours_are_near_however_a_mesh_is_numbered(void **state) {
     (void)state;
     for (int round = 0; round < 2; round++) {

@@ -1,4 +1,5 @@
-/* The rule `relaxed`, where it promises more than `even`: whose own tests it passes, too. And the largest distances of every rule. */
+/* The rule `relaxed`, where it promises more than `even`: whose own tests it passes, too. And the largest distances of every
+ * rule. */
 #include "distance.h"
 
 #include <math.h>
@@ -24,8 +25,8 @@ static double distance(const float *a, const float *b) {
 
 /* ---- Parts of a step ---- */
 
-/* A sheet whose pose is a linear map of it has that map for its gradient everywhere, and its tangents mapped for axes wherever a
- * vertex is; a vertex of no weight has none. */
+/* A sheet whose pose is a linear map of it has that map for its gradient everywhere, and its tangents mapped for axes wherever
+ * a vertex is; a vertex of no weight has none. */
 static void axes_of_a_linear_map(void **state) {
     (void)state;
     static const double map[3][2] = {{2, 0.25}, {-1, 3}, {0.5, -4}};
@@ -179,8 +180,8 @@ static void slides_stay_on_the_surface(void **state) {
     }
 }
 
-/* Rest that is crumpled as paper is, where gradients smoothed from vertex to vertex say little of the surface: what even takes off
- * stretch there, relaxed does not put back. */
+/* Rest that is crumpled as paper is, where gradients smoothed from vertex to vertex say little of the surface: what even takes
+ * off stretch there, relaxed does not put back. */
 static void no_stretch_is_added_on_crumpled_rest(void **state) {
     (void)state;
     int32_t evened = 0;

@@ -53,8 +53,8 @@ static void two_quads_by_hand(void **state) {
     free_mesh(&mesh);
 }
 
-/* A triangle and a pair of them meet in vertex 0 alone, and a quad joins them elsewhere. Of the five edges at the vertex 0-1 counts
- * six times. */
+/* A triangle and a pair of them meet in vertex 0 alone, and a quad joins them elsewhere. Of the five edges at the vertex 0-1
+ * counts six times. */
 static void faces_that_meet_in_a_point_by_hand(void **state) {
     (void)state;
     const int32_t counts[4] = {3, 3, 3, 4}, indices[13] = {0, 1, 2, 0, 3, 4, 0, 4, 5, 2, 1, 5, 4};

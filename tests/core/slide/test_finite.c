@@ -1,4 +1,5 @@
-/* Finite in, finite out: what floats cannot hold fails by name, and nothing is written. Points are at the ends of float's range. */
+/* Finite in, finite out: what floats cannot hold fails by name, and nothing is written. Points are at the ends of float's
+ * range. */
 #include "support.h"
 
 #include <float.h>

@@ -83,8 +83,8 @@ static void no_motion_is_not_rough(void **state) {
     close_shot(&s);
 }
 
-/* Far away, rounding is more than what counts on skin: of three points, the middle one twice, sqrt(3) of half a unit in the last
- * place. */
+/* Far away, rounding is more than what counts on skin: of three points, the middle one twice, sqrt(3) of half a unit in the
+ * last place. */
 static void rounding_does_not_count(void **state) {
     (void)state;
     shot s = open_shot();

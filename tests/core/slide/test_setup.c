@@ -279,8 +279,8 @@ static void bad_weights(void **state) {
     expect_controls(controls, SKINSLIDE_BAD_CONTROL, "patch all: envelope is not a number");
 }
 
-/* The middle four vertices hold each other 1e70 times as hard as anything holds them: they are as good as one vertex, in the middle
- * of the circle. What is left of one rounding a step, in units of 1. */
+/* The middle four vertices hold each other 1e70 times as hard as anything holds them: they are as good as one vertex, in the
+ * middle of the circle. What is left of one rounding a step, in units of 1. */
 static void densities_of_any_size_are_solved(void **state) {
     (void)state;
     float values[16];

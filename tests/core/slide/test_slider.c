@@ -489,8 +489,8 @@ static bool is_ring_or_island(int32_t i, int32_t j) {
     return ring || reaches || island;
 }
 
-/* What `holes` frees of a border slides along it, in each piece its own way: what several pieces share stays, and nothing leaves the
- * surface. */
+/* What `holes` frees of a border slides along it, in each piece its own way: what several pieces share stays, and nothing
+ * leaves the surface. */
 static void check_touching(bool (*is_in)(int32_t i, int32_t j), int32_t shared, skinslide_patch_setup choices) {
     test_mesh mesh = quad_grid(8, 8);
     int32_t faces[64], count = 0;

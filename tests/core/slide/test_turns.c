@@ -159,7 +159,8 @@ static double largest_coarseness(const test_mesh *mesh, const float *points) {
     return worst;
 }
 
-/* On sheets of ever more faces, whose own normals are off by ever less, carried ones are off by less than those, by every rule. */
+/* On sheets of ever more faces, whose own normals are off by ever less, carried ones are off by less than those, by every
+ * rule. */
 static void as_near_as_the_mesh_is_fine(void **state) {
     (void)state;
     double before[SKINSLIDE_RULE_EVEN + 1] = {0};

@@ -76,8 +76,8 @@ static void indexed(void **state) {
     tear_down(&s);
 }
 
-/* The face at the end of a row of three, and those within a distance of it: whatever comes first, and only where the rule takes any
- * faces. */
+/* The face at the end of a row of three, and those within a distance of it: whatever comes first, and only where the rule takes
+ * any faces. */
 static void grown(void **state) {
     (void)state;
     static const uint8_t chosen[6] = {1, 0, 0, 0, 0, 0};

@@ -69,8 +69,8 @@ static void names_as_tools_leave_them(void **state) {
     end_scene(&s);
 }
 
-/* The schema's own name is the best, then that with underscores, then another case; of two that are as good the first by letters,
- * in whichever order they come. */
+/* The schema's own name is the best, then that with underscores, then another case; of two that are as good the first by
+ * letters, in whichever order they come. */
 static void the_best_name_counts(void **state) {
     (void)state;
     static const char *const names[] = {"primvars:skinslide:elbow:WEIGHT", "primvars:SKINSLIDE_elbow_weight",

@@ -1,4 +1,5 @@
-/* How transforms above a mesh scale it: what is warned of, the map by which lengths are those in the world, and what changes. */
+/* How transforms above a mesh scale it: what is warned of, the map by which lengths are those in the world, and what
+ * changes. */
 #include "records.h"
 
 #include <math.h>

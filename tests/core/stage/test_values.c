@@ -79,14 +79,11 @@ static void bad_indices_are_named(void **state) {
     const skinslide_value outside = INTS("x:indices", 0, 3), below = INTS("x:indices", 0, 0, -1);
     const skinslide_value floats = FLOATS("x:indices", 1);
     skinslide_value value = indexed_by(FLOATS("x", 5, 6, 7), &outside);
-    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
-                 "x:indices[1] is 3, but x has 3 values");
+    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x:indices[1] is 3, but x has 3 values");
     value.indices = &below;
-    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
-                 "x:indices[2] is -1, but x has 3 values");
+    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x:indices[2] is -1, but x has 3 values");
     value.indices = &floats;
-    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL,
-                 "x:indices is not an array of int");
+    assert_fails(take_floats(&value, NULL, &error), &error, SKINSLIDE_BAD_CONTROL, "x:indices is not an array of int");
 }
 
 static void whole_numbers_that_do_not_fit(void **state) {
@@ -147,8 +144,7 @@ static void records_that_are_none(void **state) {
     (void)state;
     skinslide_value bad = FLOATS("x", 1);
     bad.size = 0;
-    assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
-                 "skinslide_value: its size is ...");
+    assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT, "skinslide_value: its size is ...");
     bad = FLOATS("x", 1), bad.count = -1;
     assert_fails(take_floats(&bad, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "x: the record has no data, or a count of none");

@@ -1,5 +1,5 @@
-/* Along a border: how far apart two of its vertices are is the sum of the sides between them, and a walk that far leads from one to
- * the other, whichever triangle a place is told in. */
+/* Along a border: how far apart two of its vertices are is the sum of the sides between them, and a walk that far leads from
+ * one to the other, whichever triangle a place is told in. */
 #include "queries.h"
 
 #include <float.h>

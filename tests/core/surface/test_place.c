@@ -82,8 +82,8 @@ static void check_vertices(const ss_patch *patch, const double (*uv)[2]) {
     }
 }
 
-/* Walked to, and then settled: also where the patch is so small in the plane, or so narrow, as a rule may lay it out, that no triangle
- * has an area to speak of. */
+/* Walked to, and then settled: also where the patch is so small in the plane, or so narrow, as a rule may lay it out, that no
+ * triangle has an area to speak of. */
 static void a_place_stays_where_it_is(void **state) {
     (void)state;
     static const double squeezes[][2] = {{1, 1}, {DBL_EPSILON, DBL_EPSILON}, {1, 0}, {0, 0}, {1, 1e-14}};

@@ -7,7 +7,8 @@
 
 /* An array of `count` elements of `width` numbers. data must outlive the record. */
 skinslide_value array_of(const char *name, skinslide_value_type type, int32_t width, int64_t count, const void *data);
-#define INTS(name, ...)   array_of(name, SKINSLIDE_VALUE_INT32, 1, sizeof((int32_t[]){__VA_ARGS__}) / 4, (int32_t[]){__VA_ARGS__})
+#define INTS(name, ...) array_of(name, SKINSLIDE_VALUE_INT32, 1, sizeof((int32_t[]){__VA_ARGS__}) / 4, (int32_t[]){__VA_ARGS__})
+
 #define FLOATS(name, ...) array_of(name, SKINSLIDE_VALUE_FLOAT, 1, sizeof((float[]){__VA_ARGS__}) / 4, (float[]){__VA_ARGS__})
 /* One value. */
 skinslide_value text_of(const char *name, const char *text);
