@@ -214,3 +214,12 @@ def test_an_option_that_is_misspelt(words, says, shot, tmp_path, capfd):
     said = capfd.readouterr().err.splitlines()
     assert said[0].startswith(f"usage: skinslide {words[0]} ") and said[-1].startswith(f"error: {says}")
     assert "--size" not in said[-1] and not (tmp_path / "out.usda").exists()
+
+
+def test_where_a_mesh_is_slid_already_nothing_is_to_be_set_up(shot, tmp_path, capfd):
+    hero = tmp_path / "hero.usda"
+    words = ["setup", str(shot), "-o", str(tmp_path / "x.skinslide"), *ON, "--faces", "0-8", "--payload", str(hero)]
+    assert main(words) == 0
+    assert main(["bake", str(hero), "-o", str(tmp_path / "out.usda")]) == 3
+    said = capfd.readouterr().err
+    assert "is slid already, by " in said and "error: nothing to slide" in said and "start with" not in said

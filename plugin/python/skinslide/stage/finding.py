@@ -34,15 +34,18 @@ def find_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
 
     Of the whole stage, or of the prims at `prim_paths` and everything below them.
     """
-    meshes, problems = [], list(composition_problems(stage, prim_paths))
+    meshes, problems, own = [], list(composition_problems(stage, prim_paths)), list[Problem]()
     prototypes = _instancer_prototypes(stage)
     for prim in _prims(stage, prim_paths, problems):
         finding = find(_facts(prim, prototypes))
-        problems += _said(prim, finding)
+        own += _problems(prim, finding)
         if finding.patches and finding.slides:
             meshes.append(FoundMesh(prim, finding.patches, finding.is_skinned))
+    problems += own
     if not meshes and not any(problem.severity == "error" for problem in problems):
-        problems.append(Problem("error", "", None, None, _nothing(stage, prim_paths)))
+        nothing = nothing_to_slide(_where(prim_paths))
+        message = nothing if own else f"{nothing}; start with: {_first_command(stage)}"
+        problems.append(Problem("error", "", None, None, message))
     return meshes, problems
 
 
@@ -55,7 +58,7 @@ def find_skinned(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> t
         facts = _facts(prim, prototypes, [f"{SCHEMA}:any"])
         if facts.has_joint_indices or facts.blend_shape_count:
             finding = find(facts)
-            problems += _said(prim, finding)
+            problems += _problems(prim, finding)
             meshes += [FoundMesh(prim, [], True)] if finding.is_skinned and finding.slides else []
     if not meshes and not any(problem.severity == "error" for problem in problems):
         problems.append(Problem("error", "", None, None, f"UsdSkel skins no mesh {_where(prim_paths)}"))
@@ -75,7 +78,7 @@ def slidable(stage: Usd.Stage, prims: Iterable[Usd.Prim]) -> tuple[list[FoundMes
         if finding.slides:
             found.append(FoundMesh(prim, [], finding.is_skinned))
         else:
-            problems += _said(prim, finding)
+            problems += _problems(prim, finding)
     return found, problems
 
 
@@ -84,7 +87,7 @@ def is_skinned(prim: Usd.Prim) -> bool:
     return find(_facts(prim, {}, [f"{SCHEMA}:any"])).is_skinned
 
 
-def _said(prim: Usd.Prim, finding: Finding) -> Iterator[Problem]:
+def _problems(prim: Usd.Prim, finding: Finding) -> Iterator[Problem]:
     for problem in finding.problems:
         yield Problem(problem.severity, str(prim.GetPath()), problem.patch, None, problem.message)
 
@@ -251,10 +254,9 @@ def _strongest_points(prim: Usd.Prim) -> Sdf.PropertySpec | None:
     return next(filter(has_values, points.GetPropertyStack() if points else []), None)
 
 
-def _nothing(stage: Usd.Stage, prims: Sequence[str] | None) -> str:
+def _first_command(stage: Usd.Stage) -> str:
     root = stage.GetRootLayer()
-    file = "STAGE" if root.anonymous else root.identifier
-    return f"{nothing_to_slide(_where(prims))}; start with: skinslide setup {file} -o X.skinslide --whole"
+    return f"skinslide setup {'STAGE' if root.anonymous else root.identifier} -o X.skinslide --whole"
 
 
 def _where(prim_paths: Sequence[str] | None) -> str:
