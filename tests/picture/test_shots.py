@@ -47,7 +47,7 @@ def test_the_command(baked, capsys):
     said = capsys.readouterr().out
     assert f"{baked / 'shots.html'}: written" in said and said.count("bake.json") == 2
     text = (baked / "shots.html").read_text()
-    assert 'href="b/report.html"' in text and "a/<wbr>bake.json" in text
+    assert "2 shots, 2 patches; " in text and 'href="b/report.html"' in text and "a/<wbr>bake.json" in text
     assert main(["report", str(baked), "-o", str(baked / "b" / "all.html"), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["page"] == str(baked / "b" / "all.html") and len(told["shots"]) == 2
@@ -137,6 +137,16 @@ def test_how_rough_skin_is_is_not_said_of_sparse_frames(tmp_path, capsys):
         (tmp_path / f"{frames[-4:]}.json").write_text(capsys.readouterr().out)
     rough = {shot.file: shot.patches[0].roughness for shot in skinslide.report(tmp_path).shots}
     assert rough["1004.json"] is None and rough["1003.json"] > 0
+
+
+def test_one_shot_is_no_several(tmp_path, capsys):
+    shot = stages.save(stages.patched_stage()[0], tmp_path / "shot.usda")
+    words = ["--frames", "1001", "--json", "--quiet", "--html", str(tmp_path / "a.html"), "--size", "32x16"]
+    assert main(["bake", str(shot), "-o", str(tmp_path / "slid.usda"), *words]) == 0
+    (tmp_path / "a.json").write_text(capsys.readouterr().out)
+    skinslide.report(tmp_path)
+    assert "1 shot, 1 patch; " in (tmp_path / "shots.html").read_text()
+    assert "1, 1001<" in (tmp_path / "a.html").read_text()
 
 
 def _left_out(report) -> list[str]:

@@ -241,10 +241,11 @@ class _Previewing(Making):
             return
         strips = [strip for mesh in self._meshes for strip in mesh.strips()]
         frames = sorted({frame for strip in strips for frame in strip.patch.frames if frame is not None})
+        span = " to ".join(dict.fromkeys(map(frame_text, (frames[0], frames[-1])))) if frames else ""
         root = self._stage.GetRootLayer()
         facts = {
             "stage": Sdf.Layer.SplitIdentifier(root.identifier)[0],
-            "frames": f"{len(frames)}, {frame_text(frames[0])} to {frame_text(frames[-1])}" if frames else "none",
+            "frames": f"{len(frames)}, {span}" if frames else "none",
             "skinslide": version(),
             "lookup": choose_lookup(self._options.lookup).lookup,
             "drawn with": self._drawn.device,

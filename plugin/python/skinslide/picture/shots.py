@@ -145,13 +145,13 @@ def report(folder: StrPath, output: StrPath | None = None) -> ShotsReport:
     shots = sorted(_records(top, page, left_out), key=lambda shot: (-shot.left, shot.file))
     if not shots:
         raise UsageError(f"{top}: there is no record in it or below, such as bake --json prints{_instead(left_out)}")
-    total = sum(len(shot.patches) for shot in shots)
+    patches = counted(sum(len(shot.patches) for shot in shots), "patch", "patches")
     text = render(
         "shots.html",
         shots=shots,
         left_out=left_out,
         title=top.resolve().name or str(top),
-        total=total,
+        counts=f"{counted(len(shots), 'shot')}, {patches}",
         worst_first=_worst_first,
     )
     with replacing(page) as partial, writing(page):
