@@ -74,7 +74,8 @@ class ShotCamera:
     def __init__(self, mesh: PatchedMesh, faces: np.ndarray, aspect: float):
         """Raises FrameProblem for a time that no camera could show."""
         times = [Usd.TimeCode(time) for time in mesh.sample_times()] or [Usd.TimeCode.Default()]
-        chosen = [times[i] for i in np.unique(np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int))]
+        spread = np.linspace(0, len(times) - 1, _MOST_POSES).round().astype(int)
+        chosen = [times[i] for i in sorted(set(spread.tolist()))]
         self._subject = _Subject(mesh, faces)
         poses = [self._subject.pose(time) for time in chosen]
         still = self._subject.framed(poses, aspect)

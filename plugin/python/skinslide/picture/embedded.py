@@ -79,7 +79,8 @@ def kept(strips: Sequence[Strip], samples: Sequence[int]) -> list[np.ndarray]:
 
 def film(strip: Strip) -> list[tuple[float, bytes]]:
     """Frames over all the shot, and what each looks like: the last column of the first view, small."""
-    shown = np.unique(np.linspace(0, len(strip.patch.frames) - 1, _FILM).round().astype(int))
+    spread = np.linspace(0, len(strip.patch.frames) - 1, _FILM).round().astype(int)
+    shown = sorted(set(spread.tolist()))
     pictures = next(iter(strip.pictures.values()), ())
     frames = [(i, frame) for i in shown for frame in [strip.patch.frames[i]] if frame is not None]
     return [(frame, _small(pictures[i], len(strip.columns))) for i, frame in frames if pictures and len(frames) > 1]
