@@ -209,9 +209,11 @@ def setup_to_file(
 
 
 def _expand(ranges: list[tuple[int, int]], face_count: int) -> np.ndarray:
-    for _, last in ranges:
+    chosen = np.zeros(face_count, np.bool_)
+    for first, last in ranges:
         check_face(last, face_count)
-    return np.unique(np.concatenate([np.arange(first, last + 1) for first, last in ranges]))
+        chosen[first : last + 1] = True
+    return np.flatnonzero(chosen)
 
 
 def _of_subset(patch: SkinSlideAPI, subset: str, mesh: MeshMeaning) -> np.ndarray | None:

@@ -94,10 +94,13 @@ def given_faces(name: str, faces: npt.ArrayLike, face_count: int) -> np.ndarray:
         return np.flatnonzero(chosen).astype(np.int32)
     if chosen.dtype.kind == "f" and chosen.size:
         raise UsageError(f"{name} are floats; they must be indices, or a bool for each face, such as mask > 0")
-    found = np.unique(given_array(name, chosen, np.int32, (-1,)))
-    for face in found[(found < 0) | (found >= face_count)][-1:]:
-        check_face(int(face), face_count)
-    return found
+    found = given_array(name, chosen, np.int32, (-1,))
+    wrong = found[(found < 0) | (found >= face_count)]
+    if len(wrong):
+        check_face(int(wrong.max()), face_count)
+    flags = np.zeros(face_count, np.bool_)
+    flags[found] = True
+    return np.flatnonzero(flags).astype(np.int32)
 
 
 def check_face(face: int, face_count: int) -> None:
