@@ -249,36 +249,47 @@ static void rigid_motion_commutes(void **state) {
     }
 }
 
+static skinslide_patch_setup by_rule(skinslide_rule rule) {
+    skinslide_patch_setup setup = setup_of(NULL, 0);
+    setup.rule = rule;
+    return setup;
+}
+
 /* Whole numbers, 64 to the side of a face, moved by ten million: still exact in float, so lengths are the same bits. Results
  * are whole numbers there, so they differ by one rounding to those: a half, and as much of float's for the other. */
 static void far_from_the_origin_is_the_same(void **state) {
     (void)state;
-    test_mesh mesh = quad_grid(12, 12);
-    float *points = random_pose(&mesh, 9);
-    for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
-        mesh.points[k] *= 64, points[k] = roundf(64 * points[k]);
-    float *near_slid = slide_all(&mesh, points, setup_of(NULL, 0));
-    for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
-        mesh.points[k] += 1e7f, points[k] += 1e7f;
-    float *far_slid = slide_all(&mesh, points, setup_of(NULL, 0));
-    for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
-        assert_near((double)far_slid[k] - 1e7, near_slid[k], 0.5 + 1e-4);
-    free(points), free(near_slid), free(far_slid);
-    free_mesh(&mesh);
+    for (skinslide_rule rule = SKINSLIDE_RULE_UNIT; rule <= SKINSLIDE_RULE_EVEN; rule++) {
+        test_mesh mesh = quad_grid(12, 12);
+        float *points = random_pose(&mesh, 9);
+        for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
+            mesh.points[k] *= 64, points[k] = roundf(64 * points[k]);
+        float *near_slid = slide_all(&mesh, points, by_rule(rule));
+        for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
+            mesh.points[k] += 1e7f, points[k] += 1e7f;
+        float *far_slid = slide_all(&mesh, points, by_rule(rule));
+        for (int32_t k = 0; k < 3 * mesh.vertex_count; k++)
+            assert_near((double)far_slid[k] - 1e7, near_slid[k], 0.5 + 1e-4);
+        free(points), free(near_slid), free(far_slid);
+        free_mesh(&mesh);
+    }
 }
 
-/* Sizes that are no powers of two: rounding of points to float is 1e-7 of them, as under rigid motion. */
+/* Sizes that are no powers of two: rounding of points to float is 1e-7 of them, as under rigid motion. FAST magnifies it on edges
+ * that are all the longest: there its force densities are 1e-4 of what a change of length makes them. */
 static void tiny_and_huge_meshes_slide_alike(void **state) {
     (void)state;
-    for (int32_t huge = 0; huge < 2; huge++) {
+    static const skinslide_rule rules[] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_RELAXED, SKINSLIDE_RULE_EVEN};
+    for (int32_t i = 0; i < 6; i++) {
         test_mesh mesh = quad_grid(12, 12);
-        double scale = huge ? 1e4 : 1e-4;
-        float *points = bumped(&mesh, 6, 6, 3, 2), *slid = slide_all(&mesh, points, setup_of(NULL, 0));
+        double scale = i % 2 ? 1e4 : 1e-4;
+        skinslide_patch_setup setup = by_rule(rules[i / 2]);
+        float *points = bumped(&mesh, 6, 6, 3, 2), *slid = slide_all(&mesh, points, setup);
         for (int32_t k = 0; k < 3 * mesh.vertex_count; k++) {
             mesh.points[k] = (float)(scale * mesh.points[k]);
             points[k] = (float)(scale * points[k]), slid[k] = (float)(scale * slid[k]);
         }
-        float *scaled = slide_all(&mesh, points, setup_of(NULL, 0));
+        float *scaled = slide_all(&mesh, points, setup);
         assert_near(largest_difference(scaled, slid, 3 * (int64_t)mesh.vertex_count), 0, 1e-5 * scale);
         free(points), free(slid), free(scaled);
         free_mesh(&mesh);
