@@ -15,7 +15,7 @@ from skinslide.arrays.values import check_value
 from skinslide.problems import NO_PATCH_NAME, Fault, Problem, StageProblems, UsageError
 from skinslide.stage import schema
 from skinslide.stage.given import given_array, given_faces, given_value
-from skinslide.stage.values import FIRST
+from skinslide.stage.values import count_of
 
 
 @dataclass(frozen=True)
@@ -227,7 +227,7 @@ class AppliedPatch(_Declared):
             StageProblems: The mesh has no such face.
         """
         mesh = UsdGeom.Mesh(self.GetPrim())
-        count = len(mesh.GetFaceVertexCountsAttr().Get(FIRST) or ())
+        count = count_of(mesh.GetFaceVertexCountsAttr())
         try:
             chosen = given_faces("faces", faces, count)
         except Fault as fault:

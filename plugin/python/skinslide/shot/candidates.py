@@ -12,6 +12,7 @@ from skinslide.problems import Fault, counted
 from skinslide.stage.finding import find_slidable
 from skinslide.stage.names import primvar_names
 from skinslide.stage.skinning import Skinning
+from skinslide.stage.values import count_of
 
 _MOST_NAMES = 40  # in a line
 
@@ -64,8 +65,8 @@ def _candidate(prim: Usd.Prim, is_skinned: bool) -> Candidate:
     subsets = [UsdGeom.Subset(child) for child in prim.GetChildren() if child.IsA(UsdGeom.Subset)]
     return Candidate(
         str(prim.GetPath()),
-        len(mesh.GetPointsAttr().Get(Usd.TimeCode.EarliestTime()) or ()),
-        len(mesh.GetFaceVertexCountsAttr().Get(Usd.TimeCode.EarliestTime()) or ()),
+        count_of(mesh.GetPointsAttr()),
+        count_of(mesh.GetFaceVertexCountsAttr()),
         skeleton,
         joints,
         [each.GetPrim().GetName() for each in subsets if each.GetElementTypeAttr().Get() == UsdGeom.Tokens.face],

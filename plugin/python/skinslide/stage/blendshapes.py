@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from pxr import Usd, UsdSkel, Vt
+from pxr import Sdf, Usd, UsdSkel, Vt
 
 from skinslide.problems import Fault
 
@@ -49,6 +49,7 @@ def _check_targets(query: UsdSkel.SkinningQuery, point_count: int) -> None:
 
 
 def _check_shape(shape: UsdSkel.BlendShape, point_count: int) -> None:
+    _check_types(shape)
     indices = shape.GetPointIndicesAttr().Get()
     wanted, path = len(indices) if indices else point_count, shape.GetPath()
     for name, count in _lengths(shape):
@@ -60,6 +61,17 @@ def _check_shape(shape: UsdSkel.BlendShape, point_count: int) -> None:
         raise Fault(
             f"pointIndices[{outside[0]}] of {path} is {indices[int(outside[0])]}, but the mesh has {point_count} points"
         )
+
+
+def _check_types(shape: UsdSkel.BlendShape) -> None:
+    """UsdSkel takes values of another type for none."""
+    vectors = [shape.GetOffsetsAttr(), shape.GetNormalOffsetsAttr(), *_inbetween_attributes(shape)]
+    wanted = [(Sdf.ValueTypeNames.IntArray, shape.GetPointIndicesAttr())]
+    wanted += [(Sdf.ValueTypeNames.Vector3fArray, each) for each in vectors]
+    for needed, attribute in wanted:
+        held = attribute.Get()
+        if held is not None and not isinstance(held, needed.type.pythonClass):
+            raise Fault(f"{attribute.GetName()} of {shape.GetPath()} is of type {type(held).__name__}, not {needed}")
 
 
 def _lengths(shape: UsdSkel.BlendShape) -> Iterator[tuple[str, int]]:

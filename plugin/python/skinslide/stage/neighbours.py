@@ -13,7 +13,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 from skinslide.problems import Fault
 from skinslide.stage.finding import is_skinned
 from skinslide.stage.skinning import Skinning
-from skinslide.stage.values import FIRST
+from skinslide.stage.values import FIRST, triples_of
 
 # Odd numbers by which the bits of three coordinates become one number.
 _MIXERS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
@@ -67,8 +67,7 @@ class Neighbours:
 
     def _points(self, path: Sdf.Path) -> np.ndarray:
         prim = self._stage.GetPrimAtPath(path)
-        points = UsdGeom.Mesh(prim).GetPointsAttr().Get(FIRST)
-        return _moved(prim, np.asarray(points)) if points else np.empty((0, 3), np.float32)
+        return _moved(prim, triples_of(UsdGeom.Mesh(prim).GetPointsAttr()))
 
 
 class Meetings:
@@ -120,5 +119,5 @@ def _shared(sets: list[np.ndarray]) -> list[set[int]]:
 
 def _moved(prim: Usd.Prim, points: np.ndarray) -> np.ndarray:
     with suppress(Fault):
-        return Skinning(prim).points(points, FIRST) if is_skinned(prim) else points
+        return Skinning(prim).points(points, FIRST) if len(points) and is_skinned(prim) else points
     return points

@@ -41,7 +41,13 @@ class SkinnedVectors(Source):
         super().__init__(prim, wanted)
         is_normals = wanted.name == UsdGeom.Tokens.normals
         self._skin = skinning.normals if is_normals else skinning.vectors
-        self._skinning, self._corners = skinning, corners
+        self._prim, self._skinning, self._corners = prim, skinning, corners
+
+    def first(self) -> Value:
+        try:
+            return super().first()
+        except Fault:  # which is said of the points
+            return Source(self._prim, self.wanted).first()
 
     def at(self, time: Usd.TimeCode) -> Value | None:
         found, skinned = super().at(time), self.skinned(time)

@@ -27,7 +27,7 @@ from skinslide.stage.binding import (
 )
 from skinslide.stage.blendshapes import BlendShapes
 from skinslide.stage.rig import Rig
-from skinslide.stage.values import FIRST
+from skinslide.stage.values import FIRST, count_of
 
 
 class Skinning:
@@ -39,7 +39,7 @@ class Skinning:
         self._skeleton = skeleton_query(self._cache, bound_skeleton(self._cache, prim))
         self._query, self._animation = self._cache.GetSkinningQuery(prim), self._skeleton.GetAnimQuery()
         self._has_joints = self._query.HasJointInfluences()
-        self.point_count = len(UsdGeom.PointBased(prim).GetPointsAttr().Get(FIRST) or ())
+        self.point_count = count_of(UsdGeom.PointBased(prim).GetPointsAttr())
         if self._has_joints:
             check_joints(self._query, self._skeleton, self.point_count)
             check_animation(self._animation, self._skeleton)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from typing import Any
 
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom
@@ -27,6 +29,31 @@ _NUMBERS = {
     "float": np.float32,
     "double": np.float64,
 }
+
+
+def count_of(attribute: Usd.Attribute, time: Usd.TimeCode = FIRST) -> int:
+    """How many elements an attribute has; 0 where it holds no array, as one of a wrong type may."""
+    found = _held(attribute, time)
+    return len(found) if _is_array(found) else 0
+
+
+def triples_of(attribute: Usd.Attribute, time: Usd.TimeCode = FIRST) -> np.ndarray:
+    """What an attribute holds as it is authored (n, 3); nothing where that is no array of three numbers each."""
+    held = _held(attribute, time)
+    found = np.asarray(held if _is_array(held) else ())
+    is_triples = found.ndim == 2 and found.shape[1] == 3 and found.dtype.kind == "f"
+    return found if is_triples else np.empty((0, 3), np.float32)
+
+
+def _held(attribute: Usd.Attribute, time: Usd.TimeCode) -> Any:
+    """None where it cannot be read, either."""
+    with suppress(Fault):
+        return _get(attribute, time)
+    return None
+
+
+def _is_array(value: object) -> bool:
+    return type(value).__name__.endswith("Array")
 
 
 class Source:
@@ -137,7 +164,7 @@ def _plain(value: object, type_name: str) -> object:
         natural = np.float64 if isinstance(value, float) else np.bool_ if isinstance(value, bool) else np.int64
         with np.errstate(over="ignore"):
             return _NUMBERS.get(type_name, natural)(value)
-    array = np.asarray(value) if type(value).__name__.endswith("Array") else None
+    array = np.asarray(value) if _is_array(value) else None
     return Other() if array is None or array.dtype.kind not in "biuf" else array
 
 
