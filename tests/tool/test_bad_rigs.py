@@ -264,6 +264,22 @@ def test_what_sends_points_nowhere_is_named_with_its_frame(edit, says, tmp_path)
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("frame", FRAMES)
+def test_a_mesh_that_is_flattened_cannot_be_skinned(frame, tmp_path):
+    """Its points came to be of 1e38."""
+    stage, mesh = rigs.skinned_stage()
+    scale = UsdGeom.Xformable(mesh).AddScaleOp()
+    for each in FRAMES:
+        scale.Set((1, 0 if each == frame else 1, 1), each)
+    says = f"frame {frame:g}: its transform has no inverse, by which UsdSkel brings points back from {SKELETON}"
+    found = [str(each) for each in skinslide.check(stage).problems if each.severity == "error"]
+    assert len(found) == 1 and found[0].startswith(f"error: {MESH}: {says}")
+    for write in (skinslide.bake_to_file, skinslide.cache):
+        with pytest.raises(skinslide.FrameProblem, match=f"{MESH}: {says}"):
+            write(stage, tmp_path / "out.usda")
+    assert not list(tmp_path.iterdir())
+
+
 def test_joints_that_move_no_point_may_be_anything():
     stage, mesh = rigs.skinned_stage()
     influences("jointIndices", lambda values: values.__setitem__(slice(None), [0, 2] * 49))(stage, mesh)

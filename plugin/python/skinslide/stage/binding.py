@@ -101,14 +101,14 @@ def check_joints(query: UsdSkel.SkinningQuery, skeleton: UsdSkel.SkeletonQuery, 
 
 def _check_bound(query: UsdSkel.SkinningQuery, skeleton: UsdSkel.SkeletonQuery, used: set[str]) -> None:
     """What is skinned goes back by the transforms of the joints used, and its normals by its own."""
-    if not _has_inverse(query.GetGeomBindTransform(FIRST)):
+    if not has_inverse(query.GetGeomBindTransform(FIRST)):
         raise Fault("primvars:skel:geomBindTransform has no inverse")
     for joint, transform in zip(skeleton.GetJointOrder(), skeleton.GetJointWorldBindTransforms(), strict=True):
-        if joint in used and not _has_inverse(transform):
+        if joint in used and not has_inverse(transform):
             raise Fault(f"bindTransforms of {skeleton.GetPrim().GetPath()} has no inverse for the joint {joint}")
 
 
-def _has_inverse(transform: Gf.Matrix4d) -> bool:
+def has_inverse(transform: Gf.Matrix4d) -> bool:
     """Whether it is finite, and flattens nothing, whatever its scale along each axis."""
     rows = np.array(transform)
     if not np.isfinite(rows).all():

@@ -23,6 +23,7 @@ from skinslide.stage.binding import (
     check_finite,
     check_joints,
     check_transforms,
+    has_inverse,
     skeleton_query,
 )
 from skinslide.stage.blendshapes import BlendShapes
@@ -174,13 +175,15 @@ class Skinning:
         return self._query.GetBlendShapeMapper().Remap(self._animation.ComputeBlendShapeWeights(time))
 
     def _to_mesh(self, time: Usd.TimeCode) -> Gf.Matrix4d:
-        """From the skeleton's space to the mesh's; what moves both is left out, which would leave noise."""
+        """From the skeleton's space to the mesh's; what moves both is left out, lest noise is left. Raises Fault."""
         cache, above = UsdGeom.XformCache(time), _common(self._prim, self._skeleton.GetPrim())
         skeleton, resets = cache.ComputeRelativeTransform(self._skeleton.GetPrim(), above)
         mesh, mesh_resets = cache.ComputeRelativeTransform(self._prim, above)
         if resets != mesh_resets:
             skeleton = cache.GetLocalToWorldTransform(self._skeleton.GetPrim())
             mesh = cache.GetLocalToWorldTransform(self._prim)
+        if not has_inverse(mesh):
+            raise Fault(f"its transform has no inverse, by which UsdSkel brings points back from {self.skeleton}")
         return skeleton * mesh.GetInverse()
 
     def _between(self) -> Iterator[Usd.Prim]:
