@@ -331,7 +331,7 @@ def test_patches_by_name(tmp_path):
     assert row["both"][12] == 2 and row["both"][48] == 4 and (row["both"][23:29] == 3).all()
     slides = [read(tmp_path / name / "skin_GEO.slide.1003.exr") for name in ("both", "left")]
     np.testing.assert_array_equal(slides[0][14:46, 8:28], slides[1][14:46, 8:28])
-    with pytest.raises(StageProblems, match=f"patch elbow: no mesh has it; there are {PATCH}, other"):
+    with pytest.raises(StageProblems, match=f"patch elbow: no mesh has it; there are {PATCH} and other"):
         maps(shot, tmp_path / "none", patches=["other", "elbow"])
     with pytest.raises(UsageError, match="no names"):
         maps(shot, tmp_path / "none", patches=[])
