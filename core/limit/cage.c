@@ -197,8 +197,6 @@ static skinslide_status learn_rest(ss_cage *cage, const float *rest_points, skin
     skinslide_status status = memory.failed ? ss_out_of_memory(error)
                                             : ss_fit_create(cage->patch, cage->free_index, &cage->free_rows,
                                                             (const double(*)[3])normal, &cage->fit, error);
-    for (int32_t s = 0; s < cage->sample_count && !status; s++)
-        ss_shorten_flat(cage->square[s], cage->square[s], normal[s]);
     if (!status)
         status = ss_crumple_create(&cage->free_rows, (const double(*)[3])normal, &cage->crumple, error);
     ss_free(&memory);
@@ -341,6 +339,7 @@ static void list_targets(ss_cage_work *work, const ss_frame *frame, const ss_sli
 /* ---- Damping ---- */
 
 static const double most_deviation = 0.5; /* of LIMIT from LINEAR, in mean edges where the vertex slid to */
+static const double softness = 0.25; /* of that bound: how far before and behind it vertices begin and cease to slow down */
 
 static void measure_around(const ss_cage *cage, const double *lengths, double *around) {
     const ss_patch *patch = cage->patch;
@@ -361,18 +360,23 @@ static double bound(const ss_cage *cage, const double *around, const ss_place *p
     return most_deviation * mean;
 }
 
-/* Replaces the linear displacement by the solution, but no farther from it than most. Returns whether that held it back. */
+/* What is left of a distance: all of it up to 3/4 of most, and most from 5/4 of it on; its slope goes from 1 to 0 in between. A
+ * vertex that went on to its bound and stopped there at once would jerk. */
+static double damped_distance(double distance, double most) {
+    double over = distance - (1 - softness) * most;
+    if (over <= 0)
+        return distance;
+    return over < 2 * softness * most ? distance - over * over / (4 * softness * most) : most;
+}
+
+/* Replaces the linear displacement by the solution, but no farther from it than most. Returns whether it was farther. */
 static bool take_damped(const double solution[3], double most, double linear[3]) {
-    double off[3], square = 0;
-    for (int k = 0; k < 3; k++) {
-        off[k] = solution[k] - linear[k];
-        square += off[k] * off[k];
-    }
-    bool damped = square > most * most;
-    double share = damped ? most / sqrt(square) : 1;
+    double off[3];
+    ss_subtract(solution, linear, off);
+    double distance = ss_length(off), left = damped_distance(distance, most);
     for (int k = 0; k < 3; k++)
-        linear[k] = damped ? linear[k] + share * off[k] : solution[k];
-    return damped;
+        linear[k] = left < distance ? linear[k] + left / distance * off[k] : solution[k];
+    return distance > most;
 }
 
 /* ---- One frame ---- */

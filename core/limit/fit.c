@@ -1,7 +1,7 @@
 /* The least squares of interpolation LIMIT: moves free vertices by y from their linear places, so that samples of the surface,
  * which move by L y, come to their planes while edges stay as linear made them. y minimises
  *
- *     E(y) = sum (L y - r)'N (L y - r) + s sum ((|e| - |e0|)^2 + t |e - e0|^2)      s = 0.03, t = 0.05
+ *     E(y) = sum (L y - r)'N (L y - r) + s sum ((|e| - |e0|)^2 + t |e - e0|^2)      s = 0.023, t = 0.05
  *          samples                     edges
  *
  *     N = nn' + b (1 - n.n)^2                                                        b = 0.3
@@ -17,9 +17,10 @@
  *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                u = e / |e|
  *
  * whose matrix differs from frame to frame. The preconditioner does not: it is factored once for a shot, from matrices of
- * numbers. It splits the move of a vertex into that across and that along the plane of its own sample:
+ * numbers. It splits the move of a vertex into that across and that along the plane of its own sample, whose normal m is n made
+ * all but a unit again: with n itself, a little of each would count as the other.
  *
- *     n (L'L + s t D'D)^-1 n' + (1 - nn') (s (1/2 + t) D'D + C)^-1 (1 - nn')      1/2 the mean of uu' in the plane
+ *     m (L'L + s t D'D)^-1 m' + (1 - mm') (s (1/2 + t) D'D + C)^-1 (1 - mm')      1/2 the mean of uu' in the plane
  *
  * The first matrix is nearly a mass matrix, and is factored incompletely. On a rim, as of lips, normals turn from one vertex to
  * the next, so that the samples around hold a vertex along its plane too. C, which is diagonal, is how much they do so at rest,
@@ -37,7 +38,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double edge_stiffness = 0.03;      /* s */
+static const double edge_stiffness = 0.023;     /* s */
 static const double direction_stiffness = 0.05; /* t */
 static const double all_ways_stiffness = 0.3;   /* b */
 enum { GAUSS_NEWTON_STEPS = 2, GRADIENT_STEPS = 5 };
@@ -91,6 +92,7 @@ struct ss_fit_work {
     vector *offset;           /* [free_count + 1] y */
     vector *slope;            /* [free_count + 1] -grad E / 2 */
     single *single_up;        /* [sample count] n */
+    single *single_across;    /* [free_count] m */
     single *single_direction; /* [edge_count] u */
     single *single_force;     /* [sample count + edge_count] */
     single *gradient;         /* [free_count + 1] what y leaves of slope */
@@ -269,6 +271,7 @@ static void new_arrays(ss_fit_work *work) {
     work->offset = SS_NEW(memory, vector, vertices);
     work->slope = SS_NEW(memory, vector, vertices);
     work->single_up = SS_NEW(memory, single, samples);
+    work->single_across = SS_NEW(memory, single, fit->free_count);
     work->single_direction = SS_NEW(memory, single, fit->edge_count);
     work->single_force = SS_NEW(memory, single, samples + fit->edge_count);
     work->gradient = SS_NEW(memory, single, vertices);
@@ -397,9 +400,19 @@ static inline float single_dot(single a, single b) {
     return product[0] + product[1] + product[2];
 }
 
-static void round_model(ss_fit_work *work) {
+/* One step of Newton's from n to the unit normal: what was short by x is short by 3/2 x^2 after, and 0 stays 0. */
+static inline single nearly_unit(single n) {
+    return (1.5f - 0.5f * single_dot(n, n)) * n;
+}
+
+static void round_samples(ss_fit_work *work) {
     for (int32_t s = 0; s < work->fit->samples->row_count; s++)
         work->single_up[s] = to_single(&work->up[s]);
+    for (int32_t i = 0; i < work->fit->free_count; i++)
+        work->single_across[i] = nearly_unit(work->single_up[i]);
+}
+
+static void round_edges(ss_fit_work *work) {
     for (int32_t e = 0; e < work->fit->edge_count; e++)
         work->single_direction[e] = to_single(&work->direction[e]);
 }
@@ -455,14 +468,14 @@ static void apply_system(ss_fit_work *work) {
 static void precondition(ss_fit_work *work) {
     const ss_fit *fit = work->fit;
     for (int32_t i = 0; i < fit->free_count; i++) {
-        float across = work->across[i] = single_dot(work->single_up[i], work->gradient[i]);
-        work->along[fit->unknown[i]] = work->gradient[i] - across * work->single_up[i];
+        float across = work->across[i] = single_dot(work->single_across[i], work->gradient[i]);
+        work->along[fit->unknown[i]] = work->gradient[i] - across * work->single_across[i];
     }
     ss_incomplete_solve(fit->across, work->across);
     ss_springs_solve(fit->along, (float(*)[4])work->scratch, (float(*)[4])work->along);
     for (int32_t i = 0; i < fit->free_count; i++) {
-        single moved = work->along[fit->unknown[i]], up = work->single_up[i];
-        work->scaled[i] = moved + (work->across[i] - single_dot(up, moved)) * up;
+        single moved = work->along[fit->unknown[i]], normal = work->single_across[i];
+        work->scaled[i] = moved + (work->across[i] - single_dot(normal, moved)) * normal;
     }
 }
 
@@ -489,7 +502,7 @@ static void improve(ss_fit_work *work) {
     double before = 0;
     measure_edges(work);
     list_gradient(work);
-    round_model(work);
+    round_edges(work);
     double unit = round_slope(work);
     memset(work->search, 0, (size_t)n * sizeof *work->search);
     for (int k = 0; k < GRADIENT_STEPS && !ss_is_set(work->stop); k++) {
@@ -529,6 +542,7 @@ static void start_linear(ss_fit_work *work, const float *points, const double (*
         work->linear[e] = take_edge(&fit->edges[e], work->offset);
         add(&work->linear[e], 1, &way);
     }
+    round_samples(work);
     memset(work->offset, 0, (size_t)fit->free_count * sizeof *work->offset);
 }
 

@@ -83,7 +83,7 @@ typedef struct ss_crumple ss_crumple; /* immutable */
 /* Shortens the unit normal of a sample by how much nearer to one line its tangents are than at rest. square and at_rest are
  * what ss_limit_normal returned. */
 void ss_shorten_flat(double square, double at_rest, double normal[3]);
-/* samples are the fit's, and must outlive it. normal [row_count] are theirs at rest, shortened by ss_shorten_flat. */
+/* samples are the fit's, and must outlive it. normal [row_count] are theirs at rest. */
 skinslide_status ss_crumple_create(const ss_rows *samples, const double (*normal)[3], ss_crumple **out, skinslide_error *error);
 void ss_crumple_destroy(ss_crumple *crumple);
 /* Shortens the frame's normals [row_count] further where they turn from one sample to the next by more than at rest. sum and

@@ -190,9 +190,9 @@ typedef enum skinslide_rule {
  * surface of the deformed mesh, as near as the free vertices can take all of them with every other held and with edges that
  * nearly keep the length that LINEAR gives them. It can be as near as faces are fine for the slide. Where the pose crumples the
  * surface, its normals jump: there they are taken back less along the normal, and in every direction instead. A vertex that
- * this would take farther from its LINEAR place than half the mean edge where it lands is put at that distance, and counted as
- * damped: the solve rings where a target jumps over a crease. It is limit points that weights scale the slide of: one of weight
- * 0 stays, and its vertex follows so that it does. */
+ * this would take farther from its LINEAR place than half the mean edge where it lands is held back to that distance, and
+ * counted as damped: the solve rings where a target jumps over a crease. From 3/4 of it on vertices slow down. It is limit
+ * points that weights scale the slide of: one of weight 0 stays, and its vertex follows so that it does. */
 typedef enum skinslide_interpolation {
     SKINSLIDE_INTERPOLATION_AUTO,
     SKINSLIDE_INTERPOLATION_LINEAR,     /* barycentric, in the triangle fan from the face's first vertex */

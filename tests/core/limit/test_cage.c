@@ -548,6 +548,35 @@ static void damping_does_not_jump_between_faces(void **state) {
     free_mesh(&mesh);
 }
 
+/* The largest second difference while a spike grows, until vertices that it drags are held back. */
+static double largest_jerk(const test_mesh *mesh, skinslide_interpolation interpolation) {
+    enum { STEPS = 1600 };
+    rig r = subdivided_rig(mesh, &catmull_clark, chosen(interpolation));
+    float *slid[3] = {0};
+    double most = 0;
+    for (int k = 0; k <= STEPS; k++) {
+        float *points = copy_points(mesh), height = 30.0f * (float)k / STEPS;
+        points[3 * 40 + 2] = height, points[3 * 41 + 2] = -height, points[3 * 42 + 2] = height;
+        free(slid[0]);
+        slid[0] = slid[1], slid[1] = slid[2], slid[2] = slide_with(&r, mesh, points, NULL, NULL);
+        if (k > 1)
+            most = fmax(most, largest_second_difference(slid, mesh->vertex_count));
+        free(points);
+    }
+    for (int k = 0; k < 3; k++)
+        free(slid[k]);
+    free_rig(&r);
+    return most;
+}
+
+static void vertices_are_held_back_without_a_jerk(void **state) {
+    (void)state;
+    test_mesh mesh = quad_grid(8, 8);
+    double limit = largest_jerk(&mesh, SKINSLIDE_INTERPOLATION_LIMIT);
+    assert_true(limit < 2 * largest_jerk(&mesh, SKINSLIDE_INTERPOLATION_LINEAR)); /* 0.8 measured, 9.6 if held back at once */
+    free_mesh(&mesh);
+}
+
 /* ---- Threads ---- */
 
 enum { THREADS = 4, FRAMES = 6 };
@@ -670,6 +699,7 @@ int main(void) {
         cmocka_unit_test(roundings_are_answered_by_roundings),
         cmocka_unit_test(a_vertex_of_no_weight_keeps_its_limit_point),
         cmocka_unit_test(ringing_is_damped_and_counted),
+        cmocka_unit_test(vertices_are_held_back_without_a_jerk),
         cmocka_unit_test(damping_does_not_jump_between_faces),
         cmocka_unit_test(threads_give_the_same_bytes),
         cmocka_unit_test(holes_of_the_surface),

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double edge_stiffness = 0.03, direction_stiffness = 0.05, all_ways_stiffness = 0.3;
+static const double edge_stiffness = 0.023, direction_stiffness = 0.05, all_ways_stiffness = 0.3;
 
 enum { MOST_FREE = 12, MOST_SAMPLES = 40, MOST_EDGES = 60, MOST_UNKNOWNS = 3 * MOST_FREE };
 enum { MOST_TERMS = 4 * (MOST_SAMPLES + MOST_EDGES) };
