@@ -19,19 +19,19 @@
 
 enum { MOST_DEVICES = 32, MOST_DISPLAYS = MOST_DEVICES + 2 };
 
-typedef struct account {
+typedef struct message {
     char text[400];
     size_t length;
-} account;
+} message;
 
-__attribute__((format(printf, 2, 3))) static void say(account *told, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static void append(message *out, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(told->text + told->length, sizeof told->text - told->length, format, arguments);
+    int length = vsnprintf(out->text + out->length, sizeof out->text - out->length, format, arguments);
     va_end(arguments);
-    told->length += length > 0 ? (size_t)length : 0;
-    if (told->length > sizeof told->text - 1)
-        told->length = sizeof told->text - 1;
+    out->length += length > 0 ? (size_t)length : 0;
+    if (out->length > sizeof out->text - 1)
+        out->length = sizeof out->text - 1;
 }
 
 const char *ss_egl_error_name(EGLint code) {
@@ -132,27 +132,27 @@ static int32_t list_devices(const ss_egl_api *api, const char *client, const ss_
     return found;
 }
 
-static void say_software(account *tried, const char *what) {
-    say(tried, "%.60s is a software rasteriser; ", what);
+static void report_software(message *tried, const char *what) {
+    append(tried, "%.60s is a software rasteriser; ", what);
 }
 
 /* Fills choices [MOST_DISPLAYS]; returns their count. Where EGL lists devices and only hardware will do, they are all there is:
  * it would be the same devices that the other platforms find. */
-static int32_t list_choices(const ss_egl_api *api, const ss_device_request *request, choice *choices, account *tried) {
+static int32_t list_choices(const ss_egl_api *api, const ss_device_request *request, choice *choices, message *tried) {
     const char *client = api->eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     int32_t count = 0, devices = list_devices(api, client, request, choices, &count);
     char asked[32];
     snprintf(asked, sizeof asked, "EGL device %d", request->device);
     if (devices < 0)
-        say(tried, "EGL does not list devices; ");
+        append(tried, "EGL does not list devices; ");
     else if (request->device >= MOST_DEVICES && devices == MOST_DEVICES)
-        say(tried, "only EGL's first %d devices are tried, not device %d; ", MOST_DEVICES, request->device);
+        append(tried, "only EGL's first %d devices are tried, not device %d; ", MOST_DEVICES, request->device);
     else if (request->device >= devices)
-        say(tried, "there is no %s, there are %d; ", asked, devices);
+        append(tried, "there is no %s, there are %d; ", asked, devices);
     else if (request->hardware_only && count == 0 && request->device >= 0)
-        say_software(tried, asked);
+        report_software(tried, asked);
     else if (request->hardware_only && count == 0)
-        say(tried, devices ? "EGL has only software rasterisers; " : "EGL has no devices; ");
+        append(tried, devices ? "EGL has only software rasterisers; " : "EGL has no devices; ");
     if (request->device >= 0 || (request->hardware_only && devices > 0))
         return count;
     if (api->eglGetPlatformDisplayEXT && has(client, "EGL_MESA_platform_surfaceless"))
@@ -171,16 +171,16 @@ static void name_choice(const choice *made, char *name, size_t size) {
 
 /* ---- A context on one of them ---- */
 
-static bool report_code(account *tried, const char *call, EGLint code) {
-    say(tried, "%s: %s; ", call, ss_egl_error_name(code));
+static bool report_code(message *tried, const char *call, EGLint code) {
+    append(tried, "%s: %s; ", call, ss_egl_error_name(code));
     return false;
 }
 
-static bool report(const ss_egl_api *api, account *tried, const char *call) {
+static bool report(const ss_egl_api *api, message *tried, const char *call) {
     return report_code(tried, call, api->eglGetError());
 }
 
-static bool open_display(ss_egl *egl, const choice *made, account *tried) {
+static bool open_display(ss_egl *egl, const choice *made, message *tried) {
     const ss_egl_api *api = &egl->api;
     egl->display = made->platform ? api->eglGetPlatformDisplayEXT(made->platform, made->native, NULL)
                                   : api->eglGetDisplay(EGL_DEFAULT_DISPLAY);
@@ -190,7 +190,7 @@ static bool open_display(ss_egl *egl, const choice *made, account *tried) {
 }
 
 /* Robust if possible: a reset of the device is then reported as a lost context, and does not end the process. */
-static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions, account *tried) {
+static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions, message *tried) {
     const ss_egl_api *api = &egl->api;
     const EGLint robust[] = {EGL_CONTEXT_CLIENT_VERSION,
                              3,
@@ -209,7 +209,7 @@ static bool create_context(ss_egl *egl, EGLConfig config, const char *extensions
 }
 
 /* A context without config and surface, or with the first config for a pixel of a buffer. */
-static bool make_context(ss_egl *egl, account *tried) {
+static bool make_context(ss_egl *egl, message *tried) {
     const ss_egl_api *api = &egl->api;
     const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_NONE};
     const EGLint pixel[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
@@ -249,7 +249,7 @@ static void find_reset_status(ss_egl_api *api) {
 }
 
 /* What the context is; false where it is no OpenGL ES 3 or cannot be made current. */
-static bool describe(ss_egl *egl, const choice *made, account *tried) {
+static bool describe(ss_egl *egl, const choice *made, message *tried) {
     ss_egl_before before;
     skinslide_device_info *info = &egl->info;
     if (!ss_egl_enter(egl, &before))
@@ -267,7 +267,7 @@ static bool describe(ss_egl *egl, const choice *made, account *tried) {
     info->software = made->software || is_software(info->renderer);
     if (strncmp(info->driver, "OpenGL ES 3", 11) == 0)
         return true;
-    say(tried, "it has %.60s; ", info->driver);
+    append(tried, "it has %.60s; ", info->driver);
     return false;
 }
 
@@ -279,10 +279,10 @@ static void drop_context(ss_egl *egl) {
     egl->surface = EGL_NO_SURFACE, egl->context = EGL_NO_CONTEXT;
 }
 
-static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, account *tried) {
+static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, message *tried) {
     bool made_one = open_display(egl, made, tried) && make_context(egl, tried) && describe(egl, made, tried);
     if (made_one && hardware_only && egl->info.software) {
-        say_software(tried, egl->info.renderer);
+        report_software(tried, egl->info.renderer);
         made_one = false;
     }
     if (!made_one)
@@ -295,67 +295,67 @@ static bool try_choice(ss_egl *egl, const choice *made, bool hardware_only, acco
 /* What was tried, for the message. Consecutive devices that failed alike are named together; those for which there is no room
  * are counted. */
 typedef struct attempts {
-    account told;
-    account failure; /* not told yet, of first and the devices behind it */
+    message report;
+    message failure; /* not reported yet, of first and the devices behind it */
     choice first;
-    int32_t count, untold;
+    int32_t count, unreported;
 } attempts;
 
 enum { ROOM_FOR_OTHERS = 180 }; /* bytes for what is tried after the devices */
 
-static void tell(attempts *tried) {
+static void report_failure(attempts *tried) {
     char name[96];
-    account entry = {0};
+    message entry = {0};
     bool is_device = tried->first.platform == EGL_PLATFORM_DEVICE_EXT;
     name_choice(&tried->first, name, sizeof name);
     if (tried->count > 1)
         snprintf(name, sizeof name, "EGL devices %d-%d", tried->first.device, tried->first.device + tried->count - 1);
-    say(&entry, "%s: %s", name, tried->failure.text);
-    if (is_device && tried->told.length + entry.length > sizeof entry.text - ROOM_FOR_OTHERS)
-        tried->untold += tried->count;
+    append(&entry, "%s: %s", name, tried->failure.text);
+    if (is_device && tried->report.length + entry.length > sizeof entry.text - ROOM_FOR_OTHERS)
+        tried->unreported += tried->count;
     else if (tried->count > 0)
-        say(&tried->told, "%s", entry.text);
+        append(&tried->report, "%s", entry.text);
     tried->count = 0;
 }
 
-static void tell_untold(attempts *tried) {
-    if (tried->untold)
-        say(&tried->told, "and %d more devices; ", tried->untold);
-    tried->untold = 0;
+static void report_rest(attempts *tried) {
+    if (tried->unreported)
+        append(&tried->report, "and %d more devices; ", tried->unreported);
+    tried->unreported = 0;
 }
 
-static void note(attempts *tried, const choice *made, const account *failure) {
+static void add_failure(attempts *tried, const choice *made, const message *failure) {
     const choice *first = &tried->first;
     bool same = tried->count > 0 && first->platform == EGL_PLATFORM_DEVICE_EXT && made->platform == first->platform &&
                 made->device == first->device + tried->count && strcmp(tried->failure.text, failure->text) == 0;
     if (!same) {
-        tell(tried);
+        report_failure(tried);
         tried->first = *made, tried->failure = *failure;
     }
     if (made->platform != EGL_PLATFORM_DEVICE_EXT)
-        tell_untold(tried);
+        report_rest(tried);
     tried->count++;
 }
 
-static const char *tell_all(attempts *tried) {
-    tell(tried);
-    tell_untold(tried);
-    if (tried->told.length > 2)
-        tried->told.text[tried->told.length - 2] = 0; /* the last separator */
-    return tried->told.text;
+static const char *report_all(attempts *tried) {
+    report_failure(tried);
+    report_rest(tried);
+    if (tried->report.length > 2)
+        tried->report.text[tried->report.length - 2] = 0; /* the last separator */
+    return tried->report.text;
 }
 
 static bool try_all(ss_egl *egl, const ss_device_request *request, attempts *tried) {
     choice choices[MOST_DISPLAYS];
     EGLenum before = egl->api.eglQueryAPI();
-    int32_t count = list_choices(&egl->api, request, choices, &tried->told);
+    int32_t count = list_choices(&egl->api, request, choices, &tried->report);
     bool made = false;
     egl->api.eglBindAPI(EGL_OPENGL_ES_API);
     for (int32_t i = 0; i < count && !made; i++) {
-        account failure = {0};
+        message failure = {0};
         made = try_choice(egl, &choices[i], request->hardware_only, &failure);
         if (!made)
-            note(tried, &choices[i], &failure);
+            add_failure(tried, &choices[i], &failure);
     }
     egl->api.eglBindAPI(before);
     return made;
@@ -369,16 +369,16 @@ skinslide_status ss_egl_check_device(int32_t device, skinslide_error *error) {
 
 skinslide_status ss_egl_open(const ss_device_request *request, ss_egl **out, skinslide_error *error) {
     attempts tried = {0};
-    const char *kind = request->hardware_only ? "hardware " : "", *why = tried.told.text;
+    const char *kind = request->hardware_only ? "hardware " : "", *why = tried.report.text;
     ss_egl *egl = calloc(1, sizeof *egl);
     if (!egl)
         return ss_out_of_memory(error);
-    if (request->load(&egl->api, tried.told.text, sizeof tried.told.text)) {
+    if (request->load(&egl->api, tried.report.text, sizeof tried.report.text)) {
         if (try_all(egl, request, &tried)) {
             *out = egl;
             return SKINSLIDE_OK;
         }
-        why = tell_all(&tried);
+        why = report_all(&tried);
     }
     free(egl);
     return ss_fail(error, SKINSLIDE_NO_DEVICE, "no %sEGL device with OpenGL ES 3: %s", kind, why);

@@ -21,7 +21,7 @@ typedef struct source {
     int64_t offset, size;
     int64_t readable; /* how much of it may be read so far */
     bool out_of_memory;
-    char said[256];
+    char reported[256];
 } source;
 
 typedef struct owned_image {
@@ -41,8 +41,8 @@ static void hear(exr_const_context_t context, exr_result_t code, const char *mes
     if (code != EXR_ERR_SUCCESS && exr_get_user_data(context, &data) == EXR_ERR_SUCCESS && data) {
         source *from = data;
         from->out_of_memory |= code == EXR_ERR_OUT_OF_MEMORY;
-        if (!from->said[0])
-            snprintf(from->said, sizeof from->said, "%s", message ? message : "");
+        if (!from->reported[0])
+            snprintf(from->reported, sizeof from->reported, "%s", message ? message : "");
     }
 }
 
@@ -205,13 +205,14 @@ static skinslide_status decode_texels(exr_const_context_t file, target *to, skin
     const ss_exr_header *header = to->header;
     const ss_exr_window *data = &header->data;
     to->chunk_size = least(header->chunk_width, data->width) * least(header->chunk_height, data->height);
-    to->from->said[0] = 0;
+    to->from->reported[0] = 0;
     int64_t end = header->tiled ? decode_tiles(file, to) : decode_scanlines(file, to);
     if (to->from->out_of_memory)
         return ss_out_of_memory(error);
     if (end < data->y + data->height)
         return ss_fail(error, SKINSLIDE_BAD_IMAGE, "truncated or corrupt: row %lld of %lld cannot be decoded%s%s",
-                       (long long)(end - data->y), (long long)data->height, to->from->said[0] ? ": " : "", to->from->said);
+                       (long long)(end - data->y), (long long)data->height, to->from->reported[0] ? ": " : "",
+                       to->from->reported);
     return SKINSLIDE_OK;
 }
 
@@ -268,7 +269,7 @@ static skinslide_status decode(source *from, const char *channel, skinslide_imag
         status = ss_out_of_memory(error);
     else if (!opened)
         status = ss_fail(error, SKINSLIDE_BAD_IMAGE, "not an OpenEXR file, or a truncated or corrupt one%s%s",
-                         from->said[0] ? ": " : "", from->said);
+                         from->reported[0] ? ": " : "", from->reported);
     else
         status = ss_exr_read_header(file, channel ? channel : "", from->size, &header, error);
     if (!status)

@@ -133,7 +133,7 @@ static void add_corner(strain *s, corner at) {
     to->area += area;
 }
 
-/* ---- What is told ---- */
+/* ---- What is found ---- */
 
 typedef struct principal {
     double largest, smallest, area;
@@ -174,13 +174,13 @@ static void find_direction(const strain *s, corner at, float out[2]) {
 static skinslide_status write_vertices(const strain *s, const skinslide_strain *out, skinslide_error *error) {
     for (int32_t v = 0; v < s->mesh->vertex_count; v++) {
         principal own = principal_of(&s->at[s->mesh->weld ? s->mesh->weld[v] : v]);
-        const float told[3] = {(float)own.largest, (float)own.smallest, (float)own.area};
-        if (!isfinite(told[0]) || !isfinite(told[2]))
-            return ss_refuse_vertex("stretch", v, told, 1, SKINSLIDE_BAD_POINTS, error);
+        const float found[3] = {(float)own.largest, (float)own.smallest, (float)own.area};
+        if (!isfinite(found[0]) || !isfinite(found[2]))
+            return ss_refuse_vertex("stretch", v, found, 1, SKINSLIDE_BAD_POINTS, error);
         float *const to[3] = {out->largest, out->smallest, out->area_ratio};
         for (int i = 0; i < 3; i++)
             if (to[i])
-                to[i][v] = told[i];
+                to[i][v] = found[i];
     }
     return SKINSLIDE_OK;
 }

@@ -25,23 +25,24 @@ static const degradation *find_kind(int32_t kind) {
     return kind >= 0 && (size_t)kind < sizeof kinds / sizeof *kinds ? &kinds[kind] : NULL;
 }
 
-static void tell(const degradation *own, const char *of, int32_t count, skinslide_error *told) {
-    ss_fail(told, SKINSLIDE_OK, "%s%s%d %s %s", of, *of ? ": " : "", count, count == 1 ? own->one : own->many, own->text);
+static void warn(const degradation *own, const char *of, int32_t count, skinslide_error *warning) {
+    ss_fail(warning, SKINSLIDE_OK, "%s%s%d %s %s", of, *of ? ": " : "", count, count == 1 ? own->one : own->many, own->text);
 }
 
-const char *skinslide_degradation(int32_t kind, int32_t count, skinslide_error *told) {
+const char *skinslide_degradation(int32_t kind, int32_t count, skinslide_error *warning) {
     const degradation *own = find_kind(kind);
     if (own)
-        tell(own, "", count, told);
+        warn(own, "", count, warning);
     return own ? own->member : NULL;
 }
 
-int32_t skinslide_workspace_degraded(const skinslide_workspace *workspace, int32_t patch, int32_t kind, skinslide_error *told) {
+int32_t skinslide_workspace_degraded(const skinslide_workspace *workspace, int32_t patch, int32_t kind,
+                                     skinslide_error *warning) {
     const degradation *own = find_kind(kind);
     if (!own || !workspace || !workspace->has_frame || patch < 0 || patch >= workspace->slider->part_count)
         return -1;
     int32_t count = *(const int32_t *)((const char *)&workspace->results[patch] + own->at);
     if (count > 0)
-        tell(own, workspace->slider->parts[patch].patch->label, count, told);
+        warn(own, workspace->slider->parts[patch].patch->label, count, warning);
     return count;
 }

@@ -70,19 +70,19 @@ skinslide_status ss_check_reads(const skinslide_slider *slider, const float *poi
     return SKINSLIDE_OK;
 }
 
-static void tell(skinslide_error *told, const float *points, int32_t count, int32_t first) {
+static void warn(skinslide_error *warning, const float *points, int32_t count, int32_t first) {
     const float *at = points + 3 * (int64_t)first;
     const char *words = count == 1 ? "1 point that no patch uses is not finite, and stays as it is"
                                    : "points that no patch uses are not finite, and stay as they are";
     char number[16] = "";
     if (count > 1)
         snprintf(number, sizeof number, "%d ", count);
-    ss_fail(told, SKINSLIDE_BAD_POINTS, "%s%s: vertex %d%s at (%g, %g, %g)", number, words, first,
+    ss_fail(warning, SKINSLIDE_BAD_POINTS, "%s%s: vertex %d%s at (%g, %g, %g)", number, words, first,
             count > 1 ? ", the first," : "", (double)at[0], (double)at[1], (double)at[2]);
 }
 
 skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, const float *points, int32_t *passed,
-                                               skinslide_error *told, skinslide_error *error) {
+                                               skinslide_error *warning, skinslide_error *error) {
     if (!slider || !passed)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no slider, or no place for how many points pass");
     skinslide_status status = ss_check_reads(slider, points, "points", error);
@@ -93,6 +93,6 @@ skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, c
     if (!status)
         *passed = count;
     if (!status && count)
-        tell(told, points, count, first);
+        warn(warning, points, count, first);
     return status;
 }

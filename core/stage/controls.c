@@ -304,7 +304,7 @@ static void put_numbers(const skinslide_stage_controls *controls, skinslide_cont
     }
 }
 
-bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row) {
+bool ss_controls_have(const skinslide_stage_controls *controls, int32_t row) {
     const ss_control *own = &controls->controls[row];
     return own->values || ss_texture_wanted(own->texture) || own->number != ss_control_input(row)->fallback;
 }

@@ -151,10 +151,10 @@ static void warn(skinslide_stage_derived *derived, const char *text) {
 
 /* Warns of vectors of one pose on points that move. */
 static void warn_of_static(skinslide_stage_derived *derived, const char *name) {
-    skinslide_error said;
-    ss_fail(&said, SKINSLIDE_BAD_POINTS,
+    skinslide_error made;
+    ss_fail(&made, SKINSLIDE_BAD_POINTS,
             SS_NAMED " has one value for all frames, but points moves: it belongs to one pose alone", SS_NAME(name));
-    warn(derived, said.message);
+    warn(derived, made.message);
 }
 
 const char *skinslide_stage_derived_warning(const skinslide_stage_derived *derived, int32_t number) {
@@ -328,12 +328,12 @@ skinslide_status skinslide_stage_derived_offer(skinslide_stage_derived *derived,
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "nothing to derive into, no name or type, or no place for the input");
     const ss_primvar primvar = {name, type_name, interpolation ? interpolation : "constant", element_size};
     const skinslide_stage_input *input = NULL;
-    skinslide_error told;
+    skinslide_error why;
     ss_kind kind;
     int32_t pose_count;
-    ss_following following = ss_follows(&primvar, &kind, &pose_count, &told);
+    ss_following following = ss_follows(&primvar, &kind, &pose_count, &why);
     if (following == SS_FOLLOWS_UNKNOWN)
-        warn(derived, told.message);
+        warn(derived, why.message);
     if (following == SS_FOLLOWS)
         input = accept(derived, &primvar, kind, pose_count);
     if (derived->memory.failed)

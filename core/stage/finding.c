@@ -44,8 +44,8 @@ static bool make_room(search *own) {
     return true;
 }
 
-__attribute__((format(printf, 4, 5))) static void say(search *own, skinslide_severity severity, const char *patch,
-                                                      const char *format, ...) {
+__attribute__((format(printf, 4, 5))) static void report(search *own, skinslide_severity severity, const char *patch,
+                                                         const char *format, ...) {
     va_list arguments, again;
     va_start(arguments, format);
     va_copy(again, arguments);
@@ -98,7 +98,8 @@ static bool list_patches(search *own) {
         nameless = nameless || (patch && !*patch);
     }
     if (nameless)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "%s is applied without a patch's name; apply %s:NAME", SS_SCHEMA, SS_SCHEMA);
+        report(own, SKINSLIDE_SEVERITY_ERROR, NULL, "%s is applied without a patch's name; apply %s:NAME", SS_SCHEMA,
+               SS_SCHEMA);
     return !nameless;
 }
 
@@ -178,7 +179,7 @@ static int by_text(const void *a, const void *b) {
 }
 
 /* The names of patches that have properties but are not applied, each once, in order. */
-static void say_unapplied(search *own) {
+static void report_unapplied(search *own) {
     const char **names = SS_NEW(&own->memory, const char *, own->prim.property_count);
     int32_t count = 0;
     for (int32_t i = 0; names && i < own->prim.property_count; i++) {
@@ -196,8 +197,8 @@ static void say_unapplied(search *own) {
         qsort(names, (size_t)count, sizeof *names, by_text);
     for (int32_t i = 0; i < count; i++)
         if (!i || strcmp(names[i], names[i - 1]) != 0)
-            say(own, SKINSLIDE_SEVERITY_WARNING, names[i],
-                "has properties, but %s:%s is not applied to the prim, so it does not slide", SS_SCHEMA, names[i]);
+            report(own, SKINSLIDE_SEVERITY_WARNING, names[i],
+                   "has properties, but %s:%s is not applied to the prim, so it does not slide", SS_SCHEMA, names[i]);
 }
 
 /* A property in the namespace of a patch, at any depth, that is none of its settings. */
@@ -234,7 +235,7 @@ static int32_t list_strays(const search *own, int32_t property, stray *out) {
     return count;
 }
 
-static void say_unknown(search *own) {
+static void report_unknown(search *own) {
     int32_t count = 0;
     for (int32_t i = 0; i < own->prim.property_count; i++)
         count += list_strays(own, i, NULL);
@@ -246,8 +247,8 @@ static void say_unknown(search *own) {
         count += list_strays(own, i, strays + count);
     qsort(strays, (size_t)count, sizeof *strays, by_patch);
     for (int32_t i = 0; i < count; i++)
-        say(own, SKINSLIDE_SEVERITY_WARNING, own->patches[strays[i].patch], "%s is not a setting of a patch, and has no effect",
-            own->prim.properties[strays[i].property]);
+        report(own, SKINSLIDE_SEVERITY_WARNING, own->patches[strays[i].patch],
+               "%s is not a setting of a patch, and has no effect", own->prim.properties[strays[i].property]);
 }
 
 /* ---- Paint under names that are none ---- */
@@ -273,17 +274,17 @@ static bool has_parts(const char *name) {
     return patch[length] && !ss_is_reserved(patch, length);
 }
 
-static void say_misnamed(search *own) {
+static void report_misnamed(search *own) {
     bool case_is_said = says_case(&own->prim);
     for (int32_t i = 0; i < own->paint.count; i++) {
         const char *name = own->paint.names[i], *patch = own->paint.patches[i];
         if (name[without_indices(name)])
             continue; /* the warning is of the primvar that they index */
         if (patch && own->paint.in_another_case[i] && !case_is_said)
-            say(own, SKINSLIDE_SEVERITY_WARNING, patch,
-                "%s is paint in another case, and has no effect unless " SS_NAMESPACE "foldCase is on", name);
+            report(own, SKINSLIDE_SEVERITY_WARNING, patch,
+                   "%s is paint in another case, and has no effect unless " SS_NAMESPACE "foldCase is on", name);
         else if (!patch && !place_of(name).patch_length && has_parts(name))
-            say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "%s is not paint of an applied patch, and has no effect", name);
+            report(own, SKINSLIDE_SEVERITY_WARNING, NULL, "%s is not paint of an applied patch, and has no effect", name);
     }
 }
 
@@ -304,50 +305,53 @@ static const char *why_not_skinned(const skinslide_stage_prim *prim) {
 static void warn_of_skinning(search *own) {
     const skinslide_stage_prim *prim = &own->prim;
     if (own->finding.skinned_by && prim->point_samples)
-        say(own, SKINSLIDE_SEVERITY_WARNING, NULL,
-            "points have samples, but UsdSkel skins them again; remove the skinning where they are baked");
+        report(own, SKINSLIDE_SEVERITY_WARNING, NULL,
+               "points have samples, but UsdSkel skins them again; remove the skinning where they are baked");
     if (!own->finding.skinned_by && has_influences(prim) && !prim->point_samples)
-        say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "UsdSkel does not skin it: %s", why_not_skinned(prim));
+        report(own, SKINSLIDE_SEVERITY_WARNING, NULL, "UsdSkel does not skin it: %s", why_not_skinned(prim));
 }
 
 /* ---- Why not ---- */
 
-/* Says why the patches cannot be slid. Returns whether nothing was said. */
-static bool say_why_not(search *own) {
+/* Reports why the patches cannot be slid. Returns whether nothing was reported. */
+static bool report_why_not(search *own) {
     const skinslide_stage_prim *prim = &own->prim;
     const char *type = ss_type_of(prim->type_name);
     int32_t before = own->finding.problem_count;
     if (prim->instance)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
-            "is inside an instance, whose points are shared; author instanceable = false on %s", prim->instance);
+        report(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+               "is inside an instance, whose points are shared; author instanceable = false on %s", prim->instance);
     else if (prim->instancer)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+        report(
+            own, SKINSLIDE_SEVERITY_ERROR, NULL,
             "is a prototype of the point instancer %s, whose instances share its points; slide a mesh outside it, or put the "
             "baked mesh in its place",
             prim->instancer);
     else if (!prim->is_defined)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
-            "is not defined, there are only overs; is the path right, and does the cache below it open?");
+        report(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+               "is not defined, there are only overs; is the path right, and does the cache below it open?");
     else if (!prim->is_mesh)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "is a %s; %s applies to Mesh only", type, SS_SCHEMA);
+        report(own, SKINSLIDE_SEVERITY_ERROR, NULL, "is a %s; %s applies to Mesh only", type, SS_SCHEMA);
     else if (prim->slid_by)
-        say(own, SKINSLIDE_SEVERITY_WARNING, NULL, "is slid already, by %s; bake that file, or put the cache in its place",
-            prim->slid_by);
+        report(own, SKINSLIDE_SEVERITY_WARNING, NULL, "is slid already, by %s; bake that file, or put the cache in its place",
+               prim->slid_by);
     else if (prim->baked_by)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+        report(
+            own, SKINSLIDE_SEVERITY_ERROR, NULL,
             "points are slid already, by the bake in %s; slide the cache instead: open the stage without that layer, or remove "
             "the baked attributes from it",
             prim->baked_by);
     else if (own->finding.skinned_by && !prim->reads_skinning)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL,
-            "points are skinned by UsdSkel, which a .skinslide file cannot do; bake the stage instead, or write the skinned "
-            "points into a layer to sublayer: skinslide cache STAGE -o cache.usdc");
+        report(own, SKINSLIDE_SEVERITY_ERROR, NULL,
+               "points are skinned by UsdSkel, which a .skinslide file cannot do; bake the stage instead, or write the skinned "
+               "points into a layer to sublayer: skinslide cache STAGE -o cache.usdc");
     return own->finding.problem_count == before;
 }
 
 static void warn_of_variant(search *own) {
     if (own->prim.variant && own->prim.variant_set)
-        say(own, SKINSLIDE_SEVERITY_WARNING, NULL,
+        report(
+            own, SKINSLIDE_SEVERITY_WARNING, NULL,
             "points come from the variant %s of %s, and what is slid stands whichever is selected; bake into that variant, or "
             "keep it selected",
             own->prim.variant, own->prim.variant_set);
@@ -369,19 +373,19 @@ static skinslide_status prepare(search *own, const skinslide_stage_prim *prim, s
 
 static void look(search *own) {
     if (own->prim.uncomposed)
-        say(own, SKINSLIDE_SEVERITY_ERROR, NULL, "USD could not compose this: %s", own->prim.uncomposed);
+        report(own, SKINSLIDE_SEVERITY_ERROR, NULL, "USD could not compose this: %s", own->prim.uncomposed);
     bool named = list_patches(own);
     if (own->memory.failed || !sort_patches(own))
         return;
     if (own->prim.is_mesh) {
         own->paint =
             ss_list_paint(&own->memory, own->prim.properties, own->prim.property_count, own->patches, own->finding.patch_count);
-        say_unapplied(own), say_unknown(own), say_misnamed(own);
+        report_unapplied(own), report_unknown(own), report_misnamed(own);
     }
     if (has_influences(&own->prim) && !why_not_skinned(&own->prim))
         own->finding.skinned_by = ss_copy_text(&own->memory, own->prim.skeleton);
     if (own->finding.patch_count)
-        own->finding.slides = say_why_not(own) && named;
+        own->finding.slides = report_why_not(own) && named;
     if (own->finding.slides)
         warn_of_variant(own), warn_of_skinning(own);
     own->finding.patches = own->patches;

@@ -103,22 +103,22 @@ static int find_known(const char *primvar, const char *name) {
 
 /* ---- Both ---- */
 
-static ss_following tell(const ss_primvar *primvar, ss_kind kind, skinslide_error *told) {
+static ss_following warn_of(const ss_primvar *primvar, ss_kind kind, skinslide_error *warning) {
     static const char stays[] = "and stays as it is while the skin slides";
     if (primvar->element_size != 1)
-        ss_fail(told, SKINSLIDE_UNSUPPORTED, SS_NAMED " has elementSize %d %s", SS_NAME(primvar->name), primvar->element_size,
-                stays);
+        ss_fail(warning, SKINSLIDE_UNSUPPORTED, SS_NAMED " has elementSize %d %s", SS_NAME(primvar->name),
+                primvar->element_size, stays);
     else if (kind == SS_KIND_RATE)
-        ss_fail(told, SKINSLIDE_UNSUPPORTED, SS_NAMED " has interpolation %s %s", SS_NAME(primvar->name),
+        ss_fail(warning, SKINSLIDE_UNSUPPORTED, SS_NAMED " has interpolation %s %s", SS_NAME(primvar->name),
                 primvar->interpolation, stays);
     else
-        ss_fail(told, SKINSLIDE_UNSUPPORTED,
+        ss_fail(warning, SKINSLIDE_UNSUPPORTED,
                 SS_NAMED " is %s %s: make it normal3f[] or vector3f[] if it lies along the surface", SS_NAME(primvar->name),
                 primvar->type_name, stays);
     return SS_FOLLOWS_UNKNOWN;
 }
 
-ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *told) {
+ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *warning) {
     char name[LONGEST];
     const char *type = primvar->type_name;
     read_name(primvar->name, name);
@@ -127,11 +127,11 @@ ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_
         is_of_rest(name))
         return SS_FOLLOWS_NOT;
     if (found < 0 && !has_role(type))
-        return sounds_directional(name) ? tell(primvar, SS_KIND_CARRIED, told) : SS_FOLLOWS_NOT;
+        return sounds_directional(name) ? warn_of(primvar, SS_KIND_CARRIED, warning) : SS_FOLLOWS_NOT;
     *kind = found < 0 ? SS_KIND_CARRIED : known[found].kind, *pose_count = found < 0 ? 1 : known[found].pose_count;
     if (!is_triple(type))
-        return tell(primvar, SS_KIND_CARRIED, told);
+        return warn_of(primvar, SS_KIND_CARRIED, warning);
     if (primvar->element_size != 1 || (*kind == SS_KIND_RATE && !ss_is_by_vertex(primvar->interpolation)))
-        return tell(primvar, *kind, told);
+        return warn_of(primvar, *kind, warning);
     return SS_FOLLOWS;
 }

@@ -129,17 +129,18 @@ static bool is_finite(const ss_record *record, int64_t element) {
            isfinite(ss_number(record, element, 2));
 }
 
-static void tell(skinslide_error *told, const ss_record *record, int32_t count, int32_t first) {
+static void warn(skinslide_error *warning, const ss_record *record, int32_t count, int32_t first) {
     bool several = count > 1;
-    ss_fail(told, SKINSLIDE_BAD_POINTS, SS_NAMED " has %d value%s not finite, which pass%s as %s: number %d%s is (%g, %g, %g)",
-            SS_NAME(record->value.name), count, several ? "s that are" : " that is", several ? "" : "es",
-            several ? "they are" : "it is", first, several ? ", the first," : "", ss_number(record, first, 0),
-            ss_number(record, first, 1), ss_number(record, first, 2));
+    ss_fail(warning, SKINSLIDE_BAD_POINTS,
+            SS_NAMED " has %d value%s not finite, which pass%s as %s: number %d%s is (%g, %g, %g)", SS_NAME(record->value.name),
+            count, several ? "s that are" : " that is", several ? "" : "es", several ? "they are" : "it is", first,
+            several ? ", the first," : "", ss_number(record, first, 0), ss_number(record, first, 1),
+            ss_number(record, first, 2));
 }
 
-skinslide_status skinslide_stage_derived_look(const skinslide_stage_derived *derived, const skinslide_stage_output *output,
-                                              const skinslide_value *value, int32_t *faults, skinslide_error *told,
-                                              skinslide_error *error) {
+skinslide_status skinslide_stage_derived_faults(const skinslide_stage_derived *derived, const skinslide_stage_output *output,
+                                                const skinslide_value *value, int32_t *faults, skinslide_error *warning,
+                                                skinslide_error *error) {
     const ss_derivation *own = find(derived, output);
     if (!own || !faults)
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no such output, or no place for how many faults it has");
@@ -154,6 +155,6 @@ skinslide_status skinslide_stage_derived_look(const skinslide_stage_derived *der
     if (!status)
         *faults = count;
     if (!status && count)
-        tell(told, &record, count, first);
+        warn(warning, &record, count, first);
     return status;
 }

@@ -50,15 +50,16 @@ static skinslide_status warn_of_others(skinslide_stage_mesh *mesh, const float *
             first = count++ ? first : v;
     if (!count)
         return SKINSLIDE_OK;
-    skinslide_error told;
-    refuse(rest, first, source, &told);
-    char *warning = SS_NEW(&mesh->memory, char, sizeof told.message + 96);
+    skinslide_error refusal;
+    refuse(rest, first, source, &refusal);
+    char *warning = SS_NEW(&mesh->memory, char, sizeof refusal.message + 96);
     if (!warning)
         return ss_out_of_memory(error);
     char more[32] = "";
     if (count > 1)
         snprintf(more, sizeof more, ", and %d more like it", count - 1);
-    snprintf(warning, sizeof told.message + 96, "%s, which counts for nothing, since no face has it%s", told.message, more);
+    snprintf(warning, sizeof refusal.message + 96, "%s, which counts for nothing, since no face has it%s", refusal.message,
+             more);
     mesh->rest_warning = warning;
     return SKINSLIDE_OK;
 }

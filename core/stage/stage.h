@@ -414,7 +414,7 @@ struct skinslide_stage_controls {
 /* The input in a row of the table. */
 const ss_input *ss_control_input(int32_t row);
 /* Whether an input has an effect at the time of the controls. */
-bool ss_controls_say(const skinslide_stage_controls *controls, int32_t row);
+bool ss_controls_have(const skinslide_stage_controls *controls, int32_t row);
 /* The controls as the slider takes them, owned by the handle. */
 skinslide_status ss_give_controls(skinslide_stage_controls *controls, const skinslide_controls **given, skinslide_error *error);
 
@@ -441,11 +441,11 @@ typedef struct ss_primvar {
 typedef enum ss_following {
     SS_FOLLOWS_NOT,
     SS_FOLLOWS,         /* as an input of kind, which needs pose_count poses */
-    SS_FOLLOWS_UNKNOWN, /* seems to, but cannot be carried: told says why */
+    SS_FOLLOWS_UNKNOWN, /* seems to, but cannot be carried: warning says why */
 } ss_following;
 
 /* Whether a primvar follows the skin, and as what. SS_FOLLOWS_NOT also for other properties, and for inputs of a table. */
-ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *told);
+ss_following ss_follows(const ss_primvar *primvar, ss_kind *kind, int32_t *pose_count, skinslide_error *warning);
 
 /* ---- derived.c ---- */
 

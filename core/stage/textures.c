@@ -257,7 +257,7 @@ static skinslide_status decode(const ss_texture *texture, const skinslide_stage_
         return of_map(texture, file->path, status, &inner, error);
     if (!file->bytes && !file->descriptor)
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": %s%s%.160s", SS_NAME(texture->name),
-                       SS_FILE(file->path), skinslide_stage_say(SKINSLIDE_SAYING_UNREADABLE), file->reason ? ": " : "",
+                       SS_FILE(file->path), skinslide_stage_phrase(SKINSLIDE_PHRASE_UNREADABLE), file->reason ? ": " : "",
                        file->reason ? file->reason : "");
     status = file->bytes ? skinslide_exr_decode(file->bytes, file->byte_count, channel, image, &inner)
                          : skinslide_exr_read(*file->descriptor, file->offset, file->byte_count, channel, image, &inner);
@@ -284,15 +284,15 @@ static skinslide_status hold(ss_texture *texture, const skinslide_stage_file *fi
 /* Fails: there is no file at all, or a tile is missing among others. */
 static skinslide_status is_missing(ss_texture *texture, skinslide_error *error) {
     int32_t tile = texture->tiles[texture->missing];
-    const char *said = skinslide_stage_say(SKINSLIDE_SAYING_NO_FILE);
+    const char *missing = skinslide_stage_phrase(SKINSLIDE_PHRASE_NO_FILE);
     if (!tile || !texture->found)
         return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": %s", SS_NAME(texture->name),
-                       SS_FILE(texture->asset), said);
+                       SS_FILE(texture->asset), missing);
     const char *path = path_of_tile(texture, tile);
     if (!path)
         return ss_out_of_memory(error);
     return ss_fail(error, SKINSLIDE_BAD_CONTROL, SS_NAMED ": " SS_FILED ": %s, and the patch has texture coordinates in it",
-                   SS_NAME(texture->name), SS_FILE(path), said);
+                   SS_NAME(texture->name), SS_FILE(path), missing);
 }
 
 /* ---- Values ---- */

@@ -1,7 +1,7 @@
 /* Finds the inputs of a patch that say something, but that its rule does not read. */
 #include "stage.h"
 
-static bool patch_says(const skinslide_stage_patch *patch, const ss_input *input, int32_t row) {
+static bool patch_has(const skinslide_stage_patch *patch, const ss_input *input, int32_t row) {
     const ss_taken *taken = &patch->taken[row];
     switch (input->kind) {
     case SS_KIND_CHOICE:
@@ -15,7 +15,7 @@ static bool patch_says(const skinslide_stage_patch *patch, const ss_input *input
 
 static bool says(const skinslide_stage_patch *patch, const skinslide_stage_controls *controls, const ss_input *input,
                  int32_t row) {
-    return input->shown.group == SKINSLIDE_STAGE_PATCH ? patch_says(patch, input, row) : ss_controls_say(controls, row);
+    return input->shown.group == SKINSLIDE_STAGE_PATCH ? patch_has(patch, input, row) : ss_controls_have(controls, row);
 }
 
 const skinslide_stage_input *skinslide_stage_next_unread(const skinslide_stage_patch *patch,

@@ -402,9 +402,9 @@ std::vector<std::pair<SdfPath, std::string>> Composition::errors() const {
     for (const PcpErrorBasePtr &error : _errors) {
         // The root's identifier is one that openText() made up: name the file instead.
         std::string message = TfStringReplace(error->ToString(), _root->GetIdentifier(), _root->GetResolvedPath());
-        std::pair<SdfPath, std::string> said(error->rootSite.path, message);
-        if (std::find(errors.begin(), errors.end(), said) == errors.end())
-            errors.push_back(said);
+        std::pair<SdfPath, std::string> reported(error->rootSite.path, message);
+        if (std::find(errors.begin(), errors.end(), reported) == errors.end())
+            errors.push_back(reported);
     }
     return errors;
 }

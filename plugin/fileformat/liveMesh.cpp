@@ -71,7 +71,7 @@ void LiveMesh::say(double time, const std::string &message) {
 }
 
 // One message in all.
-void LiveMesh::sayOnce(const std::string &what, double time, const std::string &message) {
+void LiveMesh::warnOnce(const std::string &what, double time, const std::string &message) {
     {
         std::lock_guard<std::mutex> lock(_mutex);
         if (!_said.insert(what).second)
@@ -87,27 +87,27 @@ void LiveMesh::warn(double time, const std::string &message) const {
 // Points that pass as they are.
 void LiveMesh::sayFaults(double time, const VtVec3fArray &cached) {
     int32_t passed = 0;
-    skinslide_error told;
-    if (skinslide_slider_check_points(_slider, floatsOf(cached), &passed, &told, nullptr) == SKINSLIDE_OK && passed)
-        sayOnce("points", time, told.message);
+    skinslide_error warning;
+    if (skinslide_slider_check_points(_slider, floatsOf(cached), &passed, &warning, nullptr) == SKINSLIDE_OK && passed)
+        warnOnce("points", time, warning.message);
 }
 
 // What is degraded: of each kind the first frame at which a patch is.
 void LiveMesh::sayDegraded(double time, const skinslide_workspace *workspace) {
-    skinslide_error told;
+    skinslide_error warning;
     for (int32_t patch = 0; skinslide_workspace_degraded(workspace, patch, 0, nullptr) >= 0; patch++)
-        for (int32_t kind = 0, count = 0; (count = skinslide_workspace_degraded(workspace, patch, kind, &told)) >= 0; kind++)
+        for (int32_t kind = 0, count = 0; (count = skinslide_workspace_degraded(workspace, patch, kind, &warning)) >= 0; kind++)
             if (count > 0)
-                sayOnce(TfStringPrintf("patch %d %d", patch, kind), time, told.message);
+                warnOnce(TfStringPrintf("patch %d %d", patch, kind), time, warning.message);
 }
 
 void LiveMesh::sayFaults(const Derived &derived, double time) {
     int32_t faults = 0;
-    skinslide_error told;
-    if (skinslide_stage_derived_look(_mesh->derivation.get(), derived.output, derived.cached.at(time), &faults, &told,
-                                     nullptr) == SKINSLIDE_OK &&
+    skinslide_error warning;
+    if (skinslide_stage_derived_faults(_mesh->derivation.get(), derived.output, derived.cached.at(time), &faults, &warning,
+                                       nullptr) == SKINSLIDE_OK &&
         faults)
-        sayOnce(derived.output->name, time, told.message);
+        warnOnce(derived.output->name, time, warning.message);
 }
 
 // ---- The slider ----

@@ -49,7 +49,7 @@ class LiveMesh {
     void giveBack(Work work);
     void say(double time, const std::string &message);
     void warn(double time, const std::string &message) const;
-    void sayOnce(const std::string &what, double time, const std::string &message);
+    void warnOnce(const std::string &what, double time, const std::string &message);
     void sayFaults(double time, const VtVec3fArray &cached);
     void sayFaults(const Derived &derived, double time);
     void sayDegraded(double time, const skinslide_workspace *workspace);

@@ -297,8 +297,8 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
         for (double time : property.samples())
             call(skinslide_stage_derived_check, derived, property.input(), property.at(time));
     }
-    for (int32_t i = 0; const char *said = skinslide_stage_derived_warning(derived, i); i++)
-        problems->push_back(mesh->path.GetString() + ": " + said);
+    for (int32_t i = 0; const char *warning = skinslide_stage_derived_warning(derived, i); i++)
+        problems->push_back(mesh->path.GetString() + ": " + warning);
     for (int32_t i = 0; const skinslide_stage_output *output = skinslide_stage_derived_output(derived, i); i++) {
         auto own = std::find_if(cached.begin(), cached.end(),
                                 [&](const Property &property) { return property.attribute().name() == output->name; });
@@ -310,14 +310,15 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
 }
 
 void sayWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
-    for (const char *said : {skinslide_stage_mesh_rest_warning(mesh.mesh.get()), skinslide_stage_mesh_warning(mesh.mesh.get()),
-                             skinslide_stage_mesh_space_warning(mesh.mesh.get())}) {
-        if (said)
-            problems->push_back(mesh.path.GetString() + ": " + said);
+    for (const char *warning :
+         {skinslide_stage_mesh_rest_warning(mesh.mesh.get()), skinslide_stage_mesh_warning(mesh.mesh.get()),
+          skinslide_stage_mesh_space_warning(mesh.mesh.get())}) {
+        if (warning)
+            problems->push_back(mesh.path.GetString() + ": " + warning);
     }
     for (const Patch &patch : mesh.patches) {
-        if (const char *said = patch.warning())
-            problems->push_back(mesh.path.GetString() + ": patch " + patch.name() + ": " + said);
+        if (const char *warning = patch.warning())
+            problems->push_back(mesh.path.GetString() + ": patch " + patch.name() + ": " + warning);
     }
 }
 

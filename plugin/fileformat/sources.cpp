@@ -31,13 +31,13 @@ namespace {
 
 std::string readFile(const std::string &resolvedPath) {
     if (isIrregular(resolvedPath))
-        throw Fault(skinslide_stage_say(SKINSLIDE_SAYING_IRREGULAR));
+        throw Fault(skinslide_stage_phrase(SKINSLIDE_PHRASE_IRREGULAR));
     std::shared_ptr<ArAsset> asset = ArGetResolver().OpenAsset(ArResolvedPath(resolvedPath));
     if (!asset)
         throw Fault("cannot be opened");
     std::string text(asset->GetSize(), '\0');
     if (!text.empty() && asset->Read(&text[0], text.size(), 0) != text.size())
-        throw Fault(skinslide_stage_say(SKINSLIDE_SAYING_UNREADABLE));
+        throw Fault(skinslide_stage_phrase(SKINSLIDE_PHRASE_UNREADABLE));
     return text;
 }
 
@@ -87,7 +87,7 @@ std::string openable(const std::string &identifier) {
     SdfLayer::SplitIdentifier(identifier, &path, &arguments);
     path = ArGetResolver().Resolve(path).GetPathString();
     if (isIrregular(path))
-        throw fault("leads to %s, which %s", path.c_str(), skinslide_stage_say(SKINSLIDE_SAYING_IRREGULAR));
+        throw fault("leads to %s, which %s", path.c_str(), skinslide_stage_phrase(SKINSLIDE_PHRASE_IRREGULAR));
     return path;
 }
 

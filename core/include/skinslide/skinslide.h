@@ -401,12 +401,12 @@ SKINSLIDE_API skinslide_status skinslide_slider_patch_faces(const skinslide_slid
 
 /* Whether the points of a frame can be slid. Points that sliding does not read, as no face at a patch has them, may hold
  * anything, and are copied as they are.
- *   points  in  [vertex_count][3]
- *   passed  out how many of these are not finite
- *   told    out, or NULL: where there are any, a warning that names the first
+ *   points   in  [vertex_count][3]
+ *   passed   out how many of these are not finite
+ *   warning  out, or NULL: if there are any, names the first
  * Fails as skinslide_slide does: with BAD_POINTS (not finite: names the vertex), BAD_ARGUMENT. */
 SKINSLIDE_API skinslide_status skinslide_slider_check_points(const skinslide_slider *slider, const float *points,
-                                                             int32_t *passed, skinslide_error *told, skinslide_error *error);
+                                                             int32_t *passed, skinslide_error *warning, skinslide_error *error);
 
 /* How many vertices of a patch have a point of another mesh in their place. Start from SKINSLIDE_NEIGHBOURS_DEFAULT. */
 typedef struct skinslide_neighbours {
@@ -574,15 +574,15 @@ SKINSLIDE_API skinslide_status skinslide_slide(skinslide_workspace *workspace, c
                                                skinslide_error *error);
 
 /* What makes a result less than it should be: each kind, from 0 on, is a count of skinslide_patch_result.
- *   told  out  the count in words, such as "3 faces turned over in the embedding"; may be NULL
+ *   warning  out  the count in words, such as "3 faces turned over in the embedding"; may be NULL
  * Returns the name of its member, such as "folded_faces"; NULL beyond the last kind. */
-SKINSLIDE_API const char *skinslide_degradation(int32_t kind, int32_t count, skinslide_error *told);
+SKINSLIDE_API const char *skinslide_degradation(int32_t kind, int32_t count, skinslide_error *warning);
 
 /* The same of a patch in the last frame that this workspace slid, where nothing was measured, too.
- *   told  out  where there are any, "patch elbow: 3 faces turned over in the embedding"; may be NULL
+ *   warning  out  where there are any, "patch elbow: 3 faces turned over in the embedding"; may be NULL
  * Returns the count; -1 beyond the last patch or kind, or before the first frame. One thread at a time for a workspace. */
 SKINSLIDE_API int32_t skinslide_workspace_degraded(const skinslide_workspace *workspace, int32_t patch, int32_t kind,
-                                                   skinslide_error *told);
+                                                   skinslide_error *warning);
 
 /* The embedding Ud of a patch in the last frame that this workspace slid.
  *   uv  out [vertex_count of the patch][2]

@@ -153,15 +153,15 @@ SKINSLIDE_API const char *skinslide_stage_schema(void);
 SKINSLIDE_API skinslide_bool skinslide_stage_can_name_patch(const char *name);
 
 /* Words for messages of readers' own. */
-typedef enum skinslide_saying {
-    SKINSLIDE_SAYING_NO_TYPE,   /* in place of the type of a prim that has none */
-    SKINSLIDE_SAYING_NO_FILE,   /* that a file is missing */
-    SKINSLIDE_SAYING_IRREGULAR, /* that a file is a pipe, a socket or a device; behind its name */
-    SKINSLIDE_SAYING_UNREADABLE /* that a file, or a value in one, cannot be read; behind its name */
-} skinslide_saying;
+typedef enum skinslide_phrase {
+    SKINSLIDE_PHRASE_NO_TYPE,   /* in place of the type of a prim that has none */
+    SKINSLIDE_PHRASE_NO_FILE,   /* that a file is missing */
+    SKINSLIDE_PHRASE_IRREGULAR, /* that a file is a pipe, a socket or a device; behind its name */
+    SKINSLIDE_PHRASE_UNREADABLE /* that a file, or a value in one, cannot be read; behind its name */
+} skinslide_phrase;
 
 /* A static string; NULL for another number. */
-SKINSLIDE_API const char *skinslide_stage_say(skinslide_saying saying);
+SKINSLIDE_API const char *skinslide_stage_phrase(skinslide_phrase phrase);
 
 /* Facts of a prim. Start from SKINSLIDE_STAGE_PRIM_DEFAULT. */
 typedef struct skinslide_stage_prim {
@@ -673,13 +673,14 @@ SKINSLIDE_API skinslide_status skinslide_stage_derived_value(const skinslide_sta
                                                              skinslide_error *error);
 
 /* Counts the vectors or rates in a value of an output that are not finite: they are copied as they are.
- *   value   in  the cache's, of the input that the output is of
- *   faults  out how many there are; 0 of a value that cannot be used
- *   told    out, or NULL: if there are any, a warning that names the property and the first
+ *   value    in  the cache's, of the input that the output is of
+ *   faults   out how many there are; 0 of a value that cannot be used
+ *   warning  out, or NULL: if there are any, names the property and the first
  * Fails with BAD_ARGUMENT. */
-SKINSLIDE_API skinslide_status skinslide_stage_derived_look(const skinslide_stage_derived *derived,
-                                                            const skinslide_stage_output *output, const skinslide_value *value,
-                                                            int32_t *faults, skinslide_error *told, skinslide_error *error);
+SKINSLIDE_API skinslide_status skinslide_stage_derived_faults(const skinslide_stage_derived *derived,
+                                                              const skinslide_stage_output *output,
+                                                              const skinslide_value *value, int32_t *faults,
+                                                              skinslide_error *warning, skinslide_error *error);
 
 /* ---- Text ---------------------------------------------------------------------------------------------------------------- */
 

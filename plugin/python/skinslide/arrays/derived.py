@@ -77,7 +77,7 @@ class DerivedMeaning:
     def look(self, output: Output, cached: Value | None) -> str:
         """What to warn of in a value of the cache: what is not finite and passes as it is; or nothing."""
         faults, warning = ffi.new("int32_t *"), ffi.new("skinslide_error *")
-        call_stage(lib.skinslide_stage_derived_look, self.handle, output.pointer, cached, faults, warning)
+        call_stage(lib.skinslide_stage_derived_faults, self.handle, output.pointer, cached, faults, warning)
         return text(warning.message) if faults[0] else ""
 
     def value(self, output: Output, cached: Value | None, poses: Sequence[Pose]) -> np.ndarray:

@@ -68,4 +68,4 @@ def can_name_patch(name: str) -> bool:
 
 def say(saying: str) -> str:
     """Words that the core says too: no_type, no_file, irregular, unreadable."""
-    return text(lib.skinslide_stage_say(getattr(lib, f"SKINSLIDE_SAYING_{saying.upper()}")))
+    return text(lib.skinslide_stage_phrase(getattr(lib, f"SKINSLIDE_PHRASE_{saying.upper()}")))
