@@ -8,7 +8,14 @@
  * x = steepness crush.
  *
  * The constants were chosen together with the hold, for stretch taken away and for smooth motion, on half of 16 shots. With a
- * most of 4 and twice the hold, less stretch goes, and the roughest shots are no smoother. */
+ * most of 4 and twice the hold, less stretch goes, and the roughest shots are no smoother. At half and at twice of each, of the
+ * stretch of the example sleeve `relaxed` takes this much away, where it is 45 %, and moves the examples sleeve and face this
+ * many times as roughly as their caches at quarter frames, where it is 4.6 and 1.0 times:
+ *
+ *     onset      44 47 %    4.8 5.3    1.7 1.6
+ *     steepness  47 44 %    6.1 3.9    1.0 1.8
+ *     most       51 38 %    6.0 3.6    1.3 1.8
+ *     spreads    46 44 %    4.8 4.8    1.0 1.0 */
 #include "even.h"
 
 #include <string.h>

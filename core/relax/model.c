@@ -4,8 +4,16 @@
  *     1 / L^2 ((f' - f) t t' + f (1 - t t'))
  *
  * of which the model keeps the positive parts, and at least LEAST_ALONG of t t'. DAMPING adds to the hold in the matrix, and
- * not in the force. The anchor of a vertex is its crush, see crush.c, times ANCHOR and the sum of k / l^2 over its edges. The
- * constants were chosen together, for little stretch and smooth motion, on twelve shots. */
+ * not in the force. The anchor of a vertex is its crush, see crush.c, times ANCHOR and the sum of k / l^2 over its edges.
+ *
+ * The constants were chosen together, for little stretch and smooth motion, on twelve shots. At half and at twice of each, this
+ * much of the stretch of the example sleeve goes, where it is 45 %, and the examples sleeve and face move this many times as
+ * roughly as their caches at quarter frames, where it is 4.6 and 1.0 times:
+ *
+ *     hold         45 44 %    4.8 5.8    1.6 1.1
+ *     damping      45 45 %    4.6 4.7    1.2 1.1
+ *     anchor       50 42 %    5.1 5.6    1.1 1.0
+ *     least along  45 45 %    4.6 4.6    1.0 1.0 */
 #include "relax.h"
 
 #include <string.h>

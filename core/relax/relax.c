@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEPS       3
+#define STEPS       3    /* two leave 1 to 2 % more of what can go of a face; with six, it moves 1.4 times as roughly */
 #define LEAST_SPARE 0.01 /* of the cache's sum: keeps the part from vanishing where even gains nothing */
 
 /* More careful than `even`: the model is worse at large steps, which at even's caution folded a walking figure. */
