@@ -42,11 +42,11 @@ struct skinslide_canvas {
 };
 
 /* A vertex as the programs read it. */
-typedef struct ss_shown_vertex {
+typedef struct ss_vertex_attributes {
     float coordinates[3], place[3], normal[3];
     float inside; /* 1 in the patch, 0 outside */
     float values[SKINSLIDE_MOST_TARGETS];
-} ss_shown_vertex;
+} ss_vertex_attributes;
 
 /* A figure's look on one target, checked. */
 typedef struct ss_target_look {
@@ -87,9 +87,9 @@ typedef struct ss_drawing {
     ss_view view;
     ss_tessellation_work work;
     double origin[3];
-    uint8_t *in_sight;         /* [mesh->grid_count] */
-    ss_shown_vertex *vertices; /* [vertex_count] of the triangles */
-    uint32_t (*triangles)[3];  /* [triangle_count] that are seen: first the patch's, then those that hide none of it, then
+    uint8_t *in_sight;              /* [mesh->grid_count] */
+    ss_vertex_attributes *vertices; /* [vertex_count] of the triangles */
+    uint32_t (*triangles)[3];       /* [triangle_count] that are seen: first the patch's, then those that hide none of it, then
                                   those that may */
     int32_t vertex_count, triangle_count, inside_count, hiding_first;
     float *edge_value;             /* [edge_count] of the mesh's skin: NaN where the edge has no colour; NULL: none has one */

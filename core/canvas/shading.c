@@ -150,11 +150,11 @@ static void make_arrays(const ss_egl_api *gl, ss_figure_objects *objects) {
     gl->glGenVertexArrays(1, &objects->surface_array);
     gl->glBindVertexArray(objects->surface_array);
     gl->glBindBuffer(GL_ARRAY_BUFFER, objects->vertex_buffer);
-    point_to(gl, 0, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, coordinates));
-    point_to(gl, 1, 1, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, inside));
-    point_to(gl, 2, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, place));
-    point_to(gl, 3, 3, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, normal));
-    point_to(gl, 4, SKINSLIDE_MOST_TARGETS, sizeof(ss_shown_vertex), offsetof(ss_shown_vertex, values));
+    point_to(gl, 0, 3, sizeof(ss_vertex_attributes), offsetof(ss_vertex_attributes, coordinates));
+    point_to(gl, 1, 1, sizeof(ss_vertex_attributes), offsetof(ss_vertex_attributes, inside));
+    point_to(gl, 2, 3, sizeof(ss_vertex_attributes), offsetof(ss_vertex_attributes, place));
+    point_to(gl, 3, 3, sizeof(ss_vertex_attributes), offsetof(ss_vertex_attributes, normal));
+    point_to(gl, 4, SKINSLIDE_MOST_TARGETS, sizeof(ss_vertex_attributes), offsetof(ss_vertex_attributes, values));
     gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, objects->triangle_buffer);
     gl->glGenVertexArrays(1, &objects->stroke_array);
     gl->glBindVertexArray(objects->stroke_array);

@@ -157,7 +157,7 @@ static bool number_vertices(const sight *own) {
             if (own->number[drawn->mesh->triangles[t][k]] < 0)
                 own->number[drawn->mesh->triangles[t][k]] = drawn->vertex_count++;
     }
-    drawn->vertices = SS_NEW(&drawn->work.memory, ss_shown_vertex, drawn->vertex_count);
+    drawn->vertices = SS_NEW(&drawn->work.memory, ss_vertex_attributes, drawn->vertex_count);
     drawn->triangles = ss_new(&drawn->work.memory, triangles, sizeof *drawn->triangles);
     return !drawn->work.memory.failed;
 }
@@ -169,7 +169,7 @@ static void list_vertices(const sight *own) {
             const ss_posed_vertex *posed = &own->drawn->work.vertices[k];
             if (own->number[k] < 0)
                 continue;
-            ss_shown_vertex *shown = &own->drawn->vertices[own->number[k]];
+            ss_vertex_attributes *shown = &own->drawn->vertices[own->number[k]];
             memcpy(shown->coordinates, mesh->fixed[k].coordinates, sizeof shown->coordinates);
             memcpy(shown->place, posed->place, sizeof shown->place);
             memcpy(shown->normal, posed->normal, sizeof shown->normal);
