@@ -64,8 +64,8 @@ static void squares_are_those_of_logarithms(void **state) {
     }
 }
 
-/* Of one quotient at a time, so that no sum hides its error. The quotient here is half a unit off, by which its logarithm is, too,
- * however near 0 that is. */
+/* Of one quotient at a time, so that no sum hides its error. The quotient here is half a unit off, by which its logarithm is,
+ * too, however near 0 that is. */
 static void each_square_has_its_digits(void **state) {
     (void)state;
     for (double y = 1; y < 2; y += 0.0137)

@@ -275,8 +275,8 @@ static void far_from_the_origin_is_the_same(void **state) {
     }
 }
 
-/* Sizes that are no powers of two: rounding of points to float is 1e-7 of them, as under rigid motion. FAST magnifies it on edges
- * that are all the longest: there its force densities are 1e-4 of what a change of length makes them. */
+/* Sizes that are no powers of two: rounding of points to float is 1e-7 of them, as under rigid motion. FAST magnifies it on
+ * edges that are all the longest: there its force densities are 1e-4 of what a change of length makes them. */
 static void tiny_and_huge_meshes_slide_alike(void **state) {
     (void)state;
     static const skinslide_rule rules[] = {SKINSLIDE_RULE_UNIT, SKINSLIDE_RULE_RELAXED, SKINSLIDE_RULE_EVEN};
