@@ -13,7 +13,9 @@
  *     hold         45 44 %    4.8 5.8    1.6 1.1
  *     damping      45 45 %    4.6 4.7    1.2 1.1
  *     anchor       50 42 %    5.1 5.6    1.1 1.0
- *     least along  45 45 %    4.6 4.6    1.0 1.0 */
+ *     least along  45 45 %    4.6 4.6    1.0 1.0
+ *     bluntness    45 45 %    4.6 4.6    1.9 1.1
+ *     short        49 40 %    5.3 5.6    1.0 1.0 */
 #include "relax.h"
 
 #include <string.h>
