@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from pxr import Usd
 
 import skinslide
 import stages
@@ -39,8 +40,32 @@ def test_all_at_once_is_two_by_two(seed):
         assert meetings.of(number) == wanted
 
 
+def flat(x: float) -> stages.Shape:
+    """A sheet of which a side is where that of the next one is."""
+    shape = stages.grid()
+    shape.points[:] = shape.points * np.float32((1, 1, 0)) + np.float32((x, 0, 0))
+    return shape
+
+
 def test_no_points_at_all():
     assert Meetings([np.empty((0, 3), np.float32)]).of(0) == []
+
+
+def test_a_mesh_below_a_payload_that_is_not_loaded(tmp_path):
+    """Where it is defined outside of that, it is slid, and meets others as where all is loaded."""
+    stages.save(stages.new_stage(), tmp_path / "payload.usda")
+    stage = stages.new_stage()
+    stage.DefinePrim("/World/far").GetPayloads().AddPayload("./payload.usda", "/World")
+    meshes = [
+        stages.add_mesh(stage, flat(x), f"/World/{path}") for x, path in enumerate(("near", "far/body_GEO", "end"))
+    ]
+    stages.add_patch(meshes[1], stages.grid().all_faces)
+    file = str(stages.save(stage, tmp_path / "shot.usda"))
+    loaded, unloaded = (
+        [each.message for each in skinslide.check(Usd.Stage.Open(file, load), lookup="exact").problems]
+        for load in (Usd.Stage.LoadAll, Usd.Stage.LoadNone)
+    )
+    assert loaded == unloaded and sum("border points coincide" in message for message in loaded) == 2
 
 
 @pytest.mark.parametrize("step", [0.0, 1.0])
@@ -48,8 +73,7 @@ def test_check_reads_a_mesh_for_those_it_meets_alone(step, monkeypatch):
     """Of many in one place, which are copies, and of many that each meet the next along a side."""
     stage, compared = stages.new_stage(), []
     for number in range(6):
-        shape = stages.grid(centre=(0, 0, 0))
-        shape.points[:] = shape.points * np.float32((1, 1, 0)) + np.float32((step * number, 0, 0))
+        shape = flat(step * number)
         stages.add_patch(stages.add_mesh(stage, shape, f"{MESH}{number}"), shape.all_faces)
     neighbours = skinslide.Slider.neighbours
     monkeypatch.setattr(

@@ -17,6 +17,8 @@ from skinslide.stage.values import FIRST, triples_of
 
 # Odd numbers by which the bits of three coordinates become one number.
 _MIXERS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
+# Meshes below a payload that is not loaded are slid too, where they are defined outside of it.
+_LOADED_OR_NOT = Usd.PrimIsActive & Usd.PrimIsDefined & ~Usd.PrimIsAbstract
 
 
 class Neighbour(NamedTuple):
@@ -61,7 +63,7 @@ class Neighbours:
 
     def _by_space(self) -> dict[Gf.Matrix4d, list[Sdf.Path]]:
         spaces, found = UsdGeom.XformCache(FIRST), dict[Gf.Matrix4d, list[Sdf.Path]]()
-        for prim in filter(UsdGeom.Mesh, self._stage.Traverse()):
+        for prim in filter(UsdGeom.Mesh, Usd.PrimRange.Stage(self._stage, _LOADED_OR_NOT)):
             found.setdefault(spaces.GetLocalToWorldTransform(prim), []).append(prim.GetPath())
         return found
 
