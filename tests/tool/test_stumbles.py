@@ -1,6 +1,7 @@
 """Small mistakes end in one line that names the option, or the argument, and says what it must be."""
 
 import json
+import shlex
 
 import numpy as np
 import pytest
@@ -163,17 +164,18 @@ def test_a_long_list_is_summed_up(tmp_path, capfd):
     assert len(json.loads(capfd.readouterr().out)["problems"]) >= 40
 
 
-def test_what_to_do_first_is_a_command_that_runs(tmp_path, monkeypatch, capfd):
+@pytest.mark.parametrize("name", ["cache.usda", "the cache's.usda"])
+def test_what_to_do_first_is_a_command_that_runs(name, tmp_path, monkeypatch, capfd):
     """Of a stage on which nothing is set up: as it stands, but for the name of what it is to write."""
     stage = stages.new_stage()
     mesh = stages.add_mesh(stage, stages.grid())
     mesh.GetPointsAttr().Set(stages.vectors(2 * stages.grid().points), stages.FRAMES[-1])
-    stages.save(stage, tmp_path / "cache.usda")
+    stages.save(stage, tmp_path / name)
     monkeypatch.chdir(tmp_path)
-    assert main(["bake", "cache.usda", "-o", "out.usda"]) == 3
+    assert main(["bake", name, "-o", "out.usda"]) == 3
     command = capfd.readouterr().err.strip().partition("start with: ")[2]
-    assert command == "skinslide setup cache.usda -o X.skinslide --whole"
-    assert main(command.split()[1:]) == 0
+    assert command == f"skinslide setup {shlex.quote(name)} -o X.skinslide --whole"
+    assert main(shlex.split(command)[1:]) == 0
 
 
 def test_a_chunk_is_to_be_stitched(shot, tmp_path, capfd):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple, TypeAlias
@@ -256,7 +257,7 @@ def _strongest_points(prim: Usd.Prim) -> Sdf.PropertySpec | None:
 
 def _first_command(stage: Usd.Stage) -> str:
     root = stage.GetRootLayer()
-    return f"skinslide setup {'STAGE' if root.anonymous else root.identifier} -o X.skinslide --whole"
+    return f"skinslide setup {'STAGE' if root.anonymous else shlex.quote(root.identifier)} -o X.skinslide --whole"
 
 
 def _where(prim_paths: Sequence[str] | None) -> str:
