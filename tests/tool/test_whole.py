@@ -236,11 +236,11 @@ def pin_of_another_count(mesh):
     stages.set_primvar(mesh, "lips", Sdf.ValueTypeNames.FloatArray, "vertex", [1.0] * 40)
 
 
-def holed(stage, scheme=UsdGeom.Tokens.catmullClark) -> Usd.Stage:
+def holed(stage, scheme=UsdGeom.Tokens.catmullClark, holes=(300, 301)) -> Usd.Stage:
     """The skin as a subdivision surface with holes where it stretches."""
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath(SKIN))
     mesh.CreateSubdivisionSchemeAttr(scheme)
-    mesh.CreateHoleIndicesAttr([300, 301])
+    mesh.CreateHoleIndicesAttr(list(holes))
     return stage
 
 
@@ -251,7 +251,7 @@ def test_faces_without_a_limit_surface_are_left_out(interpolation, shot, tmp_pat
     character = stages.save(holed(Usd.Stage.Open(str(shot))), tmp_path / "holed.usda")
     report = setup_to_file(character, tmp_path / "x.usda", SKIN, whole=True, interpolation=interpolation)
     (note,) = [each for each in report.problems if "limit surface" in each.message]
-    says = "2 faces have no limit surface, face 300 the first, and are left out; --interpolation linear takes them"
+    says = "2 faces without limit surface are left out, face 300 the first; with --interpolation linear none is"
     assert (note.severity, note.prim, note.message) == ("note", SKIN, says)
     faces, without = (whole(tmp_path / name)[SKIN]["skin"].tolist() for name in ("x.usda", "without.usda"))
     assert faces == [face for face in without if face not in (300, 301)] != without
@@ -262,6 +262,23 @@ def test_faces_without_a_limit_surface_are_left_out(interpolation, shot, tmp_pat
         and patch.column("stretch_after")[-1] < patch.column("stretch_before")[-1]
     )
     assert main(["check", str(tmp_path / "x.usda")]) == 0
+
+
+def test_a_mesh_on_which_no_face_that_stretches_has_a_limit_surface(shot, tmp_path):
+    setup_to_file(shot, tmp_path / "without.usda", SKIN, whole=True)
+    stretched = whole(tmp_path / "without.usda")[SKIN]["skin"].tolist()
+    character = stages.save(holed(Usd.Stage.Open(str(shot)), holes=stretched), tmp_path / "holed.usda")
+    with pytest.raises(StageProblems) as bad:
+        setup_to_file(character, tmp_path / "x.usda", SKIN, whole=True)
+    (problem,) = bad.value.problems
+    assert (problem.severity, problem.prim) == ("error", SKIN)
+    assert problem.message.startswith(f"{len(stretched)} faces without limit surface are left out, ")
+
+
+def test_one_face_without_a_limit_surface_is_no_several(shot, tmp_path):
+    character = stages.save(holed(Usd.Stage.Open(str(shot)), holes=[300]), tmp_path / "holed.usda")
+    report = setup_to_file(character, tmp_path / "x.usda", SKIN, whole=True)
+    assert sum(each.message.startswith("1 face without limit surface is left out, ") for each in report.problems) == 1
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def needed_faces(
     Returns:
         Of each mesh that needs one, by its path, whether a patch needs each face, bool (F,); notes of the others and of
         faces that cannot be had, and warnings of frames beyond samples; an error for each mesh that cannot be looked
-        at.
+        at, or of which no such face can be had.
     """
     found, notes, wrong = dict[str, np.ndarray](), list[Problem](), list[Problem]()
     for prim, pose in moving:
@@ -94,9 +94,12 @@ def needed_faces(
             notes.append(_without_patch("note", path, None, never("no edge")))
             continue
         missing = _without_surface(mesh, faces) if interpolation in _BY_SURFACE else np.zeros_like(faces)
-        if missing.any():
-            notes.append(Problem("note", path, None, None, _told(missing)))
-        found[path] = faces & ~missing
+        kept = faces & ~missing
+        if kept.any():
+            found[path] = kept
+            notes += [Problem("note", path, None, None, _without(missing))] if missing.any() else []
+        else:
+            wrong.append(Problem("error", path, None, None, _without(missing)))
     return found, notes, wrong
 
 
@@ -109,10 +112,10 @@ def _without_surface(mesh: PatchedMesh, faces: np.ndarray) -> np.ndarray:
     return np.zeros_like(faces)
 
 
-def _told(missing: np.ndarray) -> str:
-    said = counted(int(np.count_nonzero(missing)), "face has", "faces have")
-    first = int(np.flatnonzero(missing)[0])
-    return f"{said} no limit surface, face {first} the first, and are left out; --interpolation linear takes them"
+def _without(missing: np.ndarray) -> str:
+    faces = np.flatnonzero(missing)
+    found = counted(len(faces), "face without limit surface is", "faces without limit surface are")
+    return f"{found} left out, face {faces[0]} the first; with --interpolation linear none is"
 
 
 def left_out(wrong: Iterable[Problem]) -> Iterator[Problem]:
