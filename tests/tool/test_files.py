@@ -275,6 +275,14 @@ def test_bytes_are_on_the_disk_before_the_name_is(shot, tmp_path, monkeypatch):
     assert calls == ["fsync", "replace"] * 2
 
 
+def test_a_system_that_cannot_be_advised(shot, tmp_path, monkeypatch):
+    """Such as macOS."""
+    monkeypatch.delattr(os, "posix_fadvise")
+    monkeypatch.delattr(os, "POSIX_FADV_DONTNEED")
+    bake_to_file(shot, tmp_path / "slid.usdc")
+    assert Sdf.Layer.FindOrOpen(str(tmp_path / "slid.usdc"))
+
+
 def test_the_disk_begins_with_what_is_saved_while_the_rest_is_baked(shot, tmp_path, monkeypatch):
     """Each part where the last one ended, so that nothing is said of bytes twice, and little is left for the end."""
     asked = []

@@ -122,7 +122,8 @@ def _remove_abandoned(output: Path) -> None:
 def begin_flush(file: str, start: int) -> int:
     """Has the disk begin with what is in a file from a byte on. Returns where that ends: all of it is flushed later."""
     with suppress(OSError), open(file, "rb") as there:
-        os.posix_fadvise(there.fileno(), start, 0, os.POSIX_FADV_DONTNEED)  # Linux then writes it, and does not wait
+        if hasattr(os, "posix_fadvise"):  # as on Linux, which then writes it, and does not wait
+            os.posix_fadvise(there.fileno(), start, 0, os.POSIX_FADV_DONTNEED)
         return os.fstat(there.fileno()).st_size
     return start
 
