@@ -41,8 +41,9 @@ skinslide_status ss_check_used(const skinslide_mesh *mesh, const float *points, 
         return ss_fail(error, SKINSLIDE_BAD_ARGUMENT, "no %s", what);
     int32_t first = INT32_MAX;
     for (int32_t c = 0; c < mesh->index_count; c++) {
-        int32_t v = mesh->face_indices[c];
-        first = v < first && !ss_is_finite(points + 3 * (int64_t)v) ? v : first;
+        const int32_t used[2] = {mesh->face_indices[c], ss_one(mesh, mesh->face_indices[c])};
+        for (int k = 0; k < 2; k++)
+            first = used[k] < first && !ss_is_finite(points + 3 * (int64_t)used[k]) ? used[k] : first;
     }
     if (first == INT32_MAX)
         return SKINSLIDE_OK;

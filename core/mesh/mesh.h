@@ -60,7 +60,7 @@ skinslide_status ss_refuse_vertex(const char *what, int32_t vertex, const float 
                                   skinslide_error *error);
 /* Names the first vertex that is not finite. */
 skinslide_status ss_check_points(const float *points, int32_t vertex_count, const char *what, skinslide_error *error);
-/* The same of the vertices that faces have; others may be anything. */
+/* The same of the vertices that faces have, and of those that these are one with; others may be anything. */
 skinslide_status ss_check_used(const skinslide_mesh *mesh, const float *points, const char *what, skinslide_error *error);
 /* The sides of the box around the rest points that are finite. */
 void ss_measure_rest(const skinslide_mesh *mesh, double size[3]);

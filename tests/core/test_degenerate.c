@@ -142,6 +142,31 @@ static void isolated_vertices_say_nothing(void **state) {
     free_mesh(&nowhere);
 }
 
+/* A vertex of no face to which another is welded counts, though: sliding reads it. */
+static void what_a_vertex_is_one_with_must_be_finite(void **state) {
+    (void)state;
+    test_mesh mesh = grid_with_isolated();
+    skinslide_mesh view = view_of(&mesh);
+    int32_t *all = all_faces(&mesh), weld[50];
+    skinslide_patch_setup setup = setup_of(all, mesh.face_count);
+    skinslide_slider *slider = NULL;
+    skinslide_error error;
+    for (int32_t v = 0; v < 50; v++)
+        weld[v] = v == 25 ? 24 : v;
+    view.weld = weld;
+    for (size_t rule = 0; rule < RULES; rule++) {
+        setup.rule = rules[rule];
+        mesh.points[3 * 24] = NAN;
+        assert_fails(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error, SKINSLIDE_BAD_POINTS,
+                     "rest points: vertex 24 is not finite: (nan, 2, 0)");
+        mesh.points[3 * 24] = mesh.points[3 * 25];
+        assert_ok(skinslide_slider_create(&view, &setup, 1, &slider, &error), &error);
+        skinslide_slider_destroy(slider);
+    }
+    free(all);
+    free_mesh(&mesh);
+}
+
 /* Rows of a grid pulled into one another at rest: edges of no length are counted, in rest and in the pose. */
 static void edges_of_no_length(void **state) {
     (void)state;
@@ -302,6 +327,7 @@ int main(void) {
         cmocka_unit_test(isolated_vertices_keep_their_bits),
         cmocka_unit_test(isolated_vertices_are_nowhere),
         cmocka_unit_test(isolated_vertices_say_nothing),
+        cmocka_unit_test(what_a_vertex_is_one_with_must_be_finite),
         cmocka_unit_test(edges_of_no_length),
         cmocka_unit_test(edges_of_no_length_do_not_fold),
         cmocka_unit_test(a_pose_in_one_place),
