@@ -51,8 +51,8 @@ void *ss_take_room(ss_room *room, int64_t count, size_t size);
 void ss_ask_room(ss_room *room, const ss_room *counted);
 /* Makes what was asked for. False if memory is short. */
 bool ss_make_room(ss_room *room);
-/* Asks the shared room for as much as was counted or, if that is NULL, makes the object's own of that size. False where memory
- * is short. */
+/* Asks the shared room for as much as was counted or, if that is NULL, makes the object's own of that size. False if memory is
+ * short. */
 bool ss_find_room(ss_room *shared, ss_room *own, const ss_room *counted);
 
 /* ---- error.c ---- */
@@ -78,7 +78,7 @@ static inline void ss_set(int *flag, int to) {
 double ss_log(double x);
 /* The logarithms of several numbers, in place: the same bits, faster. */
 void ss_logs(int32_t count, double *x);
-/* The sum of log^2(x / y), of numbers under 1e300; exactly 0 where each x is its y. */
+/* The sum of log^2(x / y), of numbers above 0 and under 1e300; exactly 0 if each x is its y. */
 double ss_sum_squared_logs(int32_t count, const double *x, const double *y);
 /* The same as processors without AVX2 do them. */
 void ss_logs_plain(int32_t count, double *x);

@@ -103,9 +103,9 @@ void ss_paving_place_at(const ss_paving *paving, int32_t slab, const double p[2]
 /* ---- approach.c ---- */
 
 enum { SS_AT_ONCE = 8 };
-/* Takes the first steps of walks to so many points: slab is where each begins, and then where a walk to it is to go on. out
- * found: which need no walk, since that slab holds them beyond doubt; their places are in places, others hold anything. Returns
- * how many slabs were entered. */
+/* Takes the first steps of walks to so many points: slab is where each begins, and then where a walk to it is to go on. found
+ * says which need no walk, since that slab holds them beyond doubt: their places are filled, those of others may hold anything.
+ * Returns how many slabs were entered. */
 int64_t ss_paving_approach(const ss_paving *paving, const double (*p)[2], int32_t slab[SS_AT_ONCE], ss_place places[SS_AT_ONCE],
                            bool found[SS_AT_ONCE]);
 /* The same as processors without AVX2 do it. */

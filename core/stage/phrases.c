@@ -1,4 +1,4 @@
-/* Words that both the core and its readers say. */
+/* Phrases that stand in messages of the core and in those of its readers. */
 #include "stage.h"
 
 const char *skinslide_stage_phrase(skinslide_phrase phrase) {

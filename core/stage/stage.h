@@ -3,8 +3,9 @@
  *     finding                                          a prim
  *     inputs ─► values ─► topology, rest, scheme       a mesh
  *                         settings (faces)             a patch
- *                         controls (textures)          a frame
- *                         follows ─► derived (times)   what follows from points */
+ *                         controls (maps, textures)    a frame
+ *                         follows ─► derived (times)
+ *                         outputs                      what follows from points */
 #ifndef SS_STAGE_H
 #define SS_STAGE_H
 

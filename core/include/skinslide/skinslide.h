@@ -135,14 +135,14 @@ typedef struct skinslide_mesh {
     size_t size; /* sizeof(skinslide_mesh) */
     int32_t vertex_count;
     int32_t face_count;
-    int32_t index_count;                      /* the sum of face_vertex_counts */
+    int32_t index_count;                      /* the sum of face_counts */
     const int32_t *face_counts;               /* [face_count] vertices of each face */
     const int32_t *face_indices;              /* [index_count] mesh vertices, face by face */
     const float *rest_points;                 /* [vertex_count][3] the pose in which nothing slides; finite where a face is */
     const skinslide_subdivision *subdivision; /* NULL: none */
     const int32_t *weld; /* [vertex_count] the vertex that each is one with, itself for most: see skinslide_weld_get. NULL: each
-                            is its own. Edges, corners, boundaries and paint are then those of the welded mesh, and the limit
-                            surface that of the faces as they are */
+                            is its own. Points, edges, corners, boundaries and paint are then those of the welded mesh, and the
+                            limit surface that of the faces as they are */
     const double *space; /* [3][3] takes points, as rows, to where lengths are taken, such as the world; it has an inverse, and
                             largest distances and slides are there. NULL: the mesh's object space */
 } skinslide_mesh;
