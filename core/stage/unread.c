@@ -1,4 +1,4 @@
-/* Finds the inputs of a patch that say something, but that its rule does not read. */
+/* Finds the inputs of a patch that would have an effect, but that its rule does not read. */
 #include "stage.h"
 
 static bool patch_has(const skinslide_stage_patch *patch, const ss_input *input, int32_t row) {
@@ -13,8 +13,8 @@ static bool patch_has(const skinslide_stage_patch *patch, const ss_input *input,
     }
 }
 
-static bool says(const skinslide_stage_patch *patch, const skinslide_stage_controls *controls, const ss_input *input,
-                 int32_t row) {
+static bool has(const skinslide_stage_patch *patch, const skinslide_stage_controls *controls, const ss_input *input,
+                int32_t row) {
     return input->shown.group == SKINSLIDE_STAGE_PATCH ? patch_has(patch, input, row) : ss_controls_have(controls, row);
 }
 
@@ -27,7 +27,7 @@ const skinslide_stage_input *skinslide_stage_next_unread(const skinslide_stage_p
          group++) {
         int32_t count, row = before && before->group == group ? ss_row_of(group, before) + 1 : 0;
         for (const ss_input *inputs = ss_inputs(group, &count); row < count; row++)
-            if (!ss_is_read_by(&inputs[row], patch->taken[SS_ROW_RULE].choice) && says(patch, controls, &inputs[row], row))
+            if (!ss_is_read_by(&inputs[row], patch->taken[SS_ROW_RULE].choice) && has(patch, controls, &inputs[row], row))
                 return &inputs[row].shown;
     }
     return NULL;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static skinslide_error told;
+static skinslide_error warning;
 
 static int32_t count_of(const skinslide_patch_result *result, const char *member) {
     return strcmp(member, "clamped_vertices") == 0    ? result->clamped_vertices
@@ -37,7 +37,7 @@ static void a_result_says_the_same(void **state) {
         skinslide_patch_result results[2] = {SKINSLIDE_PATCH_RESULT_DEFAULT, SKINSLIDE_PATCH_RESULT_DEFAULT};
         setup.rule = rules[seed % 3], controls.envelope = seed % 2 ? 3 : 1, setup.controls = &controls;
         rig r = rig_of(&mesh, setup);
-        assert_int_equal(skinslide_workspace_degraded(r.workspace, 0, 0, &told), -1);
+        assert_int_equal(skinslide_workspace_degraded(r.workspace, 0, 0, &warning), -1);
         float *points = shaken(&mesh, seed, 4);
         for (int32_t v = 0; v < 4; v++)
             memcpy(points + 3 * v, points, sizeof(float[3]));
@@ -47,10 +47,10 @@ static void a_result_says_the_same(void **state) {
             for (int32_t kind = 0; kind < kind_count(); kind++) {
                 skinslide_error words;
                 int32_t count = count_of(&results[patch], skinslide_degradation(kind, 0, NULL));
-                assert_int_equal(skinslide_workspace_degraded(r.workspace, patch, kind, &told), count);
+                assert_int_equal(skinslide_workspace_degraded(r.workspace, patch, kind, &warning), count);
                 seen[kind] += count;
                 skinslide_degradation(kind, count, &words);
-                assert_true(count == 0 || strstr(told.message, words.message) != NULL);
+                assert_true(count == 0 || strstr(warning.message, words.message) != NULL);
             }
         assert_int_equal(skinslide_workspace_degraded(r.workspace, 2, 0, NULL), -1);
         assert_int_equal(skinslide_workspace_degraded(r.workspace, -1, 0, NULL), -1);
@@ -67,20 +67,20 @@ static void a_result_says_the_same(void **state) {
 
 static void words_and_pieces(void **state) {
     (void)state;
-    skinslide_degradation(3, 1, &told);
-    assert_string_equal(told.message, "1 face turned over in the embedding");
-    skinslide_degradation(3, 2, &told);
-    assert_string_equal(told.message, "2 faces turned over in the embedding");
-    assert_null(skinslide_degradation(-1, 1, &told));
-    assert_int_equal(skinslide_workspace_degraded(NULL, 0, 0, &told), -1);
+    skinslide_degradation(3, 1, &warning);
+    assert_string_equal(warning.message, "1 face turned over in the embedding");
+    skinslide_degradation(3, 2, &warning);
+    assert_string_equal(warning.message, "2 faces turned over in the embedding");
+    assert_null(skinslide_degradation(-1, 1, &warning));
+    assert_int_equal(skinslide_workspace_degraded(NULL, 0, 0, &warning), -1);
     test_mesh sheet = quad_grid(4, 4), mesh = join_meshes(&sheet, &sheet);
     skinslide_patch_setup setup = setup_of(NULL, 0);
     skinslide_controls controls = SKINSLIDE_CONTROLS_DEFAULT;
     controls.envelope = -1, setup.controls = &controls;
     rig r = rig_of(&mesh, setup);
     float *slid = slide_with(&r, &mesh, mesh.points, NULL, NULL);
-    assert_int_equal(skinslide_workspace_degraded(r.workspace, 1, 1, &told), 1);
-    assert_string_equal(told.message, "patch all (piece 2 of 2): 1 weight or envelope outside 0..1, clamped");
+    assert_int_equal(skinslide_workspace_degraded(r.workspace, 1, 1, &warning), 1);
+    assert_string_equal(warning.message, "patch all (piece 2 of 2): 1 weight or envelope outside 0..1, clamped");
     free(slid);
     free_rig(&r);
     free_mesh(&sheet), free_mesh(&mesh);
