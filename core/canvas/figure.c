@@ -2,7 +2,6 @@
 #include "canvas.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- What is in sight ---- */
 

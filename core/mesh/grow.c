@@ -2,8 +2,6 @@
  * treat points in one place, such as those of a seam, as one point. */
 #include "mesh.h"
 
-#include <math.h>
-
 /* The faces at each place of a mesh. */
 typedef struct star {
     int32_t *place;       /* [vertex_count] the lowest vertex in the same place */

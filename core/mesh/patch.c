@@ -1,7 +1,6 @@
 /* One connected patch: its vertices, edges and loops, and what of it may slide. */
 #include "mesh.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_CORNERS = 65535 }; /* of a face, and faces at a vertex: OpenSubdiv's limit */
 

@@ -4,7 +4,6 @@
  * by sew.c. */
 #include "mesh.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,8 +3,6 @@
  * strip. */
 #include "mesh.h"
 
-#include <stdlib.h>
-
 /* Whether the faces of two corners, whose sides are the same edge, go round the same vertices. */
 static bool same_face(const ss_faces *faces, int32_t first, int32_t second) {
     int32_t count = ss_fan_size(faces, faces->corner_face[first]) + 2;

@@ -5,7 +5,6 @@
 #include "paint.h"
 
 #include <errno.h>
-#include <math.h>
 #include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>

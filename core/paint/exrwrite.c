@@ -2,7 +2,6 @@
 #include "paint.h"
 
 #include <openexr.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,7 +5,6 @@
 
 #include "paint.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { MOST_CELLS = 32768, MOST_STEPS = 8 }; /* of fine grids in all; along half a side of a face */

@@ -2,7 +2,6 @@
 #include "slide.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 void ss_lay_out_displacement(ss_patch_work *work, const ss_patch *patch, ss_room *room) {
     work->displacement = ss_take_room(room, patch->free_count, sizeof *work->displacement);

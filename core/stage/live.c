@@ -1,8 +1,6 @@
 /* What a shot sets for every patch of a file: arguments that scale or replace each patch's own settings. */
 #include "stage.h"
 
-#include <string.h>
-
 skinslide_status skinslide_stage_live_take(skinslide_stage_live *live, const skinslide_stage_input *input,
                                            const skinslide_value *value, skinslide_error *error) {
     int32_t count, row = ss_row_of(SKINSLIDE_STAGE_LIVE, input);

@@ -4,7 +4,6 @@
 #include "mesh.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { MOST_POSES = 3 };
 

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 const char *skinslide_stage_mesh_rest_source(const skinslide_stage_mesh *mesh) {
     return mesh->rest ? mesh->rest_source : "";

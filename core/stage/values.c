@@ -4,7 +4,6 @@
 
 #include "base.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
