@@ -44,7 +44,7 @@ static skinslide_status check_faces(const skinslide_stage_mesh *mesh, const floa
 static skinslide_status warn_of_others(skinslide_stage_mesh *mesh, const float *rest, const char *source,
                                        skinslide_error *error) {
     int32_t count = 0, first = 0;
-    for (int32_t v = 0; v < mesh->vertex_count; v++)
+    for (int32_t v = 0; mesh->has_faces && v < mesh->vertex_count; v++)
         if (!ss_is_finite(rest + 3 * (int64_t)v))
             first = count++ ? first : v;
     if (!count)

@@ -57,6 +57,19 @@ static void each_candidate_counts(void **state) {
     }
 }
 
+/* Which points faces have is not known then. */
+static void without_faces_no_point_is_warned_of(void **state) {
+    (void)state;
+    const float points[6] = {0, 0, 0, NAN, 0, 0};
+    skinslide_stage_mesh *mesh = NULL;
+    assert_ok(skinslide_stage_mesh_create(&mesh, &error), &error);
+    assert_ok(mesh_takes(mesh, "points", array_of("points", SKINSLIDE_VALUE_FLOAT, 3, 2, points), &error), &error);
+    skinslide_value rest = painted_as(array_of("primvars:rest", SKINSLIDE_VALUE_FLOAT, 3, 2, points), "vertex");
+    assert_ok(mesh_takes(mesh, "rest", rest, &error), &error);
+    assert_null(skinslide_stage_mesh_rest_warning(mesh));
+    skinslide_stage_mesh_destroy(mesh);
+}
+
 /* The mesh has the three points of a triangle, and a fourth. */
 static void points_of_no_face_may_be_anything(void **state) {
     (void)state;
@@ -154,6 +167,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_candidate_counts),
         cmocka_unit_test(points_of_no_face_may_be_anything),
+        cmocka_unit_test(without_faces_no_point_is_warned_of),
         cmocka_unit_test(a_bad_candidate_is_not_passed_over),
         cmocka_unit_test(bad_rest_points_are_named),
         cmocka_unit_test(the_default_of_points_is_named),
