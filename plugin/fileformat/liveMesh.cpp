@@ -61,10 +61,10 @@ LiveMesh::~LiveMesh() {
 }
 
 // One message for a time, whatever is asked for there; one in all where the set-up is what fails.
-void LiveMesh::say(double time, const std::string &message) {
+void LiveMesh::warnOfFailure(double time, const std::string &message) {
     {
         std::lock_guard<std::mutex> lock(_mutex);
-        if (!_said.insert(_problem.empty() ? frameText(time) : "").second)
+        if (!_warned.insert(_problem.empty() ? frameText(time) : "").second)
             return;
     }
     warn(time, message);
@@ -74,7 +74,7 @@ void LiveMesh::say(double time, const std::string &message) {
 void LiveMesh::warnOnce(const std::string &what, double time, const std::string &message) {
     {
         std::lock_guard<std::mutex> lock(_mutex);
-        if (!_said.insert(what).second)
+        if (!_warned.insert(what).second)
             return;
     }
     warn(time, message);
@@ -85,7 +85,7 @@ void LiveMesh::warn(double time, const std::string &message) const {
 }
 
 // Points that pass as they are.
-void LiveMesh::sayFaults(double time, const VtVec3fArray &cached) {
+void LiveMesh::warnOfFaults(double time, const VtVec3fArray &cached) {
     int32_t passed = 0;
     skinslide_error warning;
     if (skinslide_slider_check_points(_slider, floatsOf(cached), &passed, &warning, nullptr) == SKINSLIDE_OK && passed)
@@ -93,7 +93,7 @@ void LiveMesh::sayFaults(double time, const VtVec3fArray &cached) {
 }
 
 // What is degraded: of each kind the first frame at which a patch is.
-void LiveMesh::sayDegraded(double time, const skinslide_workspace *workspace) {
+void LiveMesh::warnOfDegraded(double time, const skinslide_workspace *workspace) {
     skinslide_error warning;
     for (int32_t patch = 0; skinslide_workspace_degraded(workspace, patch, 0, nullptr) >= 0; patch++)
         for (int32_t kind = 0, count = 0; (count = skinslide_workspace_degraded(workspace, patch, kind, &warning)) >= 0; kind++)
@@ -101,7 +101,7 @@ void LiveMesh::sayDegraded(double time, const skinslide_workspace *workspace) {
                 warnOnce(TfStringPrintf("patch %d %d", patch, kind), time, warning.message);
 }
 
-void LiveMesh::sayFaults(const Derived &derived, double time) {
+void LiveMesh::warnOfFaults(const Derived &derived, double time) {
     int32_t faults = 0;
     skinslide_error warning;
     if (skinslide_stage_derived_faults(_mesh->derivation.get(), derived.output, derived.cached.at(time), &faults, &warning,
@@ -254,9 +254,9 @@ Frame LiveMesh::slide(double time) {
         giveBack(std::move(work));
         throw;
     }
-    sayDegraded(time, work.workspace.get());
+    warnOfDegraded(time, work.workspace.get());
     giveBack(std::move(work));
-    sayFaults(time, cached);
+    warnOfFaults(time, cached);
     int arrays = record.value().IsHolding<VtVec3fArray>() ? 1 : 2;
     return {VtValue(slid), cached, turns, (arrays * slid.size() + turns.size()) * sizeof(GfVec3f)};
 }
@@ -265,7 +265,7 @@ Frame LiveMesh::solve(double time) {
     try {
         return slide(time);
     } catch (const std::exception &bad) {
-        say(time, std::string(bad.what()) + "; the points are those of the cache");
+        warnOfFailure(time, std::string(bad.what()) + "; the points are those of the cache");
         VtValue points = asDeclared(_mesh->points.at(time));
         return {points, {}, {}, points.IsArrayValued() ? points.GetArraySize() * sizeof(GfVec3f) : 0};
     }
@@ -313,10 +313,10 @@ VtValue LiveMesh::derived(const Derived &derived, double time) {
         VtVec3dArray doubles(output->is_double ? static_cast<size_t>(output->count) : 0);
         void *out = output->is_double ? static_cast<void *>(doubles.data()) : floats.data();
         call(skinslide_stage_derived_value, _mesh->derivation.get(), output, derived.cached.at(time), poses.data(), count, out);
-        sayFaults(derived, time);
+        warnOfFaults(derived, time);
         return output->is_double ? VtValue(doubles) : VtValue(floats);
     } catch (const std::exception &bad) {
-        say(time, std::string(output->name) + " cannot be recomputed, so they are blocked here: " + bad.what());
+        warnOfFailure(time, std::string(output->name) + " cannot be recomputed, so they are blocked here: " + bad.what());
         return VtValue(SdfValueBlock());
     }
 }

@@ -23,7 +23,7 @@ class LiveMesh {
     }
     // Each gives the value at a time of the layer, Attribute::defaultTime where the mesh has no samples. Where the points
     // cannot be slid there is one message for the mesh and time, and the cache's own value; where what follows from them cannot
-    // be recomputed, a message and a block. What is degraded, such as folded faces, is said once of each kind and patch.
+    // be recomputed, a message and a block. What is degraded, such as folded faces, is warned of once for each kind and patch.
     VtValue points(double time);
     VtValue extent(double time);
     VtValue derived(const Derived &derived, double time);
@@ -47,12 +47,12 @@ class LiveMesh {
     skinslide_workspace_options workspaceOptions();
     Work takeWork();
     void giveBack(Work work);
-    void say(double time, const std::string &message);
+    void warnOfFailure(double time, const std::string &message);
     void warn(double time, const std::string &message) const;
     void warnOnce(const std::string &what, double time, const std::string &message);
-    void sayFaults(double time, const VtVec3fArray &cached);
-    void sayFaults(const Derived &derived, double time);
-    void sayDegraded(double time, const skinslide_workspace *workspace);
+    void warnOfFaults(double time, const VtVec3fArray &cached);
+    void warnOfFaults(const Derived &derived, double time);
+    void warnOfDegraded(double time, const skinslide_workspace *workspace);
 
     const std::shared_ptr<const PatchedMesh> _mesh;
     const skinslide_lookup _lookup;
@@ -62,7 +62,7 @@ class LiveMesh {
     std::string _problem; // why there is no slider, or no workspace
     std::mutex _mutex;    // of what follows
     std::vector<Work> _idle;
-    std::set<std::string> _said;
+    std::set<std::string> _warned;
 };
 
 } // namespace skinslide

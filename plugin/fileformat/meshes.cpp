@@ -32,7 +32,7 @@ bool mentionsSchema(const std::string &name) {
     return TfStringStartsWith(name, skinslide_stage_schema());
 }
 
-// Names of properties are not looked at: those that count for nothing keep no mesh from being slid, and check says them.
+// Names of properties are not looked at: those that count for nothing keep no mesh from being slid, and check names them.
 Found search(Composition &composition) {
     Found found;
     composition.traverse([&](const Prim &prim) {
@@ -133,7 +133,7 @@ Finding find(Composition &composition, const Found &found, const Prim &prim, con
     return make<Finding>(skinslide_stage_find, &facts);
 }
 
-void say(const SdfPath &prim, const skinslide_stage_finding &finding, std::vector<std::string> *problems) {
+void addProblems(const SdfPath &prim, const skinslide_stage_finding &finding, std::vector<std::string> *problems) {
     for (int32_t i = 0; i < finding.problem_count; i++) {
         const skinslide_stage_problem *problem = finding.problems[i];
         std::string where = prim == SdfPath::AbsoluteRootPath() ? "" : prim.GetString() + ": ";
@@ -143,12 +143,12 @@ void say(const SdfPath &prim, const skinslide_stage_finding &finding, std::vecto
     }
 }
 
-void sayUncomposed(const Composition &composition, std::vector<std::string> *problems) {
+void addUncomposed(const Composition &composition, std::vector<std::string> *problems) {
     for (const auto &[prim, message] : composition.errors()) {
         std::string line = TfStringJoin(TfStringTokenize(message), " ");
         skinslide_stage_prim facts = SKINSLIDE_STAGE_PRIM_DEFAULT;
         facts.uncomposed = line.c_str();
-        say(prim, *make<Finding>(skinslide_stage_find, &facts), problems);
+        addProblems(prim, *make<Finding>(skinslide_stage_find, &facts), problems);
     }
 }
 
@@ -309,7 +309,7 @@ void readDerived(Composition &composition, const Prim &prim, PatchedMesh *mesh, 
     }
 }
 
-void sayWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
+void addWarnings(const PatchedMesh &mesh, std::vector<std::string> *problems) {
     for (const char *warning :
          {skinslide_stage_mesh_rest_warning(mesh.mesh.get()), skinslide_stage_mesh_warning(mesh.mesh.get()),
           skinslide_stage_mesh_space_warning(mesh.mesh.get())}) {
@@ -340,7 +340,7 @@ std::shared_ptr<const PatchedMesh> readMesh(Composition &composition, const Foun
     if (std::any_of(mesh->patches.begin(), mesh->patches.end(), [](const Patch &patch) { return patch.needsSubdivision(); }))
         readGroup(composition, prim, SKINSLIDE_STAGE_SUBDIVISION, mesh->mesh.get());
     mesh->times = timesOf(*mesh);
-    sayWarnings(*mesh, problems);
+    addWarnings(*mesh, problems);
     readDerived(composition, prim, mesh.get(), problems);
     return mesh;
 }
@@ -359,7 +359,7 @@ std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composit
         // Without opinions of its own on the mesh a file just passes on what another computes.
         if (!other.empty() && !composition.root()->GetPrimAtPath(prim.path()))
             continue;
-        say(prim.path(), *finding, problems);
+        addProblems(prim.path(), *finding, problems);
         try {
             if (!finding->slides)
                 continue;
@@ -372,7 +372,7 @@ std::vector<std::shared_ptr<const PatchedMesh>> readMeshes(Composition &composit
     skinslide_error error;
     if (!any && skinslide_stage_nothing(nullptr, &error))
         problems->push_back(error.message);
-    sayUncomposed(composition, problems);
+    addUncomposed(composition, problems);
     return meshes;
 }
 
