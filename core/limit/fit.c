@@ -17,8 +17,8 @@
  *     (L'NL + s D'(uu' + t) D) x = -grad E / 2                                u = e / |e|
  *
  * whose matrix differs from frame to frame. The preconditioner does not: it is factored once for a shot, from matrices of
- * numbers. It splits the move of a vertex into that across and that along the plane of its own sample, whose normal m is n made
- * all but a unit again: with n itself, a little of each would count as the other.
+ * numbers. It splits the move of a vertex into that across and that along the plane of its own sample. The normal m of that
+ * plane is n, lengthened to nearly a unit: with n itself, a little of each would count as the other.
  *
  *     m (L'L + s t D'D)^-1 m' + (1 - mm') (s (1/2 + t) D'D + C)^-1 (1 - mm')      1/2 the mean of uu' in the plane
  *
