@@ -580,8 +580,8 @@ SKINSLIDE_API const char *skinslide_degradation(int32_t kind, int32_t count, ski
 
 /* The same of a patch in the last frame that this workspace slid, measured or not.
  *   warning  out  if there are any, "patch elbow: 3 faces turned over in the embedding"; may be NULL
- * Returns the count; -1 beyond the last patch or kind, before the first frame, and after a frame that could not be finished. One
- * thread at a time for a workspace. */
+ * Returns the count; -1 beyond the last patch or kind, before the first frame, and after a frame that could not be finished.
+ * One thread at a time for a workspace. */
 SKINSLIDE_API int32_t skinslide_workspace_degraded(const skinslide_workspace *workspace, int32_t patch, int32_t kind,
                                                    skinslide_error *warning);
 
