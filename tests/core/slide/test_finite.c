@@ -232,11 +232,11 @@ static void faults_off_the_patch_pass(void **state) {
     float *clean = random_pose(&mesh, 3), *faulty = copy_points(&mesh);
     for (skinslide_interpolation way = SKINSLIDE_INTERPOLATION_LINEAR; way <= SKINSLIDE_INTERPOLATION_LIMIT; way++) {
         rig r = {slider_of_middle(&mesh, way), NULL};
-        skinslide_error error, told;
+        skinslide_error error, warning;
         assert_ok(skinslide_workspace_create(r.slider, NULL, &r.workspace, &error), &error);
         memcpy(faulty, clean, POINT_BYTES(&mesh));
         int32_t passed;
-        assert_ok(skinslide_slider_check_points(r.slider, clean, &passed, &told, &error), &error);
+        assert_ok(skinslide_slider_check_points(r.slider, clean, &passed, &warning, &error), &error);
         assert_int_equal(passed, 0);
         for (int32_t v = 0; v < mesh.vertex_count; v++)
             if (!is_read(v))
@@ -249,10 +249,10 @@ static void faults_off_the_patch_pass(void **state) {
             assert_same_bytes(b.slid + 3 * v, expected + 3 * v, sizeof(float[3]));
             assert_true(a.stretch[v] == b.stretch[v] && a.slide[v] == b.slide[v]);
         }
-        assert_ok(skinslide_slider_check_points(r.slider, faulty, &passed, &told, &error), &error);
+        assert_ok(skinslide_slider_check_points(r.slider, faulty, &passed, &warning, &error), &error);
         assert_int_equal(passed, mesh.vertex_count - READ);
         const char *says = "64 points that no patch uses are not finite, and stay as they are: vertex 0, the first, at (inf, ";
-        assert_memory_equal(told.message, says, strlen(says));
+        assert_memory_equal(warning.message, says, strlen(says));
         free_outcome(&a), free_outcome(&b);
         free_rig(&r);
     }
@@ -278,9 +278,10 @@ static void faults_at_the_patch_fail(void **state) {
     assert_fails(skinslide_slider_check_points(r.slider, NULL, &passed, NULL, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no points");
     points[3 * 22] = 2, points[0] = NAN;
-    skinslide_error told;
-    assert_ok(skinslide_slider_check_points(r.slider, points, &passed, &told, &error), &error);
-    assert_string_equal(told.message, "1 point that no patch uses is not finite, and stays as it is: vertex 0 at (nan, 0, 0)");
+    skinslide_error warning;
+    assert_ok(skinslide_slider_check_points(r.slider, points, &passed, &warning, &error), &error);
+    assert_string_equal(warning.message,
+                        "1 point that no patch uses is not finite, and stays as it is: vertex 0 at (nan, 0, 0)");
     free(points), free(slid);
     free_rig(&r);
     free_mesh(&mesh);

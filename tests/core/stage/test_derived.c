@@ -196,25 +196,25 @@ static void faults_are_counted(void **state) {
     (void)state;
     float faulty[3 * VERTICES] = {[1] = NAN};
     scene s = set_up();
-    skinslide_error told;
+    skinslide_error warning;
     int32_t faults = 7;
     const skinslide_value good = painted_as(vectors("primvars:normals", VERTICES), "vertex"), few = vectors("x", 5);
     const skinslide_value bad = array_of("primvars:normals", SKINSLIDE_VALUE_FLOAT, 3, VERTICES, faulty);
     take(&s, "primvars:", "normals", good, frames, 4);
     const skinslide_stage_output *output = skinslide_stage_derived_output(s.derived, 0);
-    assert_ok(skinslide_stage_derived_faults(s.derived, output, &good, &faults, &told, &error), &error);
+    assert_ok(skinslide_stage_derived_faults(s.derived, output, &good, &faults, &warning, &error), &error);
     assert_int_equal(faults, 0);
     assert_ok(skinslide_stage_derived_faults(s.derived, output, &few, &faults, NULL, &error), &error);
     assert_int_equal(faults, 0);
-    assert_ok(skinslide_stage_derived_faults(s.derived, output, &bad, &faults, &told, &error), &error);
+    assert_ok(skinslide_stage_derived_faults(s.derived, output, &bad, &faults, &warning, &error), &error);
     assert_int_equal(faults, 1);
-    assert_string_equal(told.message,
+    assert_string_equal(warning.message,
                         "primvars:normals has 1 value that is not finite, which passes as it is: number 0 is (0, nan, 0)");
     faulty[6] = INFINITY;
-    assert_ok(skinslide_stage_derived_faults(s.derived, output, &bad, &faults, &told, &error), &error);
-    assert_string_equal(told.message, "primvars:normals has 2 values that are not finite, which pass as they are: number 0, "
-                                      "the first, is (0, nan, 0)");
-    assert_fails(skinslide_stage_derived_faults(NULL, output, &bad, &faults, &told, &error), &error, SKINSLIDE_BAD_ARGUMENT,
+    assert_ok(skinslide_stage_derived_faults(s.derived, output, &bad, &faults, &warning, &error), &error);
+    assert_string_equal(warning.message, "primvars:normals has 2 values that are not finite, which pass as they are: number 0, "
+                                         "the first, is (0, nan, 0)");
+    assert_fails(skinslide_stage_derived_faults(NULL, output, &bad, &faults, &warning, &error), &error, SKINSLIDE_BAD_ARGUMENT,
                  "no such output, or no place for how many faults it has");
     tear_down(&s);
 }
