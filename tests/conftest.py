@@ -1,5 +1,6 @@
 """Fixtures of several folders."""
 
+import signal
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -8,6 +9,11 @@ import pytest
 
 import skinslide  # noqa: F401 (registers the file format before any test opens a layer, when USD takes no more)
 from repository import load
+
+
+def pytest_configure() -> None:
+    # A shell's jobs in the background ignore SIGINT, as would then every process that tests start and interrupt.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
