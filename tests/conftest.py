@@ -12,8 +12,11 @@ from repository import load
 
 
 def pytest_configure() -> None:
-    # A shell's jobs in the background ignore SIGINT, as would then every process that tests start and interrupt.
+    # A shell's jobs in the background ignore SIGINT, and those of nohup SIGHUP. So would all processes that tests start
+    # and signal, but for a handler here, which is not handed down.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: None)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
