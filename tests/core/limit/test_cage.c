@@ -319,28 +319,18 @@ static void long_faces_keep_their_surface(void **state) {
 }
 
 /* The roughest that a slide is, while the tube is bent from 60 degrees to 130. */
-static double roughest(const test_mesh *mesh, skinslide_interpolation interpolation) {
+static double roughest_bend(const test_mesh *mesh, skinslide_interpolation interpolation) {
     rig r = subdivided_rig(mesh, &catmull_clark, by_rule(SKINSLIDE_RULE_EVEN, interpolation));
-    float *slid[3] = {0};
-    double most = 0;
-    for (int frame = 0; frame <= 140; frame++) {
-        float *points = bend(mesh, 60 + 0.5 * frame);
-        free(slid[0]);
-        slid[0] = slid[1], slid[1] = slid[2], slid[2] = slide_with(&r, mesh, points, NULL, NULL);
-        if (frame > 1)
-            most = fmax(most, largest_second_difference(slid, mesh->vertex_count));
-        free(points);
-    }
-    for (int k = 0; k < 3; k++)
-        free(slid[k]);
+    double roughest = roughest_slide(&r, mesh, bend, 60, 130, 140);
     free_rig(&r);
-    return most;
+    return roughest;
 }
 
 static void a_crook_is_smooth_in_time(void **state) {
     (void)state;
     test_mesh mesh = coarse_tube(INSIDE);
-    double limit = roughest(&mesh, SKINSLIDE_INTERPOLATION_LIMIT), linear = roughest(&mesh, SKINSLIDE_INTERPOLATION_LINEAR);
+    double limit = roughest_bend(&mesh, SKINSLIDE_INTERPOLATION_LIMIT),
+           linear = roughest_bend(&mesh, SKINSLIDE_INTERPOLATION_LINEAR);
     assert_true(limit <
                 1.5 * linear); /* 1.2 measured, 3.1 where crumpled samples only count less, and 70 where all count alike */
     free_mesh(&mesh);
@@ -548,25 +538,18 @@ static void damping_does_not_jump_between_faces(void **state) {
     free_mesh(&mesh);
 }
 
+static float *spiked(const test_mesh *mesh, double height) {
+    float *points = copy_points(mesh), z = (float)height;
+    points[3 * 40 + 2] = z, points[3 * 41 + 2] = -z, points[3 * 42 + 2] = z;
+    return points;
+}
+
 /* The largest second difference while a spike grows, until vertices that it drags are held back. */
 static double largest_jerk(const test_mesh *mesh, skinslide_interpolation interpolation) {
-    enum { STEPS = 1600 };
     rig r = subdivided_rig(mesh, &catmull_clark, chosen(interpolation));
-    float *slid[3] = {0};
-    double most = 0;
-    for (int k = 0; k <= STEPS; k++) {
-        float *points = copy_points(mesh), height = 30.0f * (float)k / STEPS;
-        points[3 * 40 + 2] = height, points[3 * 41 + 2] = -height, points[3 * 42 + 2] = height;
-        free(slid[0]);
-        slid[0] = slid[1], slid[1] = slid[2], slid[2] = slide_with(&r, mesh, points, NULL, NULL);
-        if (k > 1)
-            most = fmax(most, largest_second_difference(slid, mesh->vertex_count));
-        free(points);
-    }
-    for (int k = 0; k < 3; k++)
-        free(slid[k]);
+    double largest = roughest_slide(&r, mesh, spiked, 0, 30, 1600);
     free_rig(&r);
-    return most;
+    return largest;
 }
 
 static void vertices_are_held_back_without_a_jerk(void **state) {

@@ -7,13 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool all_finite(const float *values, int64_t count) {
-    for (int64_t i = 0; i < count; i++)
-        if (!isfinite(values[i]))
-            return false;
-    return true;
-}
-
 /* ---- Frames ---- */
 
 /* Some vertices, or all, at the ends of the range, which is further than any two of them may be apart. */

@@ -2,6 +2,7 @@
 #include "distance.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 typedef struct vector {
     double x, y, z;
@@ -70,4 +71,21 @@ double largest_second_difference(float *const poses[3], int32_t vertex_count) {
     for (int32_t v = 0; v < vertex_count; v++)
         largest = fmax(largest, second_difference(poses, v));
     return largest;
+}
+
+double roughest_slide(const rig *r, const test_mesh *mesh, test_motion motion, double from, double to, int steps) {
+    float *slid[3] = {0};
+    double roughest = 0;
+    for (int i = 0; i <= steps; i++) {
+        float *points = motion(mesh, from + (to - from) * i / steps);
+        free(slid[0]);
+        slid[0] = slid[1], slid[1] = slid[2];
+        slid[2] = slide_with(r, mesh, points, NULL, NULL);
+        if (i >= 2)
+            roughest = fmax(roughest, largest_second_difference(slid, mesh->vertex_count));
+        free(points);
+    }
+    for (int k = 0; k < 3; k++)
+        free(slid[k]);
+    return roughest;
 }

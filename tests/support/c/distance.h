@@ -11,4 +11,9 @@ double distance_to_mesh(const test_mesh *mesh, const float *points, const float 
 /* How roughly points move: the largest |p0 - 2 p1 + p2| of three successive poses [vertex_count][3]. */
 double largest_second_difference(float *const poses[3], int32_t vertex_count);
 
+/* The points of a mesh at a moment of a motion, to be freed. */
+typedef float *(*test_motion)(const test_mesh *mesh, double moment);
+/* The largest of a slide by a rig, while a motion goes from one moment to another in so many steps. */
+double roughest_slide(const rig *r, const test_mesh *mesh, test_motion motion, double from, double to, int steps);
+
 #endif

@@ -86,6 +86,27 @@ float *slide_with(const rig *r, const test_mesh *mesh, const float *points, cons
     return slid;
 }
 
+bool all_finite(const float *values, int64_t count) {
+    for (int64_t i = 0; i < count; i++)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+void expect_finite_slides(const test_mesh *mesh, skinslide_patch_setup choices, uint64_t poses) {
+    rig r = rig_of(mesh, choices);
+    float *slid = slide_with(&r, mesh, mesh->points, NULL, NULL);
+    assert_same_bytes(slid, mesh->points, POINT_BYTES(mesh));
+    free(slid);
+    for (uint64_t seed = 0; seed < poses; seed++) {
+        float *points = random_pose(mesh, seed);
+        slid = slide_with(&r, mesh, points, NULL, NULL);
+        assert_true(all_finite(slid, 3 * (int64_t)mesh->vertex_count));
+        free(points), free(slid);
+    }
+    free_rig(&r);
+}
+
 double (*held_uv_of(const ss_patch *patch, const float *rest_points))[2] {
     double(*uv)[2] = calloc((size_t)patch->vertex_count, sizeof *uv);
     skinslide_error error;

@@ -46,6 +46,9 @@ void free_rig(rig *r);
 /* Slides one frame; the caller frees the points. results may be NULL. */
 float *slide_with(const rig *r, const test_mesh *mesh, const float *points, const skinslide_controls *controls,
                   skinslide_patch_result *results);
+bool all_finite(const float *values, int64_t count);
+/* Rest keeps its bits, and so many random poses give finite points. */
+void expect_finite_slides(const test_mesh *mesh, skinslide_patch_setup choices, uint64_t poses);
 
 /* Where the plane rule puts fixed vertices, with free ones at 0: [vertex_count][2], to be freed. */
 double (*held_uv_of(const ss_patch *patch, const float *rest_points))[2];
