@@ -66,6 +66,6 @@ def can_name_patch(name: str) -> bool:
     return bool(lib.skinslide_stage_can_name_patch(name.encode(errors="replace")))
 
 
-def say(saying: str) -> str:
+def phrase(name: str) -> str:
     """Words that the core says too: no_type, no_file, irregular, unreadable."""
-    return text(lib.skinslide_stage_phrase(getattr(lib, f"SKINSLIDE_PHRASE_{saying.upper()}")))
+    return text(lib.skinslide_stage_phrase(getattr(lib, f"SKINSLIDE_PHRASE_{name.upper()}")))

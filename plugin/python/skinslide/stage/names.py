@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pxr import Usd, UsdGeom
 
-from skinslide.arrays.schema import say
+from skinslide.arrays.schema import phrase
 from skinslide.problems import NO_SUCH_PRIM, Fault, in_place_of
 from skinslide.stage import schema
 
@@ -18,7 +18,7 @@ def prim_of_type(stage: Usd.Stage, path: str, kind: type[Usd.SchemaBase], named:
     if not prim:
         raise Fault(named + no_such_prim(stage, path, kind))
     if not prim.IsA(kind):
-        other = f"is a {prim.GetTypeName() or say('no_type')}, not a {kind.__name__}"
+        other = f"is a {prim.GetTypeName() or phrase('no_type')}, not a {kind.__name__}"
         raise Fault(f"{named}{other}; {_of_kind(stage, path, kind)}")
     return prim
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pxr import Ar, Sdf, Tf, Usd
 
-from skinslide.arrays.schema import say
+from skinslide.arrays.schema import phrase
 from skinslide.arrays.values import check_text
 from skinslide.problems import PATH_TOO_LONG, Fault, StageError, usd_message
 from skinslide.registration import registered
@@ -79,7 +79,7 @@ def why_not_opened(path: str, error: Exception) -> str:
             if fault.errno in (errno.EACCES, errno.ELOOP):  # of others, a resolver may know it under this name
                 return fault.strerror or str(fault)
         if not Ar.GetResolver().Resolve(path):
-            return PATH_TOO_LONG if os.path.exists(path) else say("no_file")
+            return PATH_TOO_LONG if os.path.exists(path) else phrase("no_file")
         return usd_message(error)
     return "it is not text"
 

@@ -29,27 +29,27 @@ def read_meshes(stage: Usd.Stage, prim_paths: Sequence[str] | None = None) -> tu
 def _read_mesh(found: FoundMesh, neighbours: Neighbours, problems: list[Problem]) -> PatchedMesh | None:
     prim, path = found.prim, str(found.prim.GetPath())
 
-    def say(faults: Sequence[str], patch: str | None = None) -> None:
+    def add(faults: Sequence[str], patch: str | None = None) -> None:
         problems.extend(Problem("error", path, patch, None, fault) for fault in faults)
 
     try:
         skinning = Skinning(prim) if found.is_skinned else None
     except Fault as fault:
-        say([str(fault)])
+        add([str(fault)])
         return None
     meaning, faults = take_mesh(prim, skinning)
     faults += take_space(prim, meaning) if meaning.has_faces else []
-    say(faults)
+    add(faults)
     if not meaning.has_faces:
         return None
     read = list(read_patches(prim, dict.fromkeys(found.patches), meaning, neighbours))
     for name, _, wrong in read:
-        say(wrong, name)
+        add(wrong, name)
     animation = [good for _, good, _ in read if good]
     if faults or not animation:
         return None
     faults = take_subdivision(prim, meaning) if any(each.needs_subdivision for each in animation) else []
-    say(faults)
+    add(faults)
     if faults:
         return None
     mesh = PatchedMesh.of(prim, meaning, animation, skinning, neighbours)

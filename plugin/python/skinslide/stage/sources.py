@@ -12,7 +12,7 @@ from typing import Any
 
 from pxr import Ar, Sdf, Tf
 
-from skinslide.arrays.schema import say
+from skinslide.arrays.schema import phrase
 from skinslide.problems import StageError
 
 EXTENSION = ".skinslide"
@@ -27,7 +27,7 @@ def not_opened(what: object, why: str) -> StageError:
 def check_regular(file: str, named: str = "") -> None:
     """Raises StageError for a file that is irregular; `named` says where it stands."""
     if is_irregular(file):
-        raise not_opened(f"{file}{named}", f"it {say('irregular')}")
+        raise not_opened(f"{file}{named}", f"it {phrase('irregular')}")
 
 
 def is_irregular(file: str) -> bool:

@@ -12,7 +12,7 @@ from pxr import Sdf, Tf, Usd, UsdGeom
 
 from skinslide.arrays.fetched import NOTHING, Asset, Other, Value
 from skinslide.arrays.meaning import Taker
-from skinslide.arrays.schema import DEFAULT_TIME, STILL, Input, say
+from skinslide.arrays.schema import DEFAULT_TIME, STILL, Input, phrase
 from skinslide.problems import MOST_FRAMES, Fault, UsageError, noting, usd_message
 
 Span = tuple[float, float]  # first and last moment
@@ -151,7 +151,7 @@ def _get(attribute: Usd.Attribute, time: Usd.TimeCode) -> object:
     try:
         return attribute.Get(time)
     except Tf.ErrorException as error:
-        raise Fault(f"{attribute.GetName()} {say('unreadable')}: {usd_message(error)}") from error
+        raise Fault(f"{attribute.GetName()} {phrase('unreadable')}: {usd_message(error)}") from error
 
 
 def _plain(value: object, type_name: str) -> object:

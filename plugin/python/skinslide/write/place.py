@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from skinslide.arrays.schema import say
+from skinslide.arrays.schema import phrase
 from skinslide.problems import PATH_TOO_LONG, UsageError
 from skinslide.write.replacing import partial_name
 
@@ -67,7 +67,7 @@ def _fault(output: Path, made: Path | None) -> str | None:
     if target.is_dir():
         return "is a folder"
     if target.exists() and not target.is_file():
-        return say("irregular")
+        return phrase("irregular")
     if len(os.fsencode(partial_name(target))) + _OF_USD > os.pathconf(folder, "PC_NAME_MAX"):  # on Linux 255
         return "the name is too long"
     if not os.access(folder, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
