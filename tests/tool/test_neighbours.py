@@ -18,7 +18,7 @@ def meet(one: np.ndarray, other: np.ndarray) -> bool:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_all_at_once_is_two_by_two(seed):
-    """On a lattice on which many meet; some sets are the same, some empty, some have points that are nowhere."""
+    """On a lattice on which many meet; some sets are the same, empty or far, or have points that are nowhere."""
     dice = np.random.default_rng(seed)
     sets = [dice.integers(-9, 9, (dice.integers(0, 12), 3)).astype(np.float32) for _ in range(12)]
     sets += [
@@ -27,6 +27,9 @@ def test_all_at_once_is_two_by_two(seed):
         sets[2][::-1],
         np.zeros((1, 3), np.float32),
         -np.zeros((1, 3), np.float32),
+        sets[5] + np.float32(1000),  # far from all but the next, which it may touch in a corner
+        sets[5][:1] + np.float32(1000),
+        sets[6] - np.float32(1000),  # and from all
     ]
     for points in sets[3:5]:
         points[::2, 1] = (np.nan, np.inf)[seed % 2]

@@ -73,18 +73,24 @@ class Neighbours:
 
 
 class Meetings:
-    """Which of some sets of points share a place: all places are sorted at once, those of equal sets but once."""
+    """Which of some sets of points share a place: all places are sorted at once, those of equal sets but once.
+
+    Places of sets whose boxes touch no other's are not.
+    """
 
     def __init__(self, sets: Iterable[np.ndarray]):
         self._kind = list[int]()  # of each set: those that are the same are of a kind
-        places, kinds = list[np.ndarray](), dict[bytes, int]()
+        places, boxes, kinds = list[np.ndarray](), list[np.ndarray](), dict[bytes, int]()
         for points in sets:
-            own = _places(points)
+            finite = points[np.isfinite(points).all(axis=1)].astype(np.float32)
+            own = _places(finite)
             kind = kinds.setdefault(sha256(own.data).digest(), len(kinds))
             self._kind.append(kind)
             if kind == len(places):
                 places.append(own)
-        self._meet = _shared(places)
+                boxes.append(_box(finite))
+        touched = _touched(boxes)
+        self._meet = _shared([own if touched[kind] else own[:0] for kind, own in enumerate(places)])
 
     def of(self, number: int) -> list[int]:
         """The sets that a set shares a place with, in order, but for those that are the same."""
@@ -93,10 +99,24 @@ class Meetings:
 
 
 def _places(points: np.ndarray) -> np.ndarray:
-    """A number (n,) for each of the points that are finite, the same for the same place."""
-    finite = points[np.isfinite(points).all(axis=1)].astype(np.float32) + np.float32(0)  # -0 is where 0 is
-    bits = np.ascontiguousarray(finite).view(np.uint32).astype(np.uint64)
+    """A number (n,) for each point, the same for the same place."""
+    bits = np.ascontiguousarray(points + np.float32(0)).view(np.uint32).astype(np.uint64)  # -0 is where 0 is
     return (bits * _MIXERS).sum(axis=1, dtype=np.uint64)
+
+
+def _box(points: np.ndarray) -> np.ndarray:
+    """The least and the most of each coordinate (2, 3); of no points a box that touches none."""
+    ends = ((np.minimum, np.inf), (np.maximum, -np.inf))
+    return np.array([end.reduce(points, axis=0, initial=nothing) for end, nothing in ends])
+
+
+def _touched(boxes: list[np.ndarray]) -> list[bool]:
+    """Whether another box touches each."""
+    low, high = np.array(boxes).reshape(-1, 2, 3).transpose(1, 2, 0)
+    touching = (
+        ((low <= end[:, None]) & (high >= begin[:, None])).all(axis=0) for begin, end in zip(low.T, high.T, strict=True)
+    )
+    return [bool(np.count_nonzero(each) > 1) for each in touching]
 
 
 def _shared(sets: list[np.ndarray]) -> list[set[int]]:
